@@ -1,0 +1,26 @@
+# One static library a folder of src/, and one program from src/cli/.
+
+# merlin_module(NAME LINK targets...): src/NAME/**.c becomes merlin_NAME; a folder of headers alone becomes an
+# interface library.
+function(merlin_module name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.c)
+  if(sources)
+    add_library(merlin_${name} STATIC ${sources})
+    target_include_directories(merlin_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+    target_link_libraries(merlin_${name} PUBLIC ${ARG_LINK})
+  else()
+    add_library(merlin_${name} INTERFACE)
+    target_include_directories(merlin_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+    target_link_libraries(merlin_${name} INTERFACE ${ARG_LINK})
+  endif()
+endfunction()
+
+function(merlin_program name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/cli/*.c)
+  if(sources)
+    add_executable(${name} ${sources})
+    target_link_libraries(${name} PRIVATE ${ARG_LINK})
+  endif()
+endfunction()

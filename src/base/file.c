@@ -1,0 +1,201 @@
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+bool file_exists(const char *path)
+{
+    struct stat s;
+    return stat(path, &s) == 0;
+}
+
+bool file_is_folder(const char *path)
+{
+    struct stat s;
+    return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
+
+static status read_open(FILE *f, const char *path, size_t limit, char **data, size_t *size)
+{
+    struct stat s;
+    if (fstat(fileno(f), &s) != 0 || !S_ISREG(s.st_mode)) return fail(ERROR_INPUT, "%s is not a plain file", path);
+    if ((size_t)s.st_size > limit)
+        return fail(ERROR_INPUT, "%s is %lld bytes, more than the %zu expected at most", path, (long long)s.st_size,
+                    limit);
+    char *buffer = malloc((size_t)s.st_size + 1);
+    if (!buffer) return fail(ERROR_MEMORY, "no memory to read %s (%lld bytes)", path, (long long)s.st_size);
+    size_t got = fread(buffer, 1, (size_t)s.st_size, f);
+    if (got != (size_t)s.st_size) {
+        free(buffer);
+        return fail(ERROR_INPUT, "cannot read all of %s", path);
+    }
+    buffer[got] = 0;
+    *data = buffer;
+    *size = got;
+    return OK;
+}
+
+status file_read(const char *path, size_t limit, char **data, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    if (!f) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
+    status s = read_open(f, path, limit, data, size);
+    fclose(f);
+    return s;
+}
+
+status file_temporary(const char *path, char **temporary)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *out = NULL;
+    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)getpid(), name) < 0)
+        return fail(ERROR_MEMORY, "no memory for a file name");
+    *temporary = out;
+    return OK;
+}
+
+void file_discard(char *temporary)
+{
+    if (!temporary) return;
+    unlink(temporary);
+    free(temporary);
+}
+
+static status sync_path(const char *path)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) return fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    int failed = fsync(fd);
+    close(fd);
+    return failed ? fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno)) : OK;
+}
+
+status file_commit(char *temporary, const char *path)
+{
+    status s = sync_path(temporary);
+    if (s == OK && rename(temporary, path) != 0)
+        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    if (s != OK) unlink(temporary);
+    free(temporary);
+    return s;
+}
+
+status file_write(const char *path, const void *data, size_t size)
+{
+    char *temporary = NULL;
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    if (!f) {
+        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        free(temporary);
+        return s;
+    }
+    bool written = fwrite(data, 1, size, f) == size;
+    bool closed = fclose(f) == 0;
+    if (!written || !closed) {
+        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        file_discard(temporary);
+        return s;
+    }
+    return file_commit(temporary, path);
+}
+
+status file_make_folder(const char *path)
+{
+    char *copy = strdup(path);
+    if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = OK;
+    for (char *p = copy + 1; s == OK; p++) {
+        if (*p != '/' && *p != 0) continue;
+        char end = *p;
+        *p = 0;
+        if (mkdir(copy, 0777) != 0 && !file_is_folder(copy))
+            s = fail(ERROR_OUTPUT, "cannot make the folder %s: %s", copy, strerror(errno));
+        *p = end;
+        if (end == 0) break;
+    }
+    free(copy);
+    return s;
+}
+
+char *file_join(const char *folder, const char *name)
+{
+    char *out = NULL;
+    size_t n = strlen(folder);
+    const char *between = n > 0 && folder[n - 1] == '/' ? "" : "/";
+    return asprintf(&out, "%s%s%s", folder, between, name) < 0 ? NULL : out;
+}
+
+static bool has_ending(const char *name, const char *const *endings)
+{
+    if (!endings) return true;
+    size_t n = strlen(name);
+    for (; *endings; endings++) {
+        size_t m = strlen(*endings);
+        if (n > m && strcasecmp(name + n - m, *endings) == 0) return true;
+    }
+    return false;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static bool append(char ***names, size_t *count, size_t *room, char *path)
+{
+    if (*count == *room) {
+        size_t grown = *room ? 2 * *room : 64;
+        char **larger = realloc(*names, grown * sizeof *larger);
+        if (!larger) return false;
+        *names = larger;
+        *room = grown;
+    }
+    (*names)[(*count)++] = path;
+    return true;
+}
+
+status file_list(const char *folder, const char *const *endings, char ***names, size_t *count)
+{
+    *names = NULL;
+    *count = 0;
+    DIR *d = opendir(folder);
+    if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
+    status s = OK;
+    size_t room = 0;
+    for (struct dirent *e; s == OK && (e = readdir(d));) {
+        if (e->d_name[0] == '.' || strchr(e->d_name, '~') || !has_ending(e->d_name, endings)) continue;
+        char *path = file_join(folder, e->d_name);
+        if (path && file_is_folder(path)) {
+            free(path);
+            continue;
+        }
+        if (!path || !append(names, count, &room, path)) {
+            free(path);
+            s = fail(ERROR_MEMORY, "no memory for the names in %s", folder);
+        }
+    }
+    closedir(d);
+    if (s != OK) {
+        file_list_free(*names, *count);
+        *names = NULL;
+        *count = 0;
+    } else if (*count > 1) {
+        qsort(*names, *count, sizeof **names, compare_names);
+    }
+    return s;
+}
+
+void file_list_free(char **names, size_t count)
+{
+    for (size_t i = 0; i < count; i++) free(names[i]);
+    free(names);
+}

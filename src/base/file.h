@@ -1,0 +1,36 @@
+/* Files as wholes: read into memory, and written so that a reader sees the old file or the new one, never half. */
+#ifndef MERLIN_BASE_FILE_H
+#define MERLIN_BASE_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+/* Reads all of a file; *data is malloc'ed, one zero byte is put behind it, *size excludes that byte. Refuses files over
+ * limit bytes. */
+status file_read(const char *path, size_t limit, char **data, size_t *size);
+
+/* Writes all of a file through a temporary name beside it, fsync and rename. */
+status file_write(const char *path, const void *data, size_t size);
+
+/* For libraries that write by name: a temporary name beside path, with path's own ending so that the library picks the
+ * right format (malloc'ed); then file_commit renames it to path and frees the name, or file_discard removes and frees
+ * it. */
+status file_temporary(const char *path, char **temporary);
+status file_commit(char *temporary, const char *path);
+void file_discard(char *temporary);
+
+bool file_exists(const char *path);
+bool file_is_folder(const char *path);
+/* Makes a folder and those above it. */
+status file_make_folder(const char *path);
+/* "folder/name", malloc'ed. */
+char *file_join(const char *folder, const char *name);
+
+/* The plain files of a folder whose names end in one of the endings (NULL-terminated, each with its dot, any case),
+ * sorted by name, each joined to the folder; *names and its entries are malloc'ed. endings NULL means all. */
+status file_list(const char *folder, const char *const *endings, char ***names, size_t *count);
+void file_list_free(char **names, size_t count);
+
+#endif

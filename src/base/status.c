@@ -1,0 +1,35 @@
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 1024 };
+
+static _Thread_local char message[MESSAGE_SIZE];
+
+status fail(status s, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    return s;
+}
+
+status fail_in(status s, const char *format, ...)
+{
+    char inner[MESSAGE_SIZE];
+    memcpy(inner, message, sizeof inner);
+    va_list args;
+    va_start(args, format);
+    int used = vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    if (used >= 0 && used < MESSAGE_SIZE) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %s", inner);
+    return s;
+}
+
+const char *status_message(void)
+{
+    return message;
+}

@@ -1,0 +1,33 @@
+/* How functions report failure.
+ *
+ * A function that can fail returns a status. The words for a person (what, where, what to do) are kept per thread and
+ * read once by whoever stops the work:
+ *
+ *     status s = exr_read(path, &maps);
+ *     if (s != OK) return fail_in(s, "cannot read maps from %s", path);
+ *     ...
+ *     fprintf(stderr, "merlin: %s\n", status_message());
+ */
+#ifndef MERLIN_BASE_STATUS_H
+#define MERLIN_BASE_STATUS_H
+
+typedef enum status {
+    OK = 0,
+    ERROR_USAGE,    /* the caller asked for something that makes no sense */
+    ERROR_INPUT,    /* a file or its content is missing, damaged or of another kind */
+    ERROR_OUTPUT,   /* something could not be written */
+    ERROR_MEMORY,   /* memory ran out */
+    ERROR_DEVICE,   /* the compute library or device refused */
+    ERROR_STOPPED,  /* interrupted by the user */
+} status;
+
+/* Records the message and returns s. */
+status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Puts a context in front of the message of the failure being passed on ("context: message") and returns s. */
+status fail_in(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The message of this thread's last failure; "" if there was none. Valid until the next fail in this thread. */
+const char *status_message(void);
+
+#endif

@@ -1,0 +1,75 @@
+/* Small vectors. `real` is float everywhere but in tests, which compile the same headers with MERLIN_REAL double to
+ * check derivatives against finite differences. */
+#ifndef MERLIN_BASE_VEC_H
+#define MERLIN_BASE_VEC_H
+
+#include <tgmath.h>
+
+#ifndef MERLIN_REAL
+#define MERLIN_REAL float
+#endif
+typedef MERLIN_REAL real;
+
+typedef struct vec3 {
+    real x, y, z;
+} vec3;
+
+static inline vec3 vec3_make(real x, real y, real z)
+{
+    return (vec3){x, y, z};
+}
+
+static inline vec3 vec3_add(vec3 a, vec3 b)
+{
+    return (vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline vec3 vec3_sub(vec3 a, vec3 b)
+{
+    return (vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline vec3 vec3_mul(vec3 a, vec3 b)
+{
+    return (vec3){a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+static inline vec3 vec3_scale(vec3 a, real s)
+{
+    return (vec3){a.x * s, a.y * s, a.z * s};
+}
+
+/* a + s b */
+static inline vec3 vec3_fma(vec3 a, real s, vec3 b)
+{
+    return (vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static inline real vec3_dot(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline vec3 vec3_cross(vec3 a, vec3 b)
+{
+    return (vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline real vec3_length(vec3 a)
+{
+    return sqrt(vec3_dot(a, a));
+}
+
+/* a / |a|; the zero vector stays zero. */
+static inline vec3 vec3_normalize(vec3 a)
+{
+    real length = vec3_length(a);
+    return length > 0 ? vec3_scale(a, 1 / length) : a;
+}
+
+static inline vec3 vec3_lerp(vec3 a, vec3 b, real t)
+{
+    return vec3_fma(vec3_scale(a, 1 - t), t, b);
+}
+
+#endif

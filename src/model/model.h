@@ -1,0 +1,57 @@
+/* MERLiN and its ablations as graphs.
+ *
+ * A model is its configuration (JSON: configs/NAME.json, and inside every weights file) plus parameters. The graph's
+ * inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
+ *
+ *   inputs   "image"  3, linear [0, 1], multiplied by the mask      "mask"   1
+ *            "light"  vector 3, 27 or 30: the target light's code   "light_position" vector 3: the target light's place
+ *   outputs  "albedo" 3 in [-1, 1]   "normal" 3 unit   "roughness" 1 in [-1, 1]   "depth" 1, scene units
+ *            "direct" 3: rendering layer under the flash    "indirect" 3: global-illumination residual for "direct"
+ *            "relit_direct" 3: by the relighting decoder    "relit_brdf" 3: by the rendering layer
+ *   training adds inputs "albedo_true" … "relit_true" and the losses "albedo", "normal", "depth", "roughness",
+ *            "roughness_gradient", "direct", "indirect", "reconstruction", "relight".
+ */
+#ifndef MERLIN_MODEL_MODEL_H
+#define MERLIN_MODEL_MODEL_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "nn/nn.h"
+
+enum { MODEL_LEVELS = 5 };
+
+typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
+typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_SH, MODEL_LIGHT_BOTH } model_lighting;
+
+typedef struct model_config {
+    char name[64];
+    bool input_global;        /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
+    int material_decoders;    /* 1 or 4 */
+    bool feature_sharing;     /* relighting decoder sees the material decoder's features */
+    bool gated_attention;
+    model_relight relight;    /* by network: has a relighting decoder */
+    bool global_illumination;
+    model_lighting lighting;  /* lighting code of 3, 27 or 30 */
+    int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
+    int gi_widths[MODEL_LEVELS];
+} model_config;
+
+/* From JSON; every key is required, unknown keys are refused, values are range-checked; messages name the key. */
+status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
+status model_config_read(const char *path, model_config *out);
+/* malloc'ed JSON. */
+char *model_config_write(const model_config *config);
+
+typedef enum model_part {
+    MODEL_WHOLE,    /* everything a photograph goes through once */
+    MODEL_TRAINING, /* the same with losses */
+    MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
+                       "mask"; output "indirect" */
+} model_part;
+status model_build(const model_config *config, model_part part, nn_graph **out);
+
+/* A weights file: configuration, graph and parameters in one step. *params matches MODEL_WHOLE's graph. */
+status model_load(const char *weights, model_config *config, nn_params **params);
+
+#endif

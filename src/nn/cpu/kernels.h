@@ -1,0 +1,101 @@
+/* What oneDNN has no primitive for: forward and backward of the elementwise, resampling, rendering and loss operations
+ * on channels-last tensors, as short OpenMP loops.
+ *
+ * Every forward writes all of y. Every backward writes dx, or adds to it if `accumulate` says that another use of x has
+ * already written its gradient there. Tensors are float32 or bfloat16 (computed in float32); x, y and their gradients
+ * share a type unless said otherwise. Sizes must fit (the compiler of the graph has checked them). Results do not depend
+ * on the number of threads. */
+#ifndef MERLIN_NN_CPU_KERNELS_H
+#define MERLIN_NN_CPU_KERNELS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "nn/nn.h"
+
+typedef struct cpu_tensor {
+    void *data;
+    nn_type type;
+    int n, h, w, c;
+} cpu_tensor;
+
+static inline size_t cpu_count(const cpu_tensor *t)
+{
+    return (size_t)t->n * (size_t)t->h * (size_t)t->w * (size_t)t->c;
+}
+
+/* y = x, converting type; with accumulate y += x. Also the backward of a conversion. */
+void cpu_cast(const cpu_tensor *x, cpu_tensor *y, bool accumulate);
+void cpu_zero(cpu_tensor *x);
+
+void cpu_relu(const cpu_tensor *x, cpu_tensor *y);
+void cpu_relu_backward(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+void cpu_tanh(const cpu_tensor *x, cpu_tensor *y);
+void cpu_tanh_backward(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+void cpu_sigmoid(const cpu_tensor *x, cpu_tensor *y);
+void cpu_sigmoid_backward(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+void cpu_scale_shift(const cpu_tensor *x, cpu_tensor *y, float scale, float shift);
+void cpu_scale_shift_backward(const cpu_tensor *dy, cpu_tensor *dx, float scale, bool accumulate);
+void cpu_reciprocal(const cpu_tensor *x, cpu_tensor *y, float scale, float shift);
+void cpu_reciprocal_backward(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, float scale, bool accumulate);
+
+void cpu_add(const cpu_tensor *a, const cpu_tensor *b, cpu_tensor *y);
+/* Copies x's channels to channels [first, first + x.c) of y, or from there to x (backward, slice). */
+void cpu_insert_channels(const cpu_tensor *x, cpu_tensor *y, int first, bool accumulate);
+void cpu_extract_channels(const cpu_tensor *y, int first, cpu_tensor *x, bool accumulate);
+
+/* y = x·gate, gate.c == 1. */
+void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y);
+void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
+                       bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate);
+
+void cpu_upsample_nearest(const cpu_tensor *x, cpu_tensor *y);
+void cpu_upsample_nearest_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+void cpu_upsample_bilinear(const cpu_tensor *x, cpu_tensor *y);
+void cpu_upsample_bilinear_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+/* x is N×1×1×C, y N×H×W×C. */
+void cpu_tile(const cpu_tensor *x, cpu_tensor *y);
+void cpu_tile_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+void cpu_space_to_depth(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
+void cpu_depth_to_space(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
+void cpu_channel_mean(const cpu_tensor *x, cpu_tensor *y);
+void cpu_channel_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+
+/* float32 only from here. */
+void cpu_normalize(const cpu_tensor *x, cpu_tensor *y);
+void cpu_normalize_backward(const cpu_tensor *x, const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx,
+                            bool accumulate);
+
+typedef struct cpu_render_tensors {
+    cpu_tensor albedo, normal, roughness, depth; /* values; or their gradients, data NULL where none is wanted */
+} cpu_render_tensors;
+typedef struct cpu_render_accumulate {
+    bool albedo, normal, roughness, depth;
+} cpu_render_accumulate;
+void cpu_render(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
+                float light_power, cpu_tensor *y);
+void cpu_render_backward(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
+                         float light_power, const cpu_tensor *dy, cpu_render_tensors *dmaps,
+                         cpu_render_accumulate accumulate);
+
+/* Returns the loss; mask_sum receives ΣM for the backward pass. Sums are in double, in a fixed order. */
+float cpu_masked_l2(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask, double *mask_sum);
+/* d(scale · loss)/d(prediction). */
+void cpu_masked_l2_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
+                            double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
+float cpu_masked_gradient_l2(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
+                             double *mask_sum);
+void cpu_masked_gradient_l2_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
+                                     double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
+
+typedef struct cpu_adam_step {
+    float learning_rate, beta1, beta2, epsilon;
+    float correction1, correction2; /* 1 - beta^t */
+    float gradient_scale;           /* from clipping */
+} cpu_adam_step;
+void cpu_adam(const cpu_adam_step *step, size_t count, float *value, const float *gradient, float *moment1,
+              float *moment2);
+/* Σ g² in double, fixed order; NaN or infinity if any element is. */
+double cpu_sum_squares(const float *x, size_t count);
+
+#endif

@@ -1,0 +1,53 @@
+/* Objects for rendering: triangles with a solid procedural material, made from (seed, index) alone or read from a mesh
+ * file.
+ *
+ *     scn_object object;
+ *     status s = scn_object_generate(seed, index, &object);
+ *     scn_surface at;
+ *     scn_surface_eval(&object, triangle, u, v, &at);
+ *     scn_object_free(&object);
+ */
+#ifndef MERLIN_SCENE_SCENE_H
+#define MERLIN_SCENE_SCENE_H
+
+#include <stdint.h>
+
+#include "base/status.h"
+#include "base/vec.h"
+
+typedef struct scn_material scn_material;
+
+typedef struct scn_object {
+    uint32_t vertex_count, triangle_count;
+    vec3 *position;         /* camera space, the object near (0, 0, -1) */
+    vec3 *normal;           /* unit, outward, smooth; camera space */
+    vec3 *reference;        /* where the material is looked up: the undeformed, unposed place of the vertex */
+    uint32_t (*triangle)[3]; /* counter-clockwise from outside */
+    uint8_t *part;          /* per triangle: which primitive of the union it belongs to */
+    scn_material *material;
+    const char *shape;      /* class name, static */
+} scn_object;
+
+/* What a ray sees at a point of the surface. */
+typedef struct scn_surface {
+    vec3 position;
+    vec3 geometric_normal; /* unit, outward */
+    vec3 normal;           /* unit, shading: smooth normal with the material's normal detail */
+    vec3 albedo;           /* linear, [0, 1] */
+    real roughness;        /* [0.1, 1] */
+} scn_surface;
+
+/* A random object, posed, filling 25 to 75 % of the frame of a camera with this horizontal field of view (degrees) and a
+ * square frame, now and then near its edge. Deterministic from (seed, index). */
+status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out);
+
+/* The mesh in an OBJ, PLY or glTF file, scaled and posed at random from (seed, index) like a generated object, with a
+ * procedural material. */
+status scn_object_from_mesh(const char *path, uint64_t seed, uint64_t index, float fov, scn_object *out);
+
+void scn_object_free(scn_object *object);
+
+/* Barycentric (u, v): weight of the triangle's second and third vertex, as Embree reports them. Thread-safe. */
+void scn_surface_eval(const scn_object *object, uint32_t triangle, real u, real v, scn_surface *out);
+
+#endif
