@@ -1,0 +1,35 @@
+/* What the subcommands share: their table, how they refuse, and how they read option values.
+ *
+ * A command returns the exit status: 0, 2 for wrong use, 1 for anything else. It prints one line to stderr when it fails,
+ * "merlin COMMAND: message". Each reads its options with getopt_long and knows --help, --json and --quiet. */
+#ifndef MERLIN_CLI_CLI_H
+#define MERLIN_CLI_CLI_H
+
+#include "base/status.h"
+
+typedef struct cli_command {
+    const char *name, *summary;
+    int (*run)(int argc, char **argv);
+} cli_command;
+
+int cmd_estimate(int argc, char **argv);
+int cmd_relight(int argc, char **argv);
+int cmd_render(int argc, char **argv);
+int cmd_train(int argc, char **argv);
+int cmd_eval(int argc, char **argv);
+int cmd_bench(int argc, char **argv);
+int cmd_info(int argc, char **argv);
+
+/* Prints "merlin COMMAND: " and the status's message; returns 2 for ERROR_USAGE, else 1. */
+int cli_fail(const char *command, status s);
+/* Prints "merlin COMMAND: message (try merlin COMMAND --help)"; returns 2. */
+int cli_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Whole-text numbers within [low, high]; the message names the option. */
+status cli_int(const char *option, const char *text, long low, long high, long *out);
+status cli_float(const char *option, const char *text, double low, double high, double *out);
+status cli_vec3(const char *option, const char *text, float out[3]); /* "x,y,z" */
+/* Set by SIGINT and SIGTERM once cli_catch_interrupts was called; long work polls it and stops tidily. */
+void cli_catch_interrupts(void);
+int cli_interrupted(void);
+
+#endif

@@ -1,0 +1,19 @@
+/* Photographs and maps from disk into linear float (libvips; OpenEXR Core for EXR).
+ *
+ * 8- and 16-bit files are decoded from sRGB (or by their ICC profile, honoured) to linear; EXR and Radiance HDR are
+ * linear already. EXIF orientation is applied. Grey becomes three equal channels. */
+#ifndef MERLIN_IMAGE_READ_H
+#define MERLIN_IMAGE_READ_H
+
+#include "image/image.h"
+
+enum { IMAGE_MAX_SIDE = 16384 };
+
+/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1] where the
+ * file has an alpha channel (EXR: "A"), and stays empty otherwise. Refuses non-images, truncated files, sides above
+ * IMAGE_MAX_SIDE and values that are NaN or infinite, in one clear line. */
+status img_read(const char *path, img *color, img *alpha);
+/* One channel in [0, 1] without colour decoding: a mask. */
+status img_read_mask(const char *path, img *mask);
+
+#endif

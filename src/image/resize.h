@@ -1,0 +1,17 @@
+/* Sizes, crops and filters. */
+#ifndef MERLIN_IMAGE_RESIZE_H
+#define MERLIN_IMAGE_RESIZE_H
+
+#include "image/image.h"
+
+/* Lanczos when enlarging, area-correct when shrinking. */
+status img_resize(const img *from, int width, int height, img *out);
+/* The rectangle at (x, y), which may hang over the edges: what lies outside is zero. */
+status img_crop(const img *from, int x, int y, int width, int height, img *out);
+/* Guided filter upsampling (He et al. 2013; fast form, He & Sun 2015): low-resolution maps brought to the guide's size so
+ * that their edges follow it. mask (1 channel, guide's size, or NULL) keeps what is outside from leaking in. radius in
+ * low-resolution pixels; epsilon in squared guide units. */
+status img_guided_upsample(const img *low, const img *low_mask, const img *guide, const img *mask, int radius,
+                           float epsilon, img *out);
+
+#endif

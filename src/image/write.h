@@ -1,0 +1,23 @@
+/* Images to disk. Every file appears whole or not at all. */
+#ifndef MERLIN_IMAGE_WRITE_H
+#define MERLIN_IMAGE_WRITE_H
+
+#include "image/image.h"
+
+typedef enum img_encoding {
+    IMG_SRGB8,   /* linear [0, 1] to 8-bit sRGB: pictures, albedo */
+    IMG_LINEAR8, /* [0, 1] to 8 bits as they are: roughness, depth, masks */
+    IMG_LINEAR16 /* [0, 1] to 16 bits as they are: normals as (n + 1)/2 */
+} img_encoding;
+
+/* 1 or 3 channels; values outside [0, 1] are clamped. */
+status img_write_png(const char *path, const img *image, img_encoding encoding);
+/* Equal-sized 3-channel linear frames as animated WebP or GIF by the path's ending, looping for ever. */
+status img_write_animation(const char *path, const img *frames, int count, int milliseconds);
+/* 3 channels, half float. */
+status img_write_exr(const char *path, const img *image);
+
+float srgb_encode(float linear);
+float srgb_decode(float encoded);
+
+#endif
