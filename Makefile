@@ -1,0 +1,58 @@
+# merlin: make demo and make test do everything from a bare Debian 12 clone; CMake (CMakePresets.json) works underneath.
+
+MERLIN = build/release/merlin
+OUT = out/demo
+
+.PHONY: all build demo test asan debug check format fuzz setup-build setup-test setup-check clean
+
+all: build
+
+setup-build setup-test setup-check: setup-%:
+	@tools/install-packages $*
+
+build: setup-build
+	@test -f build/release/build.ninja || cmake --preset release -DBUILD_TESTING=OFF >build-release.log 2>&1 || { cat build-release.log; exit 1; }
+	@rm -f build-release.log
+	@cmake --build --preset release --target merlin
+
+# One photograph taken apart and lit again.
+demo: build
+	$(MERLIN) estimate examples/demo.png -o $(OUT)
+	$(MERLIN) relight $(OUT) --orbit 24 -o $(OUT)/orbit
+	@echo
+	@echo "maps, reconstruction and report: $(OUT)/"
+	@echo "the light going round:           $(OUT)/orbit/orbit.webp"
+	@echo "overview:                        $(OUT)/overview.png"
+
+test: setup-test
+	cmake --preset release -DBUILD_TESTING=ON
+	cmake --build --preset release
+	ctest --preset release
+
+debug: setup-test
+	cmake --preset debug
+	cmake --build --preset debug
+	ctest --preset debug
+
+# The whole suite under AddressSanitizer and UndefinedBehaviourSanitizer.
+asan: setup-test
+	cmake --preset asan
+	cmake --build --preset asan
+	ctest --preset asan
+
+check: setup-check
+	cmake --preset release -DBUILD_TESTING=ON >/dev/null
+	tools/check
+
+format:
+	git ls-files '*.c' '*.h' | xargs clang-format-14 -i
+
+# Every fuzz target for FUZZ_SECONDS.
+FUZZ_SECONDS = 60
+fuzz: setup-check
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	tools/run-fuzzers build/fuzz/fuzz $(FUZZ_SECONDS)
+
+clean:
+	rm -rf build out
