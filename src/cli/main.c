@@ -1,0 +1,76 @@
+/* merlin: finds the subcommand and runs it. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+
+#pragma weak cmd_estimate
+#pragma weak cmd_relight
+#pragma weak cmd_render
+#pragma weak cmd_train
+#pragma weak cmd_eval
+#pragma weak cmd_bench
+#pragma weak cmd_info
+
+#ifndef MERLIN_VERSION
+#define MERLIN_VERSION "0.1.0"
+#endif
+
+static const cli_command commands[] = {
+    {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
+    {"relight", "show the object of a photograph under other light", cmd_relight},
+    {"render", "make training data", cmd_render},
+    {"train", "train a model", cmd_train},
+    {"eval", "measure a model on held-out data, beside trivial answers", cmd_eval},
+    {"bench", "measure what the model and the renderer cost on this machine", cmd_bench},
+    {"info", "say what is in a weights file", cmd_info},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static const cli_command *find_command(const char *name)
+{
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (commands[i].run && strcmp(name, commands[i].name) == 0) return &commands[i];
+    return NULL;
+}
+
+static void print_help(FILE *stream)
+{
+    fputs("usage: merlin COMMAND [options]\n\n"
+          "One photograph of an object, taken apart into its material and lit again from elsewhere.\n\n"
+          "commands:\n",
+          stream);
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (commands[i].run) fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    fputs("\nmerlin COMMAND --help explains a command; merlin --version prints the version.\n", stream);
+}
+
+/* Output that went to a full disk or a closed pipe is a failure even if the command did not notice. */
+static int finish(int code)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    fprintf(stderr, "merlin: cannot write to standard output\n");
+    return code ? code : 1;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_help(stderr);
+        return 2;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(stdout);
+        return finish(0);
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("merlin " MERLIN_VERSION);
+        return finish(0);
+    }
+    const cli_command *command = find_command(argv[1]);
+    if (!command) {
+        fprintf(stderr, "merlin: no command \"%s\" (try merlin --help)\n", argv[1]);
+        return 2;
+    }
+    return finish(command->run(argc - 1, argv + 1));
+}
