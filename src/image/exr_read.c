@@ -1,0 +1,231 @@
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/half.h"
+#include "image/exr.h"
+#include "image/exr_context.h"
+
+struct exr_file {
+    char *path;
+    exr_context_t context;
+    exr_complaint complaint;
+    exr_attr_box2i_t window;
+    const exr_attr_chlist_t *channels;
+    exr_storage_t storage;
+};
+
+/* Where one asked channel lies in a chunk's line, in bytes per pixel of the channels before it. */
+typedef struct source {
+    size_t bytes_before;
+    exr_pixel_type_t type;
+} source;
+
+static status fail_reading(const exr_file *f, exr_result_t code)
+{
+    return exr_fail(ERROR_INPUT, "read", f->path, &f->complaint, code);
+}
+
+static size_t channel_bytes(const exr_attr_chlist_entry_t *c)
+{
+    return c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+}
+
+static status check_layout(const exr_file *f)
+{
+    if (f->storage != EXR_STORAGE_SCANLINE && f->storage != EXR_STORAGE_TILED)
+        return fail(ERROR_INPUT, "cannot read %s: deep EXR files are not supported, flatten it first", f->path);
+    for (int i = 0; i < f->channels->num_channels; i++)
+        if (f->channels->entries[i].x_sampling != 1 || f->channels->entries[i].y_sampling != 1)
+            return fail(ERROR_INPUT, "cannot read %s: its channel %s is subsampled, which is not supported", f->path,
+                        f->channels->entries[i].name.str);
+    return OK;
+}
+
+static status open_file(exr_file *f)
+{
+    exr_context_initializer_t init = exr_quiet(&f->complaint);
+    exr_result_t r = exr_start_read(&f->context, f->path, &init);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_storage(f->context, 0, &f->storage);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, 0, &f->window);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_channels(f->context, 0, &f->channels);
+    return r == EXR_ERR_SUCCESS ? check_layout(f) : fail_reading(f, r);
+}
+
+status exr_open(const char *path, exr_file **out)
+{
+    *out = NULL;
+    exr_file *f = calloc(1, sizeof *f);
+    if (f) f->path = strdup(path);
+    if (!f || !f->path) {
+        free(f);
+        return fail(ERROR_MEMORY, "no memory to read %s", path);
+    }
+    status s = open_file(f);
+    if (s != OK) {
+        exr_close(f);
+        return s;
+    }
+    *out = f;
+    return OK;
+}
+
+void exr_close(exr_file *f)
+{
+    if (!f) return;
+    if (f->context) exr_finish(&f->context);
+    free(f->path);
+    free(f);
+}
+
+int exr_width(const exr_file *f)
+{
+    return f->window.max.x - f->window.min.x + 1;
+}
+
+int exr_height(const exr_file *f)
+{
+    return f->window.max.y - f->window.min.y + 1;
+}
+
+static bool find_source(const exr_file *f, const char *name, source *out)
+{
+    size_t before = 0;
+    for (int i = 0; i < f->channels->num_channels; i++) {
+        const exr_attr_chlist_entry_t *c = &f->channels->entries[i];
+        if (strcmp(c->name.str, name) == 0) {
+            *out = (source){before, c->pixel_type};
+            return true;
+        }
+        before += channel_bytes(c);
+    }
+    return false;
+}
+
+bool exr_has_channel(const exr_file *f, const char *name)
+{
+    source ignored;
+    return find_source(f, name, &ignored);
+}
+
+static void convert_line(const uint8_t *from, exr_pixel_type_t type, int count, float *to, int stride)
+{
+    if (type == EXR_PIXEL_HALF) {
+        for (int i = 0; i < count; i++) {
+            uint16_t half;
+            memcpy(&half, from + 2 * (size_t)i, sizeof half);
+            to[(size_t)i * (size_t)stride] = half_to_float(half);
+        }
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, from + 4 * (size_t)i, sizeof bits);
+        to[(size_t)i * (size_t)stride] = type == EXR_PIXEL_FLOAT ? bits_float(bits) : (float)bits;
+    }
+}
+
+typedef struct reader {
+    exr_file *file;
+    const exr_target *targets;
+    const source *sources;
+    size_t count, pixel_bytes;
+    exr_decode_pipeline_t decoder;
+    bool started;
+} reader;
+
+/* Decodes one chunk and spreads the asked channels over their targets; x, y: its first pixel in the image. */
+static exr_result_t read_chunk(reader *r, const exr_chunk_info_t *chunk, int x, int y)
+{
+    exr_decode_pipeline_t *d = &r->decoder;
+    exr_context_t context = r->file->context;
+    exr_result_t code =
+        r->started ? exr_decoding_update(context, 0, chunk, d) : exr_decoding_initialize(context, 0, chunk, d);
+    r->started = true;
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(context, 0, d);
+    if (code != EXR_ERR_SUCCESS) return code;
+    const uint8_t *bytes = d->unpacked_buffer ? d->unpacked_buffer : d->packed_buffer;
+    size_t width = (size_t)chunk->width, line_bytes = width * r->pixel_bytes;
+    if (!bytes || chunk->unpacked_size != line_bytes * (size_t)chunk->height) return EXR_ERR_CORRUPT_CHUNK;
+    for (size_t t = 0; t < r->count; t++) {
+        const exr_target *target = &r->targets[t];
+        for (int row = 0; row < chunk->height; row++) {
+            const uint8_t *from = bytes + (size_t)row * line_bytes + width * r->sources[t].bytes_before;
+            size_t pixel = (size_t)(y + row) * (size_t)exr_width(r->file) + (size_t)x;
+            convert_line(from, r->sources[t].type, chunk->width, target->data + pixel * (size_t)target->stride,
+                         target->stride);
+        }
+    }
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t read_scanlines(reader *r)
+{
+    const exr_file *f = r->file;
+    int32_t lines = 0;
+    exr_result_t code = exr_get_scanlines_per_chunk(f->context, 0, &lines);
+    for (int y = 0; code == EXR_ERR_SUCCESS && y < exr_height(f); y += lines) {
+        exr_chunk_info_t chunk;
+        code = exr_read_scanline_chunk_info(f->context, 0, f->window.min.y + y, &chunk);
+        if (code == EXR_ERR_SUCCESS && (chunk.width != exr_width(f) || chunk.height > exr_height(f) - y))
+            code = EXR_ERR_CORRUPT_CHUNK;
+        if (code == EXR_ERR_SUCCESS) code = read_chunk(r, &chunk, 0, y);
+    }
+    return code;
+}
+
+static exr_result_t read_tiles(reader *r)
+{
+    const exr_file *f = r->file;
+    int32_t width = 0, height = 0;
+    exr_result_t code = exr_get_tile_sizes(f->context, 0, 0, 0, &width, &height);
+    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1)) code = EXR_ERR_CORRUPT_CHUNK;
+    for (int y = 0; code == EXR_ERR_SUCCESS && y < exr_height(f); y += height) {
+        for (int x = 0; code == EXR_ERR_SUCCESS && x < exr_width(f); x += width) {
+            exr_chunk_info_t chunk;
+            code = exr_read_tile_chunk_info(f->context, 0, x / width, y / height, 0, 0, &chunk);
+            if (code == EXR_ERR_SUCCESS && (chunk.width > exr_width(f) - x || chunk.height > exr_height(f) - y))
+                code = EXR_ERR_CORRUPT_CHUNK;
+            if (code == EXR_ERR_SUCCESS) code = read_chunk(r, &chunk, x, y);
+        }
+    }
+    return code;
+}
+
+status exr_read(exr_file *f, const exr_target *targets, size_t count)
+{
+    source *sources = calloc(count + 1, sizeof *sources);
+    if (!sources) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    for (size_t i = 0; i < count; i++) {
+        if (find_source(f, targets[i].name, &sources[i])) continue;
+        free(sources);
+        return fail(ERROR_INPUT, "cannot read %s: it has no channel %s", f->path, targets[i].name);
+    }
+    reader r = {.file = f, .targets = targets, .sources = sources, .count = count};
+    for (int i = 0; i < f->channels->num_channels; i++)
+        r.pixel_bytes += channel_bytes(&f->channels->entries[i]);
+    exr_result_t code = f->storage == EXR_STORAGE_TILED ? read_tiles(&r) : read_scanlines(&r);
+    if (r.started) exr_decoding_destroy(f->context, &r.decoder);
+    free(sources);
+    return code == EXR_ERR_SUCCESS ? OK : fail_reading(f, code);
+}
+
+bool exr_get_numbers(const exr_file *f, const char *name, float *values, int count)
+{
+    const exr_attribute_t *a = NULL;
+    if (exr_get_attribute_by_name(f->context, 0, name, &a) != EXR_ERR_SUCCESS) return false;
+    if (a->type == EXR_ATTR_FLOAT && count == 1) {
+        values[0] = a->f;
+        return true;
+    }
+    if (a->type != EXR_ATTR_FLOAT_VECTOR || a->floatvector->length != count) return false;
+    memcpy(values, a->floatvector->arr, (size_t)count * sizeof *values);
+    return true;
+}
+
+const char *exr_get_text(const exr_file *f, const char *name)
+{
+    const exr_attribute_t *a = NULL;
+    if (exr_get_attribute_by_name(f->context, 0, name, &a) != EXR_ERR_SUCCESS) return NULL;
+    return a->type == EXR_ATTR_STRING ? a->string->str : NULL;
+}

@@ -1,0 +1,141 @@
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/half.h"
+#include "image/exr.h"
+#include "image/exr_context.h"
+
+static const float half_max = 65504.0f;
+
+typedef struct writer {
+    const char *path;
+    exr_context_t context;
+    exr_complaint complaint;
+    int width, height;
+    const exr_channel *channels;
+    size_t channel_count;
+    uint16_t *halves; /* one chunk: channel × line × pixel */
+} writer;
+
+static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
+{
+    if (a->text) return exr_attr_set_string(context, 0, a->name, a->text);
+    if (a->count == 1) return exr_attr_set_float(context, 0, a->name, a->values[0]);
+    return exr_attr_set_float_vector(context, 0, a->name, a->count, a->values);
+}
+
+static exr_result_t write_head(writer *w, const exr_attribute *attributes, size_t count)
+{
+    int part = 0;
+    exr_result_t r = exr_add_part(w->context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (r == EXR_ERR_SUCCESS)
+        r = exr_initialize_required_attr_simple(w->context, part, w->width, w->height, EXR_COMPRESSION_ZIP);
+    for (size_t i = 0; r == EXR_ERR_SUCCESS && i < w->channel_count; i++)
+        r = exr_add_channel(w->context, part, w->channels[i].name, EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (size_t i = 0; r == EXR_ERR_SUCCESS && i < count; i++)
+        r = add_attribute(w->context, &attributes[i]);
+    return r == EXR_ERR_SUCCESS ? exr_write_header(w->context) : r;
+}
+
+static const exr_channel *find_channel(const writer *w, const char *name)
+{
+    for (size_t i = 0; i < w->channel_count; i++)
+        if (strcmp(w->channels[i].name, name) == 0) return &w->channels[i];
+    return NULL;
+}
+
+static void convert_line(const float *from, int stride, int count, uint16_t *to)
+{
+    for (int i = 0; i < count; i++) {
+        float x = from[(size_t)i * (size_t)stride];
+        x = x > half_max ? half_max : x < -half_max ? -half_max : x;
+        to[i] = float_to_half(x);
+    }
+}
+
+/* Converts the lines of a chunk and points the encoder's channels (which the library sorts by name) at them. */
+static void fill_chunk(const writer *w, exr_encode_pipeline_t *encoder)
+{
+    int first = encoder->chunk.start_y, lines = encoder->chunk.height;
+    uint16_t *to = w->halves;
+    for (int c = 0; c < encoder->channel_count; c++) {
+        exr_coding_channel_info_t *out = &encoder->channels[c];
+        const exr_channel *from = find_channel(w, out->channel_name);
+        out->encode_from_ptr = (const uint8_t *)to;
+        out->user_bytes_per_element = 2;
+        out->user_data_type = EXR_PIXEL_HALF;
+        out->user_pixel_stride = 2;
+        out->user_line_stride = 2 * w->width;
+        for (int y = first; y < first + lines; y++, to += w->width) {
+            size_t at = (size_t)y * (size_t)w->width * (size_t)from->stride;
+            convert_line(from->data + at, from->stride, w->width, to);
+        }
+    }
+}
+
+static exr_result_t write_chunks(writer *w, int lines_per_chunk)
+{
+    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t r = EXR_ERR_SUCCESS;
+    for (int y = 0; r == EXR_ERR_SUCCESS && y < w->height; y += lines_per_chunk) {
+        exr_chunk_info_t chunk;
+        r = exr_write_scanline_chunk_info(w->context, 0, y, &chunk);
+        if (r != EXR_ERR_SUCCESS) break;
+        r = y == 0 ? exr_encoding_initialize(w->context, 0, &chunk, &encoder)
+                   : exr_encoding_update(w->context, 0, &chunk, &encoder);
+        if (r != EXR_ERR_SUCCESS) break;
+        fill_chunk(w, &encoder);
+        if (y == 0) r = exr_encoding_choose_default_routines(w->context, 0, &encoder);
+        if (r == EXR_ERR_SUCCESS) r = exr_encoding_run(w->context, 0, &encoder);
+    }
+    exr_encoding_destroy(w->context, &encoder);
+    return r;
+}
+
+static exr_result_t write_pixels(writer *w)
+{
+    int32_t lines = 0;
+    exr_result_t r = exr_get_scanlines_per_chunk(w->context, 0, &lines);
+    if (r != EXR_ERR_SUCCESS) return r;
+    w->halves = malloc((size_t)lines * (size_t)w->width * w->channel_count * sizeof *w->halves);
+    if (!w->halves) return EXR_ERR_OUT_OF_MEMORY;
+    r = write_chunks(w, lines);
+    free(w->halves);
+    return r;
+}
+
+static status write_file(writer *w, const char *temporary, const exr_attribute *attributes, size_t count)
+{
+    exr_context_initializer_t init = exr_quiet(&w->complaint);
+    exr_result_t r = exr_start_write(&w->context, temporary, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (r == EXR_ERR_SUCCESS) {
+        exr_set_longname_support(w->context, 1);
+        r = write_head(w, attributes, count);
+        if (r == EXR_ERR_SUCCESS) r = write_pixels(w);
+        exr_result_t closed = exr_finish(&w->context);
+        if (r == EXR_ERR_SUCCESS) r = closed;
+    }
+    return r == EXR_ERR_SUCCESS ? OK : exr_fail(ERROR_OUTPUT, "write", w->path, &w->complaint, r);
+}
+
+status exr_write(const char *path, int width, int height, const exr_channel *channels, size_t channel_count,
+                 const exr_attribute *attributes, size_t attribute_count)
+{
+    if (width < 1 || height < 1 || channel_count < 1)
+        return fail(ERROR_USAGE, "an EXR file of %d x %d pixels and %zu channels cannot be", width, height,
+                    channel_count);
+    char *temporary = NULL;
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    writer w = {.path = path, .width = width, .height = height, .channels = channels, .channel_count = channel_count};
+    s = write_file(&w, temporary, attributes, attribute_count);
+    if (s != OK) {
+        file_discard(temporary);
+        return s;
+    }
+    return file_commit(temporary, path);
+}

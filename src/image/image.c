@@ -1,0 +1,36 @@
+#include "image/image.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+status img_new(img *out, int width, int height, int channels)
+{
+    *out = (img){0};
+    if (width < 1 || height < 1 || channels < 1)
+        return fail(ERROR_USAGE, "an image of %d x %d pixels and %d channels cannot be", width, height, channels);
+    size_t count = 0, bytes = 0;
+    if (__builtin_mul_overflow((size_t)width * (size_t)height, (size_t)channels, &count) ||
+        __builtin_mul_overflow(count, sizeof(float), &bytes) || bytes > PTRDIFF_MAX)
+        return fail(ERROR_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
+    float *data = calloc(count, sizeof(float));
+    if (!data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
+    *out = (img){width, height, channels, data};
+    return OK;
+}
+
+void img_free(img *image)
+{
+    if (!image) return;
+    free(image->data);
+    *image = (img){0};
+}
+
+status img_copy(img *out, const img *from)
+{
+    status s = img_new(out, from->width, from->height, from->channels);
+    if (s != OK) return s;
+    size_t count = (size_t)from->width * (size_t)from->height * (size_t)from->channels;
+    memcpy(out->data, from->data, count * sizeof(float));
+    return OK;
+}
