@@ -1,0 +1,53 @@
+/* Real spherical harmonics of bands 0 to 2, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22.
+ *
+ *     real sh[9][3] = {0};
+ *     for (every texel) sh_accumulate(sh, direction, radiance times solid angle);
+ *     vec3 e = sh_irradiance(sh, normal);
+ *
+ * Irradiance as in Ramamoorthi & Hanrahan 2001: the clamped cosine keeps π, 2π/3 and π/4 of the three bands. */
+#ifndef MERLIN_OPTICS_SH_H
+#define MERLIN_OPTICS_SH_H
+
+#include "base/vec.h"
+
+/* The nine basis functions at the unit direction d. */
+static inline void sh_basis(vec3 d, real out[9])
+{
+    out[0] = (real)0.28209479177387814;
+    out[1] = (real)0.48860251190291992 * d.y;
+    out[2] = (real)0.48860251190291992 * d.z;
+    out[3] = (real)0.48860251190291992 * d.x;
+    out[4] = (real)1.0925484305920792 * d.x * d.y;
+    out[5] = (real)1.0925484305920792 * d.y * d.z;
+    out[6] = (real)0.31539156525252005 * (3 * d.z * d.z - 1);
+    out[7] = (real)1.0925484305920792 * d.x * d.z;
+    out[8] = (real)0.54627421529603959 * (d.x * d.x - d.y * d.y);
+}
+
+/* Adds one direction's radiance times its solid angle (per channel) to the coefficients. */
+static inline void sh_accumulate(real sh[9][3], vec3 d, vec3 weighted_radiance)
+{
+    real basis[9];
+    sh_basis(d, basis);
+    for (int i = 0; i < 9; i++) {
+        sh[i][0] += basis[i] * weighted_radiance.x;
+        sh[i][1] += basis[i] * weighted_radiance.y;
+        sh[i][2] += basis[i] * weighted_radiance.z;
+    }
+}
+
+/* Irradiance on a surface of unit normal n; a Lambertian surface reflects albedo/π of it. */
+static inline vec3 sh_irradiance(const real sh[9][3], vec3 n)
+{
+    static const double band[9] = {3.14159265358979324, 2.09439510239319549, 2.09439510239319549,
+                                   2.09439510239319549, 0.78539816339744831, 0.78539816339744831,
+                                   0.78539816339744831, 0.78539816339744831, 0.78539816339744831};
+    real basis[9];
+    sh_basis(n, basis);
+    vec3 e = {0, 0, 0};
+    for (int i = 0; i < 9; i++)
+        e = vec3_fma(e, (real)band[i] * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
+    return e;
+}
+
+#endif

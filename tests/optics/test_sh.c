@@ -1,0 +1,88 @@
+/* Spherical harmonics against quadrature over the sphere. */
+#define MERLIN_REAL double
+#include "optics/sh.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { POLAR = 400, AROUND = 800 };
+static const double pi = 3.14159265358979324;
+
+/* Midpoint rule in cosθ and φ. Its error is h²/24 (f'(1) − f'(−1)) · 2π with h = 2/POLAR: 3e-5 for the steepest
+ * product, that of L20 with itself. */
+static vec3 direction(int i, int j)
+{
+    double z = 1 - 2 * (i + 0.5) / POLAR, phi = 2 * pi * (j + 0.5) / AROUND, s = sqrt(1 - z * z);
+    return vec3_make(s * cos(phi), s * sin(phi), z);
+}
+static const double solid_angle = 4 * 3.14159265358979324 / (POLAR * AROUND);
+
+static void basis_is_orthonormal(void **state)
+{
+    (void)state;
+    double product[9][9] = {{0}};
+    for (int i = 0; i < POLAR; i++)
+        for (int j = 0; j < AROUND; j++) {
+            double y[9];
+            sh_basis(direction(i, j), y);
+            for (int a = 0; a < 9; a++)
+                for (int b = 0; b < 9; b++)
+                    product[a][b] += y[a] * y[b] * solid_angle;
+        }
+    for (int a = 0; a < 9; a++)
+        for (int b = 0; b < 9; b++)
+            assert_true(fabs(product[a][b] - (a == b)) < 4e-5);
+}
+
+/* A sky of bands 0 to 2 only, so that nine coefficients hold it whole. */
+static vec3 sky(vec3 d)
+{
+    return vec3_make(1 + 0.5 * d.y, 0.7 + 0.3 * d.x * d.z, 0.4 + 0.2 * d.z * d.z - 0.1 * d.x);
+}
+
+static void irradiance_from_coefficients_matches_quadrature(void **state)
+{
+    (void)state;
+    real sh[9][3] = {{0}};
+    for (int i = 0; i < POLAR; i++)
+        for (int j = 0; j < AROUND; j++) {
+            vec3 d = direction(i, j);
+            sh_accumulate(sh, d, vec3_scale(sky(d), solid_angle));
+        }
+    static const vec3 normals[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0.48, -0.6, 0.64}, {-0.6, 0, -0.8}};
+    for (int n = 0; n < 5; n++) {
+        vec3 expected = {0, 0, 0};
+        for (int i = 0; i < POLAR; i++)
+            for (int j = 0; j < AROUND; j++) {
+                vec3 d = direction(i, j);
+                expected = vec3_fma(expected, fmax(0, vec3_dot(normals[n], d)) * solid_angle, sky(d));
+            }
+        vec3 e = sh_irradiance((const real(*)[3])sh, normals[n]);
+        /* the clamp's kink costs the quadrature a little more */
+        assert_true(vec3_length(vec3_sub(e, expected)) < 2e-4);
+    }
+}
+
+static void constant_radiance_gives_pi_irradiance(void **state)
+{
+    (void)state;
+    real sh[9][3] = {{0}};
+    for (int c = 0; c < 3; c++)
+        sh[0][c] = 2 * sqrt(pi);
+    vec3 e = sh_irradiance((const real(*)[3])sh, vec3_make(0, 0.6, 0.8));
+    assert_true(fabs(e.x - pi) < 1e-12 && fabs(e.z - pi) < 1e-12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(basis_is_orthonormal),
+        cmocka_unit_test(irradiance_from_coefficients_matches_quadrature),
+        cmocka_unit_test(constant_radiance_gives_pi_irradiance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
