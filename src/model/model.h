@@ -3,13 +3,17 @@
  * A model is its configuration (JSON: configs/NAME.json, and inside every weights file) plus parameters. The graph's
  * inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
  *
- *   inputs   "image"  3, linear [0, 1], multiplied by the mask      "mask"   1
+ *   inputs   "image"  3, model_encode_image of the linear image, multiplied by the mask      "mask"   1
  *            "light"  vector 3, 27 or 30: the target light's code   "light_position" vector 3: the target light's place
  *   outputs  "albedo" 3 in [-1, 1]   "normal" 3 unit   "roughness" 1 in [-1, 1]   "depth" 1, scene units
  *            "direct" 3: rendering layer under the flash    "indirect" 3: global-illumination residual for "direct"
  *            "relit_direct" 3: by the relighting decoder    "relit_brdf" 3: by the rendering layer
- *   training adds inputs "albedo_true" … "relit_true" and the losses "albedo", "normal", "depth", "roughness",
- *            "roughness_gradient", "direct", "indirect", "reconstruction", "relight".
+ *            Maps mean nothing outside the mask; images are zero there. A variant without global illumination has no
+ *            "indirect", one that relights by BRDF no "light" and no "relit_direct" (nn_output_data: NULL). "indirect"
+ * may dip below zero. training adds inputs "loss_mask" 1, "albedo_true" 3 and "roughness_true" 1 in [-1, 1],
+ * "normal_true" 3, "depth_true" 1, "direct_true" 3, "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and
+ * the losses "albedo", "normal", "depth", "roughness", "roughness_gradient", "direct", "indirect", "reconstruction",
+ * "relight".
  */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
@@ -19,18 +23,25 @@
 #include "base/status.h"
 #include "nn/nn.h"
 
-enum { MODEL_LEVELS = 5 };
+enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 9 };
+
+/* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
+#define MODEL_FOV 60.0f
+#define MODEL_LIGHT_POWER 5.95f
+
+/* The losses by name; a variant may lack some (nn_loss: NAN). */
+extern const char *const model_losses[MODEL_LOSSES];
 
 typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
 typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_SH, MODEL_LIGHT_BOTH } model_lighting;
 
 typedef struct model_config {
     char name[64];
-    bool input_global;        /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
-    int material_decoders;    /* 1 or 4 */
-    bool feature_sharing;     /* relighting decoder sees the material decoder's features */
+    bool input_global;     /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
+    int material_decoders; /* 1 or 4 */
+    bool feature_sharing;  /* relighting decoder sees the material decoder's features */
     bool gated_attention;
-    model_relight relight;    /* by network: has a relighting decoder */
+    model_relight relight; /* by network: has a relighting decoder */
     bool global_illumination;
     model_lighting lighting;  /* lighting code of 3, 27 or 30 */
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
@@ -39,9 +50,17 @@ typedef struct model_config {
 
 /* From JSON; every key is required, unknown keys are refused, values are range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
+/* The "model" object of a file like configs/NAME.json. */
 status model_config_read(const char *path, model_config *out);
-/* malloc'ed JSON. */
+/* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
 char *model_config_write(const model_config *config);
+
+/* Length of the lighting code: 3, 27 or 30. */
+int model_light_size(const model_config *config);
+
+/* What the input "image" holds: the square root of linear values clamped to [0, 1], which spends the network's
+ * precision as the eye (and sRGB) does. n values; in place is fine. */
+void model_encode_image(const float *linear, float *encoded, size_t n);
 
 typedef enum model_part {
     MODEL_WHOLE,    /* everything a photograph goes through once */

@@ -1,0 +1,79 @@
+#include "model/blocks.h"
+
+#include <stdio.h>
+
+enum { NAME = 96 };
+
+/* "a.b" in the caller's buffer: the graph copies names. */
+static const char *join(char *buffer, const char *a, const char *b)
+{
+    snprintf(buffer, NAME, "%s.%s", a, b);
+    return buffer;
+}
+
+nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stride)
+{
+    char buffer[NAME];
+    nn_node *y = nn_conv2d(g, x, join(buffer, name, "conv"), out, 3, stride, NN_NO_BIAS);
+    return nn_relu(g, nn_batch_norm(g, y, join(buffer, name, "norm")));
+}
+
+void block_encoder(nn_graph *g, nn_node *x, const char *name, const int *widths, nn_node *features[MODEL_LEVELS])
+{
+    char buffer[NAME];
+    /* packing 2×2 pixels into channels gives the first layer the channels that vector units want */
+    nn_node *y = nn_space_to_depth(g, nn_compute(g, x), 2);
+    features[0] = y = block_conv(g, y, join(buffer, name, "level0.a"), widths[0], 1);
+    for (int i = 1; i < MODEL_LEVELS; i++) {
+        char level[16];
+        snprintf(level, sizeof level, "level%d.a", i);
+        y = block_conv(g, y, join(buffer, name, level), widths[i], 2);
+        snprintf(level, sizeof level, "level%d.b", i);
+        y = block_conv(g, y, join(buffer, name, level), widths[i], 1);
+        features[i] = y;
+    }
+    features[MODEL_LEVELS - 1] = block_conv(g, y, join(buffer, name, "level4.c"), widths[MODEL_LEVELS - 1], 1);
+}
+
+/* Oktay et al. 2018: sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the coarse signal's resolution,
+ * brought to the skip's, times the skip. */
+static nn_node *attention_gate(nn_graph *g, nn_node *skip, nn_node *signal, const char *name, int inner)
+{
+    char buffer[NAME];
+    nn_node *x = nn_conv2d(g, skip, join(buffer, name, "skip"), inner, 1, 2, NN_NO_BIAS);
+    nn_node *s = nn_conv2d(g, signal, join(buffer, name, "signal"), inner, 1, 1, NN_BIAS);
+    nn_node *both = nn_relu(g, nn_add(g, x, s));
+    nn_node *alpha = nn_sigmoid(g, nn_conv2d(g, both, join(buffer, name, "psi"), 1, 1, 1, NN_BIAS));
+    return nn_gate(g, skip, nn_upsample_bilinear(g, alpha));
+}
+
+static nn_node *skip_through(nn_graph *g, const block_decoder_inputs *in, nn_node *skip, nn_node *signal,
+                             const char *name, int inner)
+{
+    return in->gated ? attention_gate(g, skip, signal, name, inner) : skip;
+}
+
+void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *features[MODEL_LEVELS - 1])
+{
+    nn_node *d = in->bottleneck;
+    for (int i = MODEL_LEVELS - 2; i >= 0; i--) {
+        char stage[NAME], buffer[2 * NAME];
+        snprintf(stage, sizeof stage, "%.64s.level%d", in->name, i);
+        int width = in->widths[i];
+        nn_node *parts[3];
+        int count = 0;
+        /* reducing before upsampling costs a quarter of doing it behind */
+        parts[count++] = nn_upsample_bilinear(g, nn_conv2d(g, d, join(buffer, stage, "up"), width, 1, 1, NN_BIAS));
+        parts[count++] = skip_through(g, in, in->skips[i], d, join(buffer, stage, "gate"), width / 2);
+        if (in->shared)
+            parts[count++] = skip_through(g, in, in->shared[i], d, join(buffer, stage, "shared_gate"), width / 2);
+        nn_node *y = block_conv(g, nn_concat(g, parts, count), join(buffer, stage, "fuse"), width, 1);
+        features[i] = d = nn_add(g, y, in->skips[i]); /* residual skips S1 to S4 */
+    }
+}
+
+nn_node *block_head(nn_graph *g, nn_node *x, const char *name, int channels)
+{
+    nn_node *y = nn_conv2d(g, x, name, 4 * channels, 3, 1, NN_BIAS);
+    return nn_depth_to_space(g, nn_float(g, y), 2);
+}

@@ -1,0 +1,29 @@
+/* The pieces MERLiN's encoders and decoders are made of. Channels last; level 0 is half the image's size, each further
+ * level half of the one before. */
+#ifndef MERLIN_MODEL_BLOCKS_H
+#define MERLIN_MODEL_BLOCKS_H
+
+#include "model/model.h"
+
+/* 3×3 convolution, batch norm, ReLU: parameters `name.conv.*` and `name.norm.*`. */
+nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stride);
+
+/* The packed full-size input (float, any channels) to features at every level. */
+void block_encoder(nn_graph *g, nn_node *x, const char *name, const int *widths, nn_node *features[MODEL_LEVELS]);
+
+typedef struct block_decoder_inputs {
+    const char *name;
+    const int *widths;
+    bool gated;
+    nn_node *bottleneck;    /* at level 4 */
+    nn_node *const *skips;  /* the encoder's features, levels 0 to 4 */
+    nn_node *const *shared; /* another decoder's features, levels 0 to 3; NULL: none */
+} block_decoder_inputs;
+
+/* From the bottleneck up to level 0; features receives levels 0 to 3. */
+void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *features[MODEL_LEVELS - 1]);
+
+/* From level 0 to full size: a 3×3 convolution whose outputs are the four pixels of each 2×2 block. Float. */
+nn_node *block_head(nn_graph *g, nn_node *x, const char *name, int channels);
+
+#endif

@@ -1,0 +1,107 @@
+/* The model's configuration as JSON. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "model/model.h"
+
+enum { MAX_WIDTH = 1024, MAX_CONFIG_BYTES = 1 << 20 };
+
+static const char *const relight_words[] = {"network", "brdf"};
+static const char *const lighting_words[] = {"point", "sh", "both"};
+
+static status check_widths(const char *where, const char *key, const int *widths)
+{
+    /* the vector units work on blocks of 16 channels, and a gate's inner width is half of its level's */
+    for (int i = 0; i < MODEL_LEVELS; i++)
+        if (widths[i] % 8) return fail(ERROR_INPUT, "%s: \"%s\" must be multiples of 8", where, key);
+    return OK;
+}
+
+static status read_keys(json_object *o, const char *where, model_config *out)
+{
+    int relight = 0, lighting = 0;
+    status s = json_text(o, "name", out->name, sizeof out->name);
+    if (s == OK) s = json_bool(o, "input_global", &out->input_global);
+    if (s == OK) s = json_int(o, "material_decoders", 1, 4, &out->material_decoders);
+    if (s == OK && out->material_decoders != 1 && out->material_decoders != 4)
+        s = fail(ERROR_INPUT, "%s: \"material_decoders\" must be 1 or 4", where);
+    if (s == OK) s = json_bool(o, "feature_sharing", &out->feature_sharing);
+    if (s == OK) s = json_bool(o, "gated_attention", &out->gated_attention);
+    if (s == OK) s = json_choice(o, "relight", relight_words, 2, &relight);
+    if (s == OK) s = json_bool(o, "global_illumination", &out->global_illumination);
+    if (s == OK) s = json_choice(o, "lighting", lighting_words, 3, &lighting);
+    if (s == OK) s = json_ints(o, "widths", 8, MAX_WIDTH, MODEL_LEVELS, out->widths);
+    if (s == OK) s = json_ints(o, "gi_widths", 8, MAX_WIDTH, MODEL_LEVELS, out->gi_widths);
+    if (s == OK) s = check_widths(where, "widths", out->widths);
+    if (s == OK) s = check_widths(where, "gi_widths", out->gi_widths);
+    out->relight = (model_relight)relight;
+    out->lighting = (model_lighting)lighting;
+    if (s == OK && out->feature_sharing && out->relight != MODEL_RELIGHT_NETWORK)
+        s = fail(ERROR_INPUT, "%s: \"feature_sharing\" needs \"relight\": \"network\"", where);
+    return s == OK ? json_finish(o) : s;
+}
+
+status model_config_parse(const char *json, size_t size, const char *where, model_config *out)
+{
+    memset(out, 0, sizeof *out);
+    json_object *o;
+    status s = json_parse(json, size, where, &o);
+    if (s != OK) return s;
+    s = read_keys(o, where, out);
+    json_free(o);
+    return s;
+}
+
+status model_config_read(const char *path, model_config *out)
+{
+    char *text = NULL, *inner = NULL;
+    size_t size = 0;
+    json_object *o = NULL;
+    status s = file_read(path, MAX_CONFIG_BYTES, &text, &size);
+    if (s == OK) s = json_parse(text, size, path, &o);
+    if (s == OK) s = json_inner(o, "model", &inner);
+    if (s == OK) s = model_config_parse(inner, strlen(inner), path, out);
+    json_free(o);
+    free(inner);
+    free(text);
+    return s;
+}
+
+static const char *word(bool yes)
+{
+    return yes ? "true" : "false";
+}
+
+/* Quotes and control characters do not survive: a name is a word. */
+static void plain_name(const char *name, char *out, size_t capacity)
+{
+    size_t n = 0;
+    for (; *name && n + 1 < capacity; name++)
+        if ((unsigned char)*name >= ' ' && *name != '"' && *name != '\\') out[n++] = *name;
+    out[n] = 0;
+}
+
+char *model_config_write(const model_config *c)
+{
+    char name[sizeof c->name], *text = NULL;
+    plain_name(c->name, name, sizeof name);
+    const int *w = c->widths, *gi = c->gi_widths;
+    int length =
+        asprintf(&text,
+                 "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
+                 "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
+                 "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d]}",
+                 name, word(c->input_global), c->material_decoders, word(c->feature_sharing), word(c->gated_attention),
+                 relight_words[c->relight], word(c->global_illumination), lighting_words[c->lighting], w[0], w[1], w[2],
+                 w[3], w[4], gi[0], gi[1], gi[2], gi[3], gi[4]);
+    return length < 0 ? NULL : text;
+}
+
+int model_light_size(const model_config *config)
+{
+    static const int sizes[] = {3, 27, 30};
+    return sizes[config->lighting];
+}

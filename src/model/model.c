@@ -1,0 +1,250 @@
+#include "model/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/blocks.h"
+#include "nn/safetensors.h"
+
+enum { LIGHT_CODE = 128 };
+
+const char *const model_losses[MODEL_LOSSES] = {
+    "albedo", "normal", "depth", "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"};
+
+typedef struct maps {
+    nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
+} maps;
+
+typedef struct network {
+    nn_graph *g;
+    const model_config *config;
+    nn_node *mask, *light_position;
+    nn_node *encoder[MODEL_LEVELS];
+    nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of the four decoders' */
+    maps maps;
+    nn_node *direct, *indirect, *relit_direct, *relit_brdf;
+} network;
+
+void model_encode_image(const float *linear, float *encoded, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        encoded[i] = sqrtf(fminf(fmaxf(linear[i], 0.0f), 1.0f));
+}
+
+static nn_node *shape_depth(nn_graph *g, nn_node *x)
+{
+    return nn_reciprocal(g, nn_tanh(g, x), 0.4f, 0.65f); /* 1 / (0.4 (x + 1) + 0.25) */
+}
+
+static void decode_material(network *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
+{
+    block_decoder_inputs in = {.name = name,
+                               .widths = n->config->widths,
+                               .gated = n->config->gated_attention,
+                               .bottleneck = n->encoder[MODEL_LEVELS - 1],
+                               .skips = n->encoder};
+    block_decoder(n->g, &in, features);
+}
+
+static void material_by_one_decoder(network *n)
+{
+    nn_graph *g = n->g;
+    decode_material(n, "material", n->material);
+    nn_node *y = block_head(g, n->material[0], "material.head", 8);
+    n->maps.albedo = nn_tanh(g, nn_slice(g, y, 0, 3));
+    n->maps.normal = nn_normalize(g, nn_slice(g, y, 3, 3));
+    n->maps.roughness = nn_tanh(g, nn_slice(g, y, 6, 1));
+    n->maps.depth = shape_depth(g, nn_slice(g, y, 7, 1));
+}
+
+static void material_by_four_decoders(network *n)
+{
+    nn_graph *g = n->g;
+    static const char *const decoders[4] = {"material_albedo", "material_normal", "material_roughness",
+                                            "material_depth"};
+    static const char *const heads[4] = {"material_albedo.head", "material_normal.head", "material_roughness.head",
+                                         "material_depth.head"};
+    static const int channels[4] = {3, 3, 1, 1};
+    nn_node *y[4];
+    for (int k = 0; k < 4; k++) {
+        nn_node *features[MODEL_LEVELS - 1];
+        decode_material(n, decoders[k], features);
+        y[k] = block_head(g, features[0], heads[k], channels[k]);
+        for (int i = 0; i < MODEL_LEVELS - 1; i++)
+            n->material[i] = k ? nn_add(g, n->material[i], features[i]) : features[i];
+    }
+    n->maps.albedo = nn_tanh(g, y[0]);
+    n->maps.normal = nn_normalize(g, y[1]);
+    n->maps.roughness = nn_tanh(g, y[2]);
+    n->maps.depth = shape_depth(g, y[3]);
+}
+
+static void relight_by_network(network *n)
+{
+    nn_graph *g = n->g;
+    /* three fully connected layers, repeated over the bottleneck (Sang & Chandraker 2020) */
+    nn_node *code = nn_compute(g, nn_input(g, "light", model_light_size(n->config), NN_VECTOR));
+    code = nn_tanh(g, nn_linear(g, code, "lighting.fc1", 8));
+    code = nn_tanh(g, nn_linear(g, code, "lighting.fc2", 32));
+    code = nn_tanh(g, nn_linear(g, code, "lighting.fc3", LIGHT_CODE));
+    nn_node *deepest = n->encoder[MODEL_LEVELS - 1];
+    nn_node *parts[2] = {deepest, nn_tile(g, code, deepest)};
+    block_decoder_inputs in = {.name = "relight",
+                               .widths = n->config->widths,
+                               .gated = n->config->gated_attention,
+                               .bottleneck = nn_concat(g, parts, 2),
+                               .skips = n->encoder,
+                               .shared = n->config->feature_sharing ? n->material : NULL};
+    nn_node *features[MODEL_LEVELS - 1];
+    block_decoder(g, &in, features);
+    nn_node *y = nn_sigmoid(g, block_head(g, features[0], "relight.head", 3));
+    n->relit_direct = nn_gate(g, y, n->mask);
+}
+
+/* The residual light of bounces 2 and up, from what bounce 1 looks like and the maps. */
+static nn_node *global_illumination(nn_graph *g, const model_config *config, nn_node *direct, const maps *m,
+                                    nn_node *mask)
+{
+    nn_node *parts[6] = {direct, m->albedo, m->normal, m->roughness, m->depth, mask};
+    /* maps mean nothing outside the mask */
+    nn_node *x = nn_gate(g, nn_concat(g, parts, 6), mask);
+    nn_node *encoder[MODEL_LEVELS], *features[MODEL_LEVELS - 1];
+    block_encoder(g, x, "indirect.encoder", config->gi_widths, encoder);
+    block_decoder_inputs in = {.name = "indirect.decoder",
+                               .widths = config->gi_widths,
+                               .gated = config->gated_attention,
+                               .bottleneck = encoder[MODEL_LEVELS - 1],
+                               .skips = encoder};
+    block_decoder(g, &in, features);
+    nn_node *y = block_head(g, features[0], "indirect.head", 3);
+    /* indirect light is a few percent of direct: small from the first step on */
+    return nn_gate(g, nn_scale_shift(g, y, 0.1f, 0.0f), mask);
+}
+
+static nn_node *render(network *n, nn_node *light)
+{
+    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light};
+    return nn_render(n->g, &in, MODEL_FOV, MODEL_LIGHT_POWER);
+}
+
+static void build_network(network *n, bool training)
+{
+    nn_graph *g = n->g;
+    nn_node *image = nn_input(g, "image", 3, 1);
+    n->mask = nn_input(g, "mask", 1, 1);
+    n->light_position = nn_input(g, "light_position", 3, NN_VECTOR);
+    nn_node *parts[2] = {image, n->mask};
+    block_encoder(g, nn_concat(g, parts, 2), "encoder", n->config->widths, n->encoder);
+    if (n->config->material_decoders == 1)
+        material_by_one_decoder(n);
+    else
+        material_by_four_decoders(n);
+    n->direct = render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
+    if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, n->direct, &n->maps, n->mask);
+    if (n->config->relight == MODEL_RELIGHT_NETWORK) relight_by_network(n);
+    if (!training || n->config->relight == MODEL_RELIGHT_BRDF) n->relit_brdf = render(n, n->light_position);
+}
+
+static void name_outputs(const network *n)
+{
+    nn_graph *g = n->g;
+    nn_output(g, n->maps.albedo, "albedo");
+    nn_output(g, n->maps.normal, "normal");
+    nn_output(g, n->maps.roughness, "roughness");
+    nn_output(g, n->maps.depth, "depth");
+    nn_output(g, n->direct, "direct");
+    if (n->indirect) nn_output(g, n->indirect, "indirect");
+    if (n->relit_direct) nn_output(g, n->relit_direct, "relit_direct");
+    if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
+}
+
+/* The paper's losses: weight 2 for normals and 1 for the rest. */
+static void add_losses(network *n)
+{
+    nn_graph *g = n->g;
+    nn_node *mask = nn_input(g, "loss_mask", 1, 1);
+    nn_node *roughness = nn_input(g, "roughness_true", 1, 1);
+    nn_node *direct = nn_input(g, "direct_true", 3, 1);
+    nn_masked_l2(g, n->maps.albedo, nn_input(g, "albedo_true", 3, 1), mask, "albedo", 1.0f);
+    nn_masked_l2(g, n->maps.normal, nn_input(g, "normal_true", 3, 1), mask, "normal", 2.0f);
+    nn_masked_l2(g, n->maps.depth, nn_input(g, "depth_true", 1, 1), mask, "depth", 1.0f);
+    nn_masked_l2(g, n->maps.roughness, roughness, mask, "roughness", 1.0f);
+    nn_masked_gradient_l2(g, n->maps.roughness, roughness, mask, "roughness_gradient", 1.0f);
+    nn_masked_l2(g, n->direct, direct, mask, "direct", 1.0f);
+    if (n->indirect) {
+        nn_masked_l2(g, n->indirect, nn_input(g, "indirect_true", 3, 1), mask, "indirect", 1.0f);
+        nn_node *image = nn_add(g, n->direct, n->indirect);
+        nn_masked_l2(g, image, nn_input(g, "reconstruction_true", 3, 1), mask, "reconstruction", 1.0f);
+    }
+    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf;
+    nn_masked_l2(g, relit, nn_input(g, "relit_true", 3, 1), mask, "relight", 1.0f);
+}
+
+static status build_indirect(nn_graph *g, const model_config *config)
+{
+    if (!config->global_illumination)
+        return fail(ERROR_USAGE, "model \"%s\" has no global-illumination network", config->name);
+    nn_node *direct = nn_input(g, "direct", 3, 1);
+    maps m = {.albedo = nn_input(g, "albedo", 3, 1)};
+    m.normal = nn_input(g, "normal", 3, 1);
+    m.roughness = nn_input(g, "roughness", 1, 1);
+    m.depth = nn_input(g, "depth", 1, 1);
+    nn_output(g, global_illumination(g, config, direct, &m, nn_input(g, "mask", 1, 1)), "indirect");
+    return OK;
+}
+
+status model_build(const model_config *config, model_part part, nn_graph **out)
+{
+    *out = NULL;
+    nn_graph *g = nn_graph_new();
+    if (!g) return fail(ERROR_MEMORY, "out of memory while building model \"%s\"", config->name);
+    status s = OK;
+    if (part == MODEL_INDIRECT) {
+        s = build_indirect(g, config);
+    } else {
+        network n = {.g = g, .config = config};
+        build_network(&n, part == MODEL_TRAINING);
+        name_outputs(&n);
+        if (part == MODEL_TRAINING) add_losses(&n);
+    }
+    if (s != OK) {
+        nn_graph_free(g);
+        return s;
+    }
+    *out = g;
+    return OK;
+}
+
+static status read_config(const char *weights, model_config *config)
+{
+    st_file *file;
+    status s = st_open(weights, &file);
+    if (s != OK) return s;
+    const char *json = st_metadata(file, "config");
+    if (json)
+        s = model_config_parse(json, strlen(json), weights, config);
+    else
+        s = fail(ERROR_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
+    st_close(file);
+    return s;
+}
+
+status model_load(const char *weights, model_config *config, nn_params **params)
+{
+    *params = NULL;
+    status s = read_config(weights, config);
+    if (s != OK) return s;
+    nn_graph *g = NULL;
+    nn_params *p = NULL;
+    s = model_build(config, MODEL_WHOLE, &g);
+    if (s == OK) s = nn_params_new(g, 0, &p);
+    if (s == OK) s = nn_params_load(p, weights);
+    nn_graph_free(g);
+    if (s != OK) {
+        nn_params_free(p);
+        return s;
+    }
+    *params = p;
+    return OK;
+}
