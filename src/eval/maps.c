@@ -1,0 +1,114 @@
+#include "eval/maps.h"
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+/* Apart from the streams that made the sample, so that lights are independent of the object. */
+enum { STREAM_EVAL_LIGHT = 0x6576616c };
+
+status eval_maps_new(eval_maps *out, int width, int height)
+{
+    *out = (eval_maps){0};
+    status s = img_new(&out->albedo, width, height, 3);
+    if (s == OK) s = img_new(&out->normal, width, height, 3);
+    if (s == OK) s = img_new(&out->roughness, width, height, 1);
+    if (s == OK) s = img_new(&out->depth, width, height, 1);
+    if (s != OK) eval_maps_free(out);
+    return s;
+}
+
+void eval_maps_free(eval_maps *maps)
+{
+    img_free(&maps->albedo);
+    img_free(&maps->normal);
+    img_free(&maps->roughness);
+    img_free(&maps->depth);
+}
+
+static size_t value_count(const img *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static void to_network_range(img *image)
+{
+    for (size_t i = 0, n = value_count(image); i < n; i++)
+        image->data[i] = 2 * image->data[i] - 1;
+}
+
+status eval_maps_of_sample(const sample *s, eval_maps *out)
+{
+    *out = (eval_maps){0};
+    status st = img_copy(&out->albedo, &s->albedo);
+    if (st == OK) st = img_copy(&out->normal, &s->normal);
+    if (st == OK) st = img_copy(&out->roughness, &s->roughness);
+    if (st == OK) st = img_copy(&out->depth, &s->depth);
+    if (st != OK) {
+        eval_maps_free(out);
+        return st;
+    }
+    to_network_range(&out->albedo);
+    to_network_range(&out->roughness);
+    return OK;
+}
+
+typedef struct render_work {
+    const eval_maps *maps;
+    const img *mask;
+    camera view;
+    float power;
+    vec3 light;
+    img *out;
+} render_work;
+
+static void render_row(void *context, size_t row)
+{
+    const render_work *w = context;
+    int y = (int)row;
+    for (int x = 0; x < w->mask->width; x++) {
+        float inside = *img_at(w->mask, x, y);
+        if (!(inside > 0)) continue;
+        const float *a = img_at(&w->maps->albedo, x, y), *n = img_at(&w->maps->normal, x, y);
+        shade_input in = {
+            .albedo = {(a[0] + 1) / 2, (a[1] + 1) / 2, (a[2] + 1) / 2},
+            .roughness = (*img_at(&w->maps->roughness, x, y) + 1) / 2,
+            .normal = {n[0], n[1], n[2]},
+            .depth = *img_at(&w->maps->depth, x, y),
+            .ray = camera_point(&w->view, (float)x + 0.5f, (float)y + 0.5f, 1),
+            .light = w->light,
+            .power = w->power,
+        };
+        vec3 radiance = shade_point(&in);
+        float *o = img_at(w->out, x, y);
+        o[0] = brdf_clamp(radiance.x, 0, 1) * inside;
+        o[1] = brdf_clamp(radiance.y, 0, 1) * inside;
+        o[2] = brdf_clamp(radiance.z, 0, 1) * inside;
+    }
+}
+
+status eval_render(const eval_maps *maps, const img *mask, float fov, float power, vec3 light, img *out)
+{
+    status s = img_new(out, mask->width, mask->height, 3);
+    if (s != OK) return s;
+    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, light, out};
+    parallel_for((size_t)mask->height, render_row, &w);
+    return OK;
+}
+
+status eval_clipped_sum(const img *a, const img *b, img *out)
+{
+    status s = img_copy(out, a);
+    if (s != OK) return s;
+    for (size_t i = 0, n = value_count(out); i < n; i++)
+        out->data[i] = brdf_clamp(out->data[i] + (b ? b->data[i] : 0), 0, 1);
+    return OK;
+}
+
+vec3 eval_light(const sample *s, int i)
+{
+    rng r = rng_at(s->seed, s->index, STREAM_EVAL_LIGHT + (uint64_t)i);
+    float u1 = rng_uniform(&r), u2 = rng_uniform(&r);
+    return frontal_light(u1, u2);
+}

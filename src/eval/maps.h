@@ -1,0 +1,37 @@
+/* The four material maps as the metrics take them, and pictures rendered from them.
+ *
+ *     eval_maps truth;
+ *     status s = eval_maps_of_sample(&sample, &truth);
+ *     img lit;
+ *     if (s == OK) s = eval_render(&truth, &sample.mask, sample.fov, sample.light_power, light, &lit);
+ *     eval_maps_free(&truth);
+ */
+#ifndef MERLIN_EVAL_MAPS_H
+#define MERLIN_EVAL_MAPS_H
+
+#include "base/vec.h"
+#include "render/sample.h"
+
+typedef struct eval_maps {
+    img albedo;    /* 3 channels, [-1, 1] as inside the network */
+    img normal;    /* 3, unit */
+    img roughness; /* 1, [-1, 1] */
+    img depth;     /* 1, scene units */
+} eval_maps;
+
+/* Zero-filled. On failure nothing is held. */
+status eval_maps_new(eval_maps *out, int width, int height);
+void eval_maps_free(eval_maps *maps);
+status eval_maps_of_sample(const sample *s, eval_maps *out);
+
+/* The object under one point light, without shadows: optics/light.h at every pixel, clipped to [0, 1], times the mask.
+ * fov in degrees, power is Φ, light in camera space. out is made here. */
+status eval_render(const eval_maps *maps, const img *mask, float fov, float power, vec3 light, img *out);
+
+/* out = a + b clipped to [0, 1]; b may be NULL. Made here, 3 channels. */
+status eval_clipped_sum(const img *a, const img *b, img *out);
+
+/* The sample's target light number i, drawn from its seed and index: the same in every evaluation. */
+vec3 eval_light(const sample *s, int i);
+
+#endif
