@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "eval/metrics.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 
@@ -97,12 +98,21 @@ status eval_render(const eval_maps *maps, const img *mask, float fov, float powe
     return OK;
 }
 
-status eval_clipped_sum(const img *a, const img *b, img *out)
+status eval_binary_mask(const img *coverage, img *out)
+{
+    status s = img_new(out, coverage->width, coverage->height, 1);
+    if (s != OK) return s;
+    for (size_t i = 0, n = value_count(out); i < n; i++)
+        out->data[i] = coverage->data[i] > EVAL_MASK_LEVEL;
+    return OK;
+}
+
+status eval_picture(const img *a, const img *b, const img *mask, img *out)
 {
     status s = img_copy(out, a);
     if (s != OK) return s;
     for (size_t i = 0, n = value_count(out); i < n; i++)
-        out->data[i] = brdf_clamp(out->data[i] + (b ? b->data[i] : 0), 0, 1);
+        out->data[i] = brdf_clamp(a->data[i] + (b ? b->data[i] : 0), 0, 1) * mask->data[i / 3];
     return OK;
 }
 

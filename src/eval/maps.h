@@ -28,8 +28,11 @@ status eval_maps_of_sample(const sample *s, eval_maps *out);
  * fov in degrees, power is Φ, light in camera space. out is made here. */
 status eval_render(const eval_maps *maps, const img *mask, float fov, float power, vec3 light, img *out);
 
-/* out = a + b clipped to [0, 1]; b may be NULL. Made here, 3 channels. */
-status eval_clipped_sum(const img *a, const img *b, img *out);
+/* 1 where the coverage is above EVAL_MASK_LEVEL, else 0: the mask that the network is trained with. Made here. */
+status eval_binary_mask(const img *coverage, img *out);
+
+/* A picture: a + b clipped to [0, 1], zero outside the mask; b may be NULL. Made here, 3 channels. */
+status eval_picture(const img *a, const img *b, const img *mask, img *out);
 
 /* The sample's target light number i, drawn from its seed and index: the same in every evaluation. */
 vec3 eval_light(const sample *s, int i);

@@ -1,0 +1,80 @@
+/* A model measured on held-out samples, beside trivial answers.
+ *
+ *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .count = 200};
+ *     eval_report report;
+ *     status s = eval_run(&options, &report);
+ *     if (s == OK) eval_print_table(&report, stdout);
+ *
+ * What each row means is in docs/evaluation.md. Results depend on the samples, the weights and the number type alone.
+ */
+#ifndef MERLIN_EVAL_EVALUATE_H
+#define MERLIN_EVAL_EVALUATE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "nn/nn.h"
+
+/* Errors are small when good, similarities (from EVAL_RECONSTRUCTION on) large. */
+typedef enum eval_row {
+    EVAL_ALBEDO,         /* mean squared error in [-1, 1] */
+    EVAL_NORMAL,         /* mean squared error of unit vectors' components */
+    EVAL_ANGLE,          /* mean angle between normals, degrees */
+    EVAL_DEPTH,          /* mean squared error in scene units */
+    EVAL_ROUGHNESS,      /* mean squared error in [-1, 1] */
+    EVAL_RECONSTRUCTION, /* direct + indirect against the input */
+    EVAL_RELIT_NETWORK,  /* the relighting decoder against the true maps rendered under the target light */
+    EVAL_RELIT_BRDF,     /* the estimated maps rendered, against the same */
+    EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
+    EVAL_TRACED_BRDF,
+    EVAL_ROWS
+} eval_row;
+
+typedef enum eval_answer {
+    EVAL_MODEL,
+    EVAL_MEAN,      /* the data set's mean maps */
+    EVAL_INFLATED,  /* maps inflated from the mask */
+    EVAL_UNCHANGED, /* the input itself, as a relit picture */
+    EVAL_ANSWERS
+} eval_answer;
+
+/* Each sample (and each relit picture of it) counts alike. */
+typedef struct eval_scores {
+    double sum[EVAL_ROWS][EVAL_ANSWERS];
+    size_t count[EVAL_ROWS][EVAL_ANSWERS];
+    size_t samples;
+} eval_scores;
+
+/* The mean; NAN where there is none. */
+double eval_score(const eval_scores *scores, eval_row row, eval_answer answer);
+/* The better of the trivial answers; NAN where there is none. */
+double eval_best_trivial(const eval_scores *scores, eval_row row);
+
+enum { EVAL_MAX_CLASSES = 16 };
+typedef struct eval_report {
+    char model[64];
+    int size;             /* of the samples, pixels a side */
+    bool means_from_data; /* the mean maps are those of the evaluated samples themselves */
+    size_t means_samples; /* how many samples the mean maps were taken over */
+    eval_scores all;
+    char class_names[EVAL_MAX_CLASSES][32]; /* the samples' shape classes, in order of appearance */
+    eval_scores classes[EVAL_MAX_CLASSES];
+    int class_count;
+    double seconds;
+} eval_report;
+
+typedef struct eval_options {
+    const char *data, *weights;
+    const char *means; /* file of eval_means_write; NULL: computed from the data itself */
+    size_t count;      /* the first so many samples; 0: all */
+    nn_type type;
+    const char *figure; /* PNG of predictions beside the truth; NULL: none */
+    int figure_rows;    /* samples shown */
+    bool quiet;
+    int (*stopped)(void); /* polled between samples; NULL: never */
+} eval_options;
+
+status eval_run(const eval_options *options, eval_report *out);
+
+#endif

@@ -1,0 +1,184 @@
+#include "eval/predict.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct eval_model {
+    model_config config;
+    nn_params *params;
+    nn_graph *graph, *indirect_graph;
+    nn_program *program;
+    nn_program *indirect; /* NULL for a variant without global illumination */
+    int size;
+};
+
+static status build_programs(eval_model *m, nn_type type)
+{
+    nn_options options = {.batch = EVAL_LIGHTS, .height = m->size, .width = m->size, .type = type, .purpose = NN_INFER};
+    status s = model_build(&m->config, MODEL_WHOLE, &m->graph);
+    if (s == OK) s = nn_compile(m->graph, m->params, &options, &m->program);
+    if (s != OK || !m->config.global_illumination) return s;
+    s = model_build(&m->config, MODEL_INDIRECT, &m->indirect_graph);
+    if (s == OK) s = nn_compile(m->indirect_graph, m->params, &options, &m->indirect);
+    return s;
+}
+
+status eval_model_open(const char *weights, int size, nn_type type, eval_model **out)
+{
+    *out = NULL;
+    if (size < MODEL_SIZE_MULTIPLE || size % MODEL_SIZE_MULTIPLE)
+        return fail(ERROR_INPUT, "samples of %d pixels a side do not fit the model: the side must be a multiple of %d",
+                    size, MODEL_SIZE_MULTIPLE);
+    eval_model *m = calloc(1, sizeof *m);
+    if (!m) return fail(ERROR_MEMORY, "no memory for a model");
+    m->size = size;
+    status s = model_load(weights, &m->config, &m->params);
+    if (s == OK) s = build_programs(m, type);
+    if (s != OK) {
+        eval_model_close(m);
+        return s;
+    }
+    *out = m;
+    return OK;
+}
+
+void eval_model_close(eval_model *m)
+{
+    if (!m) return;
+    nn_program_free(m->program);
+    nn_program_free(m->indirect);
+    nn_params_free(m->params);
+    nn_graph_free(m->graph);
+    nn_graph_free(m->indirect_graph);
+    free(m);
+}
+
+const model_config *eval_model_config(const eval_model *m)
+{
+    return &m->config;
+}
+
+bool eval_model_relights(const eval_model *m)
+{
+    return m->config.relight == MODEL_RELIGHT_NETWORK && m->config.lighting == MODEL_LIGHT_POINT;
+}
+
+status eval_prediction_new(const eval_model *m, eval_prediction *out)
+{
+    *out = (eval_prediction){0};
+    status s = eval_maps_new(&out->maps, m->size, m->size);
+    if (s == OK) s = img_new(&out->reconstruction, m->size, m->size, 3);
+    for (int i = 0; i < EVAL_LIGHTS; i++) {
+        if (s == OK) s = img_new(&out->by_network[i], m->size, m->size, 3);
+        if (s == OK) s = img_new(&out->by_brdf[i], m->size, m->size, 3);
+        if (s == OK) s = img_new(&out->full_by_network[i], m->size, m->size, 3);
+        if (s == OK) s = img_new(&out->full_by_brdf[i], m->size, m->size, 3);
+    }
+    if (s != OK) eval_prediction_free(out);
+    return s;
+}
+
+void eval_prediction_free(eval_prediction *p)
+{
+    eval_maps_free(&p->maps);
+    img_free(&p->reconstruction);
+    for (int i = 0; i < EVAL_LIGHTS; i++) {
+        img_free(&p->by_network[i]);
+        img_free(&p->by_brdf[i]);
+        img_free(&p->full_by_network[i]);
+        img_free(&p->full_by_brdf[i]);
+    }
+}
+
+static void fill_inputs(eval_model *m, const img *image, const img *mask, const vec3 *lights)
+{
+    size_t pixels = (size_t)m->size * (size_t)m->size;
+    float *network_image = nn_input_data(m->program, "image"), *network_mask = nn_input_data(m->program, "mask");
+    float *code = nn_input_data(m->program, "light"), *position = nn_input_data(m->program, "light_position");
+    for (size_t i = 0; i < EVAL_LIGHTS; i++) {
+        const float light[3] = {lights[i].x, lights[i].y, lights[i].z};
+        model_encode_image(image->data, network_image + i * pixels * 3, pixels * 3);
+        memcpy(network_mask + i * pixels, mask->data, pixels * sizeof *network_mask);
+        if (position) memcpy(position + 3 * i, light, sizeof light);
+        if (code && eval_model_relights(m)) memcpy(code + 3 * i, light, sizeof light);
+    }
+}
+
+/* Copies picture i of an output; nothing if the variant lacks it. */
+static void take(const nn_program *p, const char *name, size_t i, img *out)
+{
+    const float *data = nn_output_data((nn_program *)p, name);
+    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
+    if (data) memcpy(out->data, data + i * count, count * sizeof *data);
+}
+
+static float clip(float x)
+{
+    return x > 0 ? (x < 1 ? x : 1) : 0;
+}
+
+static void clip_image(img *image)
+{
+    for (size_t i = 0, n = (size_t)image->width * (size_t)image->height * 3; i < n; i++)
+        image->data[i] = clip(image->data[i]);
+}
+
+/* out = direct + indirect, clipped; indirect may be NULL. */
+static void add_indirect(const img *direct, const float *indirect, img *out)
+{
+    for (size_t i = 0, n = (size_t)out->width * (size_t)out->height * 3; i < n; i++)
+        out->data[i] = clip(direct->data[i] + (indirect ? indirect[i] : 0));
+}
+
+/* What bounces add to the four pictures in `direct`, given the maps that the program has just estimated. */
+static status run_indirect(eval_model *m, const img direct[EVAL_LIGHTS], img full[EVAL_LIGHTS])
+{
+    size_t pixels = (size_t)m->size * (size_t)m->size;
+    const float *added = NULL;
+    if (m->indirect) {
+        static const struct {
+            const char *name;
+            size_t channels;
+        } maps[] = {{"albedo", 3}, {"normal", 3}, {"roughness", 1}, {"depth", 1}};
+        for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
+            memcpy(nn_input_data(m->indirect, maps[k].name), nn_output_data(m->program, maps[k].name),
+                   EVAL_LIGHTS * pixels * maps[k].channels * sizeof(float));
+        memcpy(nn_input_data(m->indirect, "mask"), nn_input_data(m->program, "mask"),
+               EVAL_LIGHTS * pixels * sizeof(float));
+        float *to = nn_input_data(m->indirect, "direct");
+        for (size_t i = 0; i < EVAL_LIGHTS; i++)
+            memcpy(to + i * pixels * 3, direct[i].data, pixels * 3 * sizeof(float));
+        status s = nn_forward(m->indirect);
+        if (s != OK) return s;
+        added = nn_output_data(m->indirect, "indirect");
+    }
+    for (size_t i = 0; i < EVAL_LIGHTS; i++)
+        add_indirect(&direct[i], added ? added + i * pixels * 3 : NULL, &full[i]);
+    return OK;
+}
+
+status eval_predict(eval_model *m, const img *image, const img *mask, const vec3 lights[EVAL_LIGHTS],
+                    eval_prediction *out)
+{
+    if (image->width != m->size || image->height != m->size)
+        return fail(ERROR_INPUT, "a picture of %dx%d does not fit a model prepared for %dx%d", image->width,
+                    image->height, m->size, m->size);
+    fill_inputs(m, image, mask, lights);
+    status s = nn_forward(m->program);
+    if (s != OK) return s;
+    take(m->program, "albedo", 0, &out->maps.albedo);
+    take(m->program, "normal", 0, &out->maps.normal);
+    take(m->program, "roughness", 0, &out->maps.roughness);
+    take(m->program, "depth", 0, &out->maps.depth);
+    take(m->program, "direct", 0, &out->reconstruction);
+    add_indirect(&out->reconstruction, nn_output_data(m->program, "indirect"), &out->reconstruction);
+    for (size_t i = 0; i < EVAL_LIGHTS; i++) {
+        take(m->program, "relit_direct", i, &out->by_network[i]);
+        take(m->program, "relit_brdf", i, &out->by_brdf[i]);
+        clip_image(&out->by_network[i]);
+        clip_image(&out->by_brdf[i]);
+    }
+    s = run_indirect(m, out->by_brdf, out->full_by_brdf);
+    if (s == OK && eval_model_relights(m)) s = run_indirect(m, out->by_network, out->full_by_network);
+    return s;
+}

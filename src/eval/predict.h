@@ -1,0 +1,47 @@
+/* A model as the evaluation runs it: one picture, four lights at a time.
+ *
+ *     eval_model *m;
+ *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, &m);
+ *     eval_prediction p;
+ *     if (s == OK) s = eval_prediction_new(m, &p);
+ *     if (s == OK) s = eval_predict(m, &image, &mask, lights, &p);
+ *     ...
+ *     eval_prediction_free(&p);
+ *     eval_model_close(m);
+ */
+#ifndef MERLIN_EVAL_PREDICT_H
+#define MERLIN_EVAL_PREDICT_H
+
+#include "eval/maps.h"
+#include "model/model.h"
+
+enum { EVAL_LIGHTS = 4 };
+
+typedef struct eval_model eval_model;
+
+/* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. */
+status eval_model_open(const char *weights, int size, nn_type type, eval_model **out);
+void eval_model_close(eval_model *m);
+const model_config *eval_model_config(const eval_model *m);
+
+/* Pictures are clipped to [0, 1] and zero outside the mask; those that the model's variant lacks stay black. */
+typedef struct eval_prediction {
+    eval_maps maps;
+    img reconstruction;               /* direct + indirect */
+    img by_network[EVAL_LIGHTS];      /* the relighting decoder */
+    img by_brdf[EVAL_LIGHTS];         /* the rendering layer */
+    img full_by_network[EVAL_LIGHTS]; /* the same, with the light that the global-illumination network adds */
+    img full_by_brdf[EVAL_LIGHTS];
+} eval_prediction;
+
+status eval_prediction_new(const eval_model *m, eval_prediction *out);
+void eval_prediction_free(eval_prediction *p);
+
+/* image: linear, lit by the flash, zero outside the mask. */
+status eval_predict(eval_model *m, const img *image, const img *mask, const vec3 lights[EVAL_LIGHTS],
+                    eval_prediction *out);
+
+/* Whether the variant can relight by its decoder under a point light. */
+bool eval_model_relights(const eval_model *m);
+
+#endif

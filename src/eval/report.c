@@ -1,0 +1,154 @@
+#include "eval/report.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+
+typedef struct row_text {
+    const char *key, *label;
+    double scale; /* as printed for a person: the paper's tables give errors times 100 */
+    eval_goal_kind kind;
+    double goal;
+} row_text;
+
+static const row_text rows[EVAL_ROWS] = {
+    [EVAL_ALBEDO] = {"albedo", "albedo error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
+    [EVAL_NORMAL] = {"normal", "normal error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
+    [EVAL_ANGLE] = {"normal_degrees", "normal angle (degrees)", 1, EVAL_NO_GOAL, 0},
+    [EVAL_DEPTH] = {"depth", "depth error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
+    [EVAL_ROUGHNESS] = {"roughness", "roughness error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.8},
+    [EVAL_RECONSTRUCTION] = {"reconstruction_ssim", "reconstruction SSIM", 1, EVAL_AT_LEAST, 0.90},
+    [EVAL_RELIT_NETWORK] = {"relight_network_ssim", "relit by network, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05},
+    [EVAL_RELIT_BRDF] = {"relight_brdf_ssim", "relit by BRDF, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05},
+    [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0},
+    [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0},
+};
+
+static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged"};
+
+eval_verdict eval_judge(const eval_scores *scores, eval_row row)
+{
+    double model = eval_score(scores, row, EVAL_MODEL), trivial = eval_best_trivial(scores, row);
+    bool similarity = row >= EVAL_RECONSTRUCTION;
+    eval_verdict v = {.kind = rows[row].kind,
+                      .goal = rows[row].goal,
+                      .ratio = similarity ? NAN : model / trivial,
+                      .margin = similarity ? model - trivial : NAN};
+    if (v.kind == EVAL_RATIO_AT_MOST) v.holds = v.ratio <= v.goal;
+    if (v.kind == EVAL_AT_LEAST) v.holds = model >= v.goal;
+    if (v.kind == EVAL_MARGIN_AT_LEAST) v.holds = v.margin >= v.goal;
+    return v;
+}
+
+static void print_number(FILE *stream, double value, const char *format)
+{
+    if (isnan(value))
+        fprintf(stream, "%10s", "-");
+    else
+        fprintf(stream, format, value);
+}
+
+static void print_goal(FILE *stream, const eval_verdict *v)
+{
+    static const char *const relations[] = {"", "ratio <= %.2f", "SSIM >= %.2f", "best + %.2f"};
+    char text[32] = "";
+    if (v->kind != EVAL_NO_GOAL) snprintf(text, sizeof text, relations[v->kind], v->goal);
+    fprintf(stream, "   %-14s %s\n", text, v->kind == EVAL_NO_GOAL ? "" : v->holds ? "yes" : "no");
+}
+
+static void print_rows(const eval_scores *scores, FILE *stream)
+{
+    fprintf(stream, "%-24s%10s%10s%10s%10s%10s   %-14s %s\n", "", "model", "mean maps", "inflated", "unchanged",
+            "vs best", "goal", "holds");
+    for (int row = 0; row < EVAL_ROWS; row++) {
+        if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
+        fprintf(stream, "%-24s", rows[row].label);
+        for (int answer = 0; answer < EVAL_ANSWERS; answer++)
+            print_number(stream, rows[row].scale * eval_score(scores, (eval_row)row, (eval_answer)answer), "%10.4f");
+        eval_verdict v = eval_judge(scores, (eval_row)row);
+        if (row >= EVAL_RECONSTRUCTION)
+            print_number(stream, v.margin, "%+10.4f");
+        else
+            print_number(stream, v.ratio, "%10.3f");
+        print_goal(stream, &v);
+    }
+}
+
+/* A line a class: the model's figure, and behind it the ratio to the better trivial answer or the margin over it. */
+static void print_classes(const eval_report *report, FILE *stream)
+{
+    static const struct {
+        eval_row row;
+        const char *label;
+    } shown[] = {{EVAL_ALBEDO, "albedo"},       {EVAL_NORMAL, "normal"},           {EVAL_DEPTH, "depth"},
+                 {EVAL_ROUGHNESS, "roughness"}, {EVAL_RECONSTRUCTION, "reconst."}, {EVAL_RELIT_NETWORK, "network"},
+                 {EVAL_RELIT_BRDF, "BRDF"}};
+    enum { SHOWN = sizeof shown / sizeof shown[0] };
+    fprintf(stream, "\n%-14s%8s", "class", "samples");
+    for (int i = 0; i < SHOWN; i++)
+        fprintf(stream, "%16s", shown[i].label);
+    fputc('\n', stream);
+    for (int c = 0; c < report->class_count; c++) {
+        const eval_scores *scores = &report->classes[c];
+        fprintf(stream, "%-14s%8zu", report->class_names[c], scores->samples);
+        for (int i = 0; i < SHOWN; i++) {
+            eval_row row = shown[i].row;
+            eval_verdict v = eval_judge(scores, row);
+            double model = rows[row].scale * eval_score(scores, row, EVAL_MODEL);
+            if (isnan(model))
+                fprintf(stream, "%16s", "-");
+            else if (row >= EVAL_RECONSTRUCTION)
+                fprintf(stream, "%7.3f (%+.3f)", model, v.margin);
+            else
+                fprintf(stream, "%8.3f (%.3f)", model, v.ratio);
+        }
+        fputc('\n', stream);
+    }
+}
+
+void eval_print_table(const eval_report *report, FILE *stream)
+{
+    fprintf(stream, "%s on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model, report->all.samples,
+            report->size, report->size, report->means_samples,
+            report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
+    print_rows(&report->all, stream);
+    print_classes(report, stream);
+    fprintf(stream, "\n%.1f s\n", report->seconds);
+}
+
+static void add_number(cJSON *o, const char *key, double value)
+{
+    if (!isnan(value)) cJSON_AddNumberToObject(o, key, value);
+}
+
+static void add_scores(cJSON *o, const eval_scores *scores)
+{
+    cJSON_AddNumberToObject(o, "samples", (double)scores->samples);
+    for (int row = 0; row < EVAL_ROWS; row++) {
+        if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
+        cJSON *r = cJSON_AddObjectToObject(o, rows[row].key);
+        for (int answer = 0; answer < EVAL_ANSWERS; answer++)
+            add_number(r, answers[answer], eval_score(scores, (eval_row)row, (eval_answer)answer));
+        eval_verdict v = eval_judge(scores, (eval_row)row);
+        add_number(r, "ratio", v.ratio);
+        add_number(r, "margin", v.margin);
+        if (v.kind == EVAL_NO_GOAL) continue;
+        cJSON_AddNumberToObject(r, "goal", v.goal);
+        cJSON_AddBoolToObject(r, "holds", v.holds);
+    }
+}
+
+char *eval_report_json(const eval_report *report)
+{
+    cJSON *o = cJSON_CreateObject();
+    cJSON_AddStringToObject(o, "model", report->model);
+    cJSON_AddNumberToObject(o, "size", report->size);
+    cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
+    cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
+    add_scores(cJSON_AddObjectToObject(o, "all"), &report->all);
+    cJSON *classes = cJSON_AddObjectToObject(o, "classes");
+    for (int c = 0; c < report->class_count; c++)
+        add_scores(cJSON_AddObjectToObject(classes, report->class_names[c]), &report->classes[c]);
+    char *text = cJSON_Print(o);
+    cJSON_Delete(o);
+    return text;
+}
