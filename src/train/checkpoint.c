@@ -1,0 +1,148 @@
+#include "train/checkpoint.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "nn/safetensors.h"
+
+enum { NAME = 128 };
+static const char *const moment_names[3] = {"", "adam.moment1.", "adam.moment2."};
+
+/* A parameter's value (which 0) or one of its moments; NULL where there is none. */
+static float *part_of(nn_params *params, nn_adam *adam, size_t i, int which)
+{
+    nn_param *p = nn_params_at(params, i);
+    if (which == 0) return p->value;
+    return p->gradient ? nn_adam_moment(adam, i, which) : NULL;
+}
+
+static status collect(nn_params *params, nn_adam *adam, st_tensor *tensors, char (*names)[NAME], size_t *count)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        for (int which = 0; which < 3; which++) {
+            const float *data = part_of(params, adam, i, which);
+            if (!data) continue;
+            if (snprintf(names[n], NAME, "%s%s", moment_names[which], p->name) >= NAME)
+                return fail(ERROR_USAGE, "parameter name %s is too long for a checkpoint", p->name);
+            tensors[n] =
+                (st_tensor){.name = names[n], .type = ST_F32, .rank = p->rank, .count = p->count, .data = data};
+            memcpy(tensors[n].shape, p->shape, sizeof p->shape);
+            n++;
+        }
+    }
+    *count = n;
+    return OK;
+}
+
+/* Hexadecimal floats lose nothing. */
+static void print_losses(const trn_losses *l, char *out, size_t size)
+{
+    int n = snprintf(out, size, "%" PRId64 " %a", l->count, l->total);
+    for (int i = 0; i < MODEL_LOSSES; i++)
+        n += snprintf(out + n, size - (size_t)n, " %a", l->each[i]);
+}
+
+static bool scan_losses(const char *text, trn_losses *l)
+{
+    char *end;
+    l->count = strtoll(text, &end, 10);
+    l->total = strtod(end, &end);
+    for (int i = 0; i < MODEL_LOSSES; i++)
+        l->each[i] = strtod(end, &end);
+    return *end == 0 && end != text;
+}
+
+static status write_tensors(const char *path, const st_tensor *tensors, size_t count, const nn_adam *adam,
+                            const trn_state *state, const trn_identity *identity)
+{
+    char counters[128], samples[32], seconds[64], best[64], open[64 * (MODEL_LOSSES + 2)];
+    snprintf(counters, sizeof counters, "%" PRId64 " %" PRId64 " %" PRId64, state->step, nn_adam_steps(adam),
+             nn_adam_skipped(adam));
+    snprintf(samples, sizeof samples, "%zu", identity->samples);
+    snprintf(seconds, sizeof seconds, "%a", state->seconds);
+    snprintf(best, sizeof best, "%a", state->best);
+    print_losses(&state->open, open, sizeof open);
+    const char *const metadata[][2] = {
+        {"checkpoint", "1"},  {"config", identity->model}, {"training", identity->training},
+        {"samples", samples}, {"counters", counters},      {"seconds", seconds},
+        {"best", best},       {"open_losses", open}};
+    return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
+}
+
+status trn_checkpoint_write(const char *path, nn_params *params, nn_adam *adam, const trn_state *state,
+                            const trn_identity *identity)
+{
+    size_t most = 3 * nn_params_count(params), count = 0;
+    st_tensor *tensors = calloc(most, sizeof *tensors);
+    char(*names)[NAME] = calloc(most, sizeof *names);
+    status s = tensors && names ? OK : fail(ERROR_MEMORY, "out of memory writing %s", path);
+    if (s == OK) s = collect(params, adam, tensors, names, &count);
+    if (s == OK) s = write_tensors(path, tensors, count, adam, state, identity);
+    free(names);
+    free(tensors);
+    return s;
+}
+
+static status must_equal(const char *path, const char *what, const char *found, const char *wanted)
+{
+    if (found && strcmp(found, wanted) == 0) return OK;
+    return fail(ERROR_INPUT, "%s was made with another %s; start afresh in another folder", path, what);
+}
+
+static status read_counters(const st_file *f, const char *path, nn_adam *adam, trn_state *state,
+                            const trn_identity *identity)
+{
+    char samples[32];
+    snprintf(samples, sizeof samples, "%zu", identity->samples);
+    status s = must_equal(path, "model configuration", st_metadata(f, "config"), identity->model);
+    if (s == OK) s = must_equal(path, "training configuration", st_metadata(f, "training"), identity->training);
+    if (s == OK) s = must_equal(path, "number of samples", st_metadata(f, "samples"), samples);
+    if (s != OK) return s;
+    const char *counters = st_metadata(f, "counters"), *open = st_metadata(f, "open_losses");
+    const char *seconds = st_metadata(f, "seconds"), *best = st_metadata(f, "best");
+    int64_t steps = 0, skipped = 0;
+    if (!counters || !open || !seconds || !best || !scan_losses(open, &state->open) ||
+        sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 || state->step < 0)
+        return fail(ERROR_INPUT, "%s is not a checkpoint of merlin train", path);
+    state->seconds = strtod(seconds, NULL);
+    state->best = strtod(best, NULL);
+    nn_adam_set_steps(adam, steps, skipped);
+    return OK;
+}
+
+static status read_tensors(const st_file *f, const char *path, nn_params *params, nn_adam *adam)
+{
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        for (int which = 0; which < 3; which++) {
+            float *to = part_of(params, adam, i, which);
+            if (!to) continue;
+            char name[NAME];
+            snprintf(name, sizeof name, "%s%s", moment_names[which], p->name);
+            const st_tensor *t = st_find(f, name);
+            if (!t || t->count != p->count || t->type != ST_F32)
+                return fail(ERROR_INPUT, "%s lacks the tensor %s", path, name);
+            status s = st_to_float(t, to);
+            if (s != OK) return s;
+        }
+    }
+    nn_params_touch(params);
+    return OK;
+}
+
+status trn_checkpoint_read(const char *path, nn_params *params, nn_adam *adam, trn_state *state,
+                           const trn_identity *identity)
+{
+    st_file *f;
+    status s = st_open(path, &f);
+    if (s != OK) return s;
+    s = read_counters(f, path, adam, state, identity);
+    if (s == OK) s = read_tensors(f, path, params, adam);
+    st_close(f);
+    return s;
+}

@@ -1,0 +1,41 @@
+/* A training run on disk: parameters, Adam's moments, counters and the open row of the curves, in one safetensors file
+ * written at once or not at all. */
+#ifndef MERLIN_TRAIN_CHECKPOINT_H
+#define MERLIN_TRAIN_CHECKPOINT_H
+
+#include "train/config.h"
+#include "train/curves.h"
+
+typedef struct trn_state {
+    int64_t step;
+    double seconds; /* spent training, all sessions together */
+    double best;    /* lowest validation loss so far */
+    trn_losses open;
+} trn_state;
+
+/* What must be the same for a run to go on: texts of the configuration, and the data set's size. */
+typedef struct trn_identity {
+    const char *model, *training;
+    size_t samples;
+} trn_identity;
+
+status trn_checkpoint_write(const char *path, nn_params *params, nn_adam *adam, const trn_state *state,
+                            const trn_identity *identity);
+/* Refuses a checkpoint of another configuration or data set. */
+status trn_checkpoint_read(const char *path, nn_params *params, nn_adam *adam, trn_state *state,
+                           const trn_identity *identity);
+
+typedef struct trn_provenance {
+    const char *config; /* the model's, JSON */
+    const char *training;
+    const char *note; /* such as the commit; may be NULL */
+    int64_t presentations, samples;
+    int size, generator_version;
+    double seconds, validation_loss;
+} trn_provenance;
+
+/* Weights for everybody (model_load): half floats, batch norm's statistics float32, with the model's configuration and
+ * where they come from in the metadata. */
+status train_export(const char *path, nn_params *params, const trn_provenance *from);
+
+#endif

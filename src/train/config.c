@@ -1,0 +1,110 @@
+#include "train/config.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+
+enum { MAX_CONFIG_BYTES = 1 << 20 };
+
+static const char *const type_words[] = {"f32", "bf16"};
+
+static status read_rates(json_object *o, train_config *c)
+{
+    status s = json_number(o, "learning_rate", 1e-9, 1, &c->learning_rate);
+    if (s == OK) s = json_number(o, "encoder_rate_scale", 0, 10, &c->encoder_rate_scale);
+    if (s == OK) s = json_number(o, "halve_every_epochs", 0, 1e6, &c->halve_every_epochs);
+    if (s == OK) s = json_int(o, "warmup_steps", 0, 1000000, &c->warmup_steps);
+    if (s == OK) s = json_number(o, "beta1", 0, 0.9999, &c->beta1);
+    if (s == OK) s = json_number(o, "beta2", 0, 0.999999, &c->beta2);
+    if (s == OK) s = json_number(o, "clip_norm", 0, 1e6, &c->clip_norm);
+    return s;
+}
+
+static status read_intervals(json_object *o, train_config *c)
+{
+    status s = json_int(o, "validation_count", 0, INT_MAX, &c->validation_count);
+    if (s == OK) s = json_int(o, "validation_steps", 0, INT_MAX, &c->validation_steps);
+    if (s == OK) s = json_int(o, "curve_steps", 1, 1000000, &c->curve_steps);
+    if (s == OK) s = json_number(o, "checkpoint_minutes", 0, 1e4, &c->checkpoint_minutes);
+    return s;
+}
+
+static status read_training(json_object *o, const char *where, train_config *c)
+{
+    int type = 0;
+    status s = json_int(o, "size", MODEL_SIZE_MULTIPLE, 4096, &c->size);
+    if (s == OK && c->size % MODEL_SIZE_MULTIPLE)
+        s = fail(ERROR_INPUT, "%s: \"size\" must be a multiple of %d", where, MODEL_SIZE_MULTIPLE);
+    if (s == OK) s = json_int(o, "batch", 1, 1024, &c->batch);
+    if (s == OK) s = json_int(o, "presentations", 1, INT_MAX, &c->presentations);
+    if (s == OK) s = read_rates(o, c);
+    if (s == OK) s = json_choice(o, "type", type_words, 2, &type);
+    if (s == OK) s = json_int(o, "seed", 0, INT_MAX, &c->seed);
+    if (s == OK) s = json_number(o, "exposure_jitter", 0, 2, &c->exposure_jitter);
+    if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
+    if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
+    if (s == OK) s = read_intervals(o, c);
+    if (s == OK && c->validation_count % c->batch)
+        s = fail(ERROR_INPUT, "%s: \"validation_count\" must be a multiple of \"batch\"", where);
+    c->type = type ? NN_BFLOAT16 : NN_FLOAT32;
+    return s == OK ? json_finish(o) : s;
+}
+
+static status parse_training(const char *json, const char *where, train_config *c)
+{
+    json_object *o;
+    status s = json_parse(json, strlen(json), where, &o);
+    if (s != OK) return s;
+    s = read_training(o, where, c);
+    json_free(o);
+    return s;
+}
+
+status train_config_parse(const char *json, size_t size, const char *where, model_config *model, train_config *training)
+{
+    memset(model, 0, sizeof *model);
+    memset(training, 0, sizeof *training);
+    char *model_json = NULL, *training_json = NULL;
+    json_object *o;
+    status s = json_parse(json, size, where, &o);
+    if (s != OK) return s;
+    s = json_inner(o, "model", &model_json);
+    if (s == OK) s = json_inner(o, "training", &training_json);
+    if (s == OK) s = json_finish(o);
+    if (s == OK) s = model_config_parse(model_json, strlen(model_json), where, model);
+    if (s == OK) s = parse_training(training_json, where, training);
+    json_free(o);
+    free(model_json);
+    free(training_json);
+    return s;
+}
+
+status train_config_read(const char *path, model_config *model, train_config *training)
+{
+    char *text = NULL;
+    size_t size = 0;
+    status s = file_read(path, MAX_CONFIG_BYTES, &text, &size);
+    if (s == OK) s = train_config_parse(text, size, path, model, training);
+    free(text);
+    return s;
+}
+
+char *train_config_write(const train_config *c)
+{
+    char *text = NULL;
+    int length = asprintf(
+        &text,
+        "{\"size\": %d, \"batch\": %d, \"presentations\": %d, \"learning_rate\": %.9g, \"encoder_rate_scale\": %.9g, "
+        "\"halve_every_epochs\": %.9g, \"warmup_steps\": %d, \"beta1\": %.9g, \"beta2\": %.9g, \"clip_norm\": %.9g, "
+        "\"type\": \"%s\", \"seed\": %d, \"exposure_jitter\": %.9g, \"colour_jitter\": %.9g, \"memory_gib\": %.9g, "
+        "\"validation_count\": %d, \"validation_steps\": %d, \"curve_steps\": %d, \"checkpoint_minutes\": %.9g}",
+        c->size, c->batch, c->presentations, c->learning_rate, c->encoder_rate_scale, c->halve_every_epochs,
+        c->warmup_steps, c->beta1, c->beta2, c->clip_norm, type_words[c->type == NN_BFLOAT16], c->seed,
+        c->exposure_jitter, c->colour_jitter, c->memory_gib, c->validation_count, c->validation_steps, c->curve_steps,
+        c->checkpoint_minutes);
+    return length < 0 ? NULL : text;
+}

@@ -1,0 +1,34 @@
+/* What `merlin train` is told: {"model": {...}, "training": {...}}, one file per experiment in configs/. */
+#ifndef MERLIN_TRAIN_CONFIG_H
+#define MERLIN_TRAIN_CONFIG_H
+
+#include "model/model.h"
+
+typedef struct train_config {
+    int size;                  /* of the square samples, pixels; a multiple of 32 */
+    int batch;                 /* presentations a step */
+    int presentations;         /* in all; one epoch is one presentation of every training sample */
+    double learning_rate;      /* of decoders and global-illumination network, before halving */
+    double encoder_rate_scale; /* the encoder's share of it */
+    double halve_every_epochs; /* may be a fraction; 0: never */
+    int warmup_steps;          /* the rate rises linearly over so many steps */
+    double beta1, beta2, clip_norm;
+    nn_type type; /* "f32" or "bf16" */
+    int seed;
+    double exposure_jitter; /* half-width of the uniform exposure error, natural logarithm */
+    double colour_jitter;   /* the same, each channel on its own */
+    double memory_gib;      /* samples beyond this are read from disk each time */
+    int validation_count;   /* the folder's last samples are held back; a multiple of batch */
+    int validation_steps;   /* between validations; 0: never */
+    int curve_steps;        /* a row of curves.csv is the mean over so many */
+    double checkpoint_minutes;
+} train_config;
+
+/* Every key is required, unknown ones are refused; messages name the key. */
+status train_config_parse(const char *json, size_t size, const char *where, model_config *model,
+                          train_config *training);
+status train_config_read(const char *path, model_config *model, train_config *training);
+/* The "training" object as JSON, malloc'ed: equal text means equal training. NULL if memory ran out. */
+char *train_config_write(const train_config *c);
+
+#endif

@@ -1,0 +1,206 @@
+#include "train/dataset.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/half.h"
+#include "render/sample.h"
+
+enum { VALUES = 15 };
+
+/* Inside pixels only, in reading order. */
+typedef struct packed {
+    uint32_t count;
+    uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × VALUES halves */
+} packed;
+
+struct trn_dataset {
+    int size;
+    size_t count, memory_limit;
+    char **paths;
+    _Atomic(packed *) *kept;
+    atomic_size_t memory_used;
+    atomic_int generator_version;
+};
+
+status trn_dataset_open(const char *folder, int size, double memory_gib, trn_dataset **out)
+{
+    *out = NULL;
+    static const char *const endings[] = {".exr", NULL};
+    trn_dataset *d = calloc(1, sizeof *d);
+    if (!d) return fail(ERROR_MEMORY, "out of memory opening %s", folder);
+    d->size = size;
+    d->memory_limit = (size_t)(memory_gib * 0x1p30);
+    status s = file_list(folder, endings, &d->paths, &d->count);
+    if (s == OK && d->count == 0)
+        s = fail(ERROR_INPUT, "%s holds no .exr samples (make some with merlin render)", folder);
+    if (s == OK) {
+        d->kept = calloc(d->count, sizeof *d->kept);
+        if (!d->kept) s = fail(ERROR_MEMORY, "out of memory opening %s", folder);
+    }
+    if (s != OK) {
+        trn_dataset_close(d);
+        return s;
+    }
+    *out = d;
+    return OK;
+}
+
+void trn_dataset_close(trn_dataset *d)
+{
+    if (!d) return;
+    if (d->kept)
+        for (size_t i = 0; i < d->count; i++)
+            free(d->kept[i]);
+    free((void *)d->kept);
+    if (d->paths) file_list_free(d->paths, d->count);
+    free(d);
+}
+
+size_t trn_dataset_count(const trn_dataset *d)
+{
+    return d->count;
+}
+
+int trn_dataset_generator_version(const trn_dataset *d)
+{
+    return d->generator_version;
+}
+
+static uint16_t *put3(uint16_t *to, const float *from)
+{
+    for (int c = 0; c < 3; c++)
+        *to++ = float_to_half(from[c]);
+    return to;
+}
+
+static packed *pack(const sample *s, size_t pixels)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < pixels; i++)
+        count += s->mask.data[i] > 0;
+    packed *p = malloc(sizeof *p + count * (VALUES + 2) * sizeof(uint16_t));
+    if (!p) return NULL;
+    p->count = (uint32_t)count;
+    uint16_t *place = p->data, *value = p->data + 2 * count;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!(s->mask.data[i] > 0)) continue;
+        *place++ = (uint16_t)i;
+        *place++ = (uint16_t)(i >> 16);
+        value = put3(value, s->albedo.data + 3 * i);
+        value = put3(value, s->normal.data + 3 * i);
+        value = put3(value, s->direct.data + 3 * i);
+        value = put3(value, s->indirect.data + 3 * i);
+        *value++ = float_to_half(s->roughness.data[i]);
+        *value++ = float_to_half(s->depth.data[i]);
+        *value++ = float_to_half(s->mask.data[i]);
+    }
+    return p;
+}
+
+static status read_packed(trn_dataset *d, size_t i, packed **out)
+{
+    sample one;
+    status s = sample_read_training(d->paths[i], &one);
+    if (s != OK) return s;
+    if (one.mask.width != d->size || one.mask.height != d->size) {
+        s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
+                 one.mask.height, d->size, d->size);
+    } else {
+        d->generator_version = one.generator_version;
+        *out = pack(&one, (size_t)d->size * (size_t)d->size);
+        if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
+    }
+    sample_free(&one);
+    return s;
+}
+
+/* Keeps p if there is room. Returns true if the data set owns it now. */
+static bool keep(trn_dataset *d, size_t i, packed *p)
+{
+    size_t bytes = sizeof *p + (size_t)p->count * (VALUES + 2) * sizeof(uint16_t);
+    if (atomic_fetch_add(&d->memory_used, bytes) + bytes > d->memory_limit) {
+        atomic_fetch_sub(&d->memory_used, bytes);
+        return false;
+    }
+    packed *nobody = NULL;
+    if (atomic_compare_exchange_strong(&d->kept[i], &nobody, p)) return true;
+    atomic_fetch_sub(&d->memory_used, bytes); /* another thread was first */
+    return false;
+}
+
+static size_t turned(int size, int orientation, size_t place)
+{
+    int x = (int)(place % (size_t)size), y = (int)(place / (size_t)size);
+    if (orientation & TRN_FLIP_X) x = size - 1 - x;
+    if (orientation & TRN_FLIP_Y) y = size - 1 - y;
+    if (orientation & TRN_TRANSPOSE) {
+        int t = x;
+        x = y;
+        y = t;
+    }
+    return (size_t)y * (size_t)size + (size_t)x;
+}
+
+/* Rows run downwards and y upwards, so exchanging rows and columns is (x, y) to (-y, -x). */
+static void turn_normal(int orientation, float n[3])
+{
+    if (orientation & TRN_FLIP_X) n[0] = -n[0];
+    if (orientation & TRN_FLIP_Y) n[1] = -n[1];
+    if (orientation & TRN_TRANSPOSE) {
+        float t = n[0];
+        n[0] = -n[1];
+        n[1] = -t;
+    }
+}
+
+static const uint16_t *get3(const uint16_t *from, float *to)
+{
+    for (int c = 0; c < 3; c++)
+        to[c] = half_to_float(*from++);
+    return from;
+}
+
+static void clear(const trn_view *v)
+{
+    size_t n = (size_t)v->size * (size_t)v->size;
+    float *const three[] = {v->albedo, v->normal, v->direct, v->indirect};
+    float *const one[] = {v->roughness, v->depth, v->mask};
+    for (int i = 0; i < 4; i++)
+        memset(three[i], 0, 3 * n * sizeof(float));
+    for (int i = 0; i < 3; i++)
+        memset(one[i], 0, n * sizeof(float));
+}
+
+static void unpack(const packed *p, int orientation, const trn_view *v)
+{
+    clear(v);
+    const uint16_t *place = p->data, *value = p->data + 2 * (size_t)p->count;
+    for (uint32_t k = 0; k < p->count; k++, place += 2) {
+        size_t i = turned(v->size, orientation, (size_t)place[0] | (size_t)place[1] << 16);
+        value = get3(value, v->albedo + 3 * i);
+        value = get3(value, v->normal + 3 * i);
+        turn_normal(orientation, v->normal + 3 * i);
+        value = get3(value, v->direct + 3 * i);
+        value = get3(value, v->indirect + 3 * i);
+        v->roughness[i] = half_to_float(*value++);
+        v->depth[i] = half_to_float(*value++);
+        v->mask[i] = half_to_float(*value++);
+    }
+}
+
+status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out)
+{
+    packed *p = d->kept[i];
+    bool owned = true;
+    if (!p) {
+        status s = read_packed(d, i, &p);
+        if (s != OK) return s;
+        owned = keep(d, i, p);
+    }
+    unpack(p, orientation, out);
+    if (!owned) free(p);
+    return OK;
+}

@@ -1,0 +1,144 @@
+#include "train/feed.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "train/prepare.h"
+
+enum { MESSAGE = 512, BUFFERS = 12 };
+
+/* What one thread does for one place of the batch. Failures keep their words, which are per thread. */
+typedef struct item {
+    trn_view view;
+    size_t sample;
+    uint64_t presentation;
+    status result;
+    char message[MESSAGE];
+} item;
+
+struct trn_feed {
+    trn_source source;
+    bool validation;
+    size_t batch;
+    item *items;
+    float *light_code;     /* the program's input "light", or NULL */
+    float *spare[BUFFERS]; /* for targets the model has no input for */
+};
+
+/* Where the program wants each of the view's fields; a vector's pixels count as one. */
+typedef struct field {
+    const char *input;
+    int channels;
+    bool vector;
+    size_t offset; /* of the pointer in trn_view */
+} field;
+
+static const field fields[BUFFERS] = {
+    {"albedo_true", 3, false, offsetof(trn_view, albedo)},
+    {"normal_true", 3, false, offsetof(trn_view, normal)},
+    {"roughness_true", 1, false, offsetof(trn_view, roughness)},
+    {"depth_true", 1, false, offsetof(trn_view, depth)},
+    {"mask", 1, false, offsetof(trn_view, mask)},
+    {"direct_true", 3, false, offsetof(trn_view, direct)},
+    {"indirect_true", 3, false, offsetof(trn_view, indirect)},
+    {"image", 3, false, offsetof(trn_view, image)},
+    {"reconstruction_true", 3, false, offsetof(trn_view, reconstruction)},
+    {"relit_true", 3, false, offsetof(trn_view, relit)},
+    {"loss_mask", 1, false, offsetof(trn_view, loss_mask)},
+    {"light_position", 3, true, offsetof(trn_view, light)},
+};
+
+static status connect(trn_feed *f, nn_program *program, int which)
+{
+    const field *d = &fields[which];
+    size_t size = (size_t)f->source.config->size;
+    size_t stride = (size_t)d->channels * (d->vector ? 1 : size * size);
+    float *data = nn_input_data(program, d->input);
+    if (!data) data = f->spare[which] = calloc(f->batch * stride, sizeof *data);
+    if (!data) return fail(ERROR_MEMORY, "out of memory for a batch of %zu", f->batch);
+    for (size_t i = 0; i < f->batch; i++) {
+        float *place = data + i * stride;
+        memcpy((char *)&f->items[i].view + d->offset, &place, sizeof place);
+        f->items[i].view.size = (int)size;
+    }
+    return OK;
+}
+
+status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **out)
+{
+    *out = NULL;
+    trn_feed *f = calloc(1, sizeof *f);
+    if (!f) return fail(ERROR_MEMORY, "out of memory for a batch");
+    f->source = *source;
+    f->batch = (size_t)source->config->batch;
+    f->items = calloc(f->batch, sizeof *f->items);
+    status s = f->items ? OK : fail(ERROR_MEMORY, "out of memory for a batch");
+    for (int i = 0; i < BUFFERS && s == OK; i++)
+        s = connect(f, program, i);
+    f->light_code = nn_input_data(program, "light");
+    if (s != OK) {
+        trn_feed_free(f);
+        return s;
+    }
+    *out = f;
+    return OK;
+}
+
+void trn_feed_free(trn_feed *f)
+{
+    if (!f) return;
+    for (int i = 0; i < BUFFERS; i++)
+        free(f->spare[i]);
+    free(f->items);
+    free(f);
+}
+
+static void fill_item(void *context, size_t i)
+{
+    trn_feed *f = context;
+    item *it = &f->items[i];
+    const train_config *c = f->source.config;
+    rng r =
+        rng_at((uint64_t)c->seed, it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
+    vec3 light = trn_draw_light(&r);
+    int orientation = f->validation ? 0 : rng_below(&r, TRN_ORIENTATIONS);
+    trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
+    it->result = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
+    if (it->result == OK)
+        trn_prepare(&it->view, f->source.input_global, &lens, light, &r);
+    else
+        snprintf(it->message, MESSAGE, "%s", status_message());
+}
+
+static status fill(trn_feed *f)
+{
+    parallel_for(f->batch, fill_item, f);
+    for (size_t i = 0; i < f->batch; i++)
+        if (f->items[i].result != OK) return fail(f->items[i].result, "%s", f->items[i].message);
+    if (f->light_code)
+        for (size_t i = 0; i < f->batch; i++)
+            memcpy(f->light_code + 3 * i, f->items[i].view.light, 3 * sizeof(float));
+    return OK;
+}
+
+status trn_feed_training(trn_feed *f, trn_order *order, uint64_t first)
+{
+    f->validation = false;
+    for (size_t i = 0; i < f->batch; i++) {
+        f->items[i].presentation = first + i;
+        f->items[i].sample = trn_order_at(order, first + i);
+    }
+    return fill(f);
+}
+
+status trn_feed_validation(trn_feed *f, size_t first)
+{
+    f->validation = true;
+    for (size_t i = 0; i < f->batch; i++) {
+        f->items[i].presentation = first + i;
+        f->items[i].sample = f->source.training_count + first + i;
+    }
+    return fill(f);
+}

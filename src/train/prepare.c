@@ -1,0 +1,113 @@
+#include "train/prepare.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/write.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+trn_camera trn_camera_perfect(void)
+{
+    return (trn_camera){.gain = {1, 1, 1}};
+}
+
+trn_camera trn_camera_draw(const train_config *c, rng *r)
+{
+    trn_camera lens;
+    float exposure = (float)c->exposure_jitter * rng_range(r, -1, 1);
+    for (int k = 0; k < 3; k++)
+        lens.gain[k] = expf(exposure + (float)c->colour_jitter * rng_range(r, -1, 1));
+    bool noisy = rng_uniform(r) < 0.5f;
+    lens.shot = rng_uniform(r) * (noisy ? 2e-4f : 0.0f);
+    lens.read = rng_uniform(r) * (noisy ? 5e-3f : 0.0f);
+    lens.eight_bit = rng_uniform(r) < 0.5f;
+    return lens;
+}
+
+vec3 trn_draw_light(rng *r)
+{
+    float u1 = rng_uniform(r), u2 = rng_uniform(r);
+    return frontal_light(u1, u2);
+}
+
+/* Nearly normal, mean 0, variance 1, from one draw: the sum of its four bytes. */
+static float cheap_normal(rng *r)
+{
+    uint32_t u = rng_u32(r);
+    int sum = (int)(u & 255) + (int)(u >> 8 & 255) + (int)(u >> 16 & 255) + (int)(u >> 24);
+    return ((float)sum - 510.0f) * (1.0f / 147.8f); /* variance of four bytes: 4 (256² - 1)/12 */
+}
+
+static float photographed(const trn_camera *lens, float radiance, int channel, rng *noise)
+{
+    float x = fminf(radiance * lens->gain[channel], 1.0f);
+    if (lens->read > 0 || lens->shot > 0) x += sqrtf(lens->shot * x + lens->read * lens->read) * cheap_normal(noise);
+    x = fminf(fmaxf(x, 0.0f), 1.0f);
+    if (lens->eight_bit) x = srgb_decode(roundf(srgb_encode(x) * 255.0f) / 255.0f);
+    return x;
+}
+
+static void take_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise)
+{
+    size_t pixels = (size_t)v->size * (size_t)v->size;
+    memset(v->image, 0, 3 * pixels * sizeof(float));
+    for (size_t i = 0; i < pixels; i++) {
+        if (v->mask[i] <= 0.5f) continue;
+        for (int c = 0; c < 3; c++) {
+            float radiance = v->direct[3 * i + (size_t)c] + (global ? v->indirect[3 * i + (size_t)c] : 0.0f);
+            v->image[3 * i + (size_t)c] = photographed(lens, radiance, c, noise);
+        }
+        model_encode_image(v->image + 3 * i, v->image + 3 * i, 3);
+    }
+}
+
+static vec3 at3(const float *data, size_t i)
+{
+    return vec3_make(data[3 * i], data[3 * i + 1], data[3 * i + 2]);
+}
+
+void trn_render(const trn_view *maps, vec3 light, float *out)
+{
+    int size = maps->size;
+    camera c = {size, size, MODEL_FOV};
+    float pixel = camera_pixel_size(&c), half = 0.5f * (float)size;
+    memset(out, 0, 3 * (size_t)size * (size_t)size * sizeof(float));
+    for (int y = 0; y < size; y++) {
+        for (int x = 0; x < size; x++) {
+            size_t i = (size_t)y * (size_t)size + (size_t)x;
+            if (maps->mask[i] <= 0.5f) continue;
+            shade_input in = {.albedo = at3(maps->albedo, i),
+                              .roughness = maps->roughness[i],
+                              .normal = at3(maps->normal, i),
+                              .depth = maps->depth[i],
+                              .ray = {((float)x + 0.5f - half) * pixel, (half - (float)y - 0.5f) * pixel, -1},
+                              .light = light,
+                              .power = MODEL_LIGHT_POWER};
+            vec3 radiance = shade_point(&in);
+            out[3 * i] = fminf(radiance.x, 1.0f);
+            out[3 * i + 1] = fminf(radiance.y, 1.0f);
+            out[3 * i + 2] = fminf(radiance.z, 1.0f);
+        }
+    }
+}
+
+void trn_prepare(const trn_view *v, bool global, const trn_camera *lens, vec3 light, rng *noise)
+{
+    size_t pixels = (size_t)v->size * (size_t)v->size;
+    take_photograph(v, global, lens, noise);
+    trn_render(v, light, v->relit);
+    for (size_t i = 0; i < pixels; i++) {
+        v->loss_mask[i] = v->mask[i] >= 0.999f ? 1.0f : 0.0f; /* coverage was rounded to half */
+        v->mask[i] = v->mask[i] > 0.5f ? 1.0f : 0.0f;
+        v->roughness[i] = 2 * v->roughness[i] - 1;
+    }
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        v->direct[i] = fminf(v->direct[i], 1.0f);
+        v->reconstruction[i] = v->direct[i] + v->indirect[i];
+        v->albedo[i] = 2 * v->albedo[i] - 1;
+    }
+    v->light[0] = light.x;
+    v->light[1] = light.y;
+    v->light[2] = light.z;
+}

@@ -1,0 +1,38 @@
+/* From a sample to what one presentation shows the network: masks, the photograph with a camera's imperfections, the
+ * target light and what it makes of the object. Everything random depends on (seed, presentation) alone. */
+#ifndef MERLIN_TRAIN_PREPARE_H
+#define MERLIN_TRAIN_PREPARE_H
+
+#include "base/rng.h"
+#include "base/vec.h"
+#include "train/config.h"
+#include "train/dataset.h"
+
+/* Streams of rng_at. */
+enum { TRN_STREAM_ORDER = 101, TRN_STREAM_PRESENTATION = 102, TRN_STREAM_VALIDATION = 103 };
+
+/* What spoils a photograph; trn_camera_perfect for none. */
+typedef struct trn_camera {
+    float gain[3];    /* exposure and colour balance */
+    float shot, read; /* noise of standard deviation sqrt(shot I + read²), I in [0, 1] after gain */
+    bool eight_bit;   /* rounded to 8 bits of sRGB */
+} trn_camera;
+
+trn_camera trn_camera_perfect(void);
+/* Exposure and colour as configured; noise up to 1.5 % of full scale and 8 bits in half of all photographs each. */
+trn_camera trn_camera_draw(const train_config *c, rng *r);
+
+/* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered;
+ * loss_mask: covered wholly), image encoded for the network, direct clipped as the rendering layer does, reconstruction
+ * = clipped direct + indirect, relit = the BRDF under light, maps to the network's ranges. The targets keep the maps'
+ * own exposure: only the input image goes through the camera. global: the input has indirect light. */
+void trn_prepare(const trn_view *v, bool global, const trn_camera *lens, vec3 light, rng *noise);
+
+/* A target light on the frontal hemisphere (Sang & Chandraker 2020). */
+vec3 trn_draw_light(rng *r);
+
+/* Direct light of the maps (albedo and roughness in [0, 1]) under a point light, clipped to [0, 1], zero outside the
+ * mask: size × size × 3. */
+void trn_render(const trn_view *maps, vec3 light, float *out);
+
+#endif

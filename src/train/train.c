@@ -1,0 +1,275 @@
+#include "train/train.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "train/checkpoint.h"
+#include "train/feed.h"
+
+typedef struct paths {
+    char *checkpoint, *curves, *validation, *chart, *weights;
+} paths;
+
+typedef struct run {
+    const trn_options *options;
+    model_config model;
+    train_config training;
+    char *model_json, *training_json;
+    paths paths;
+    trn_dataset *data;
+    size_t training_count;
+    nn_graph *graph;
+    nn_params *params;
+    nn_adam *adam;
+    nn_program *program, *judge; /* judge: the same losses by running statistics, for validation */
+    trn_feed *feed, *judge_feed;
+    trn_order order;
+    trn_state state;
+    double resumed_at, saved_at, seconds_before;
+} run;
+
+static void close_run(run *r)
+{
+    trn_order_free(&r->order);
+    trn_feed_free(r->feed);
+    trn_feed_free(r->judge_feed);
+    nn_program_free(r->program);
+    nn_program_free(r->judge);
+    nn_adam_free(r->adam);
+    nn_params_free(r->params);
+    nn_graph_free(r->graph);
+    trn_dataset_close(r->data);
+    free(r->paths.checkpoint);
+    free(r->paths.curves);
+    free(r->paths.validation);
+    free(r->paths.chart);
+    free(r->paths.weights);
+    free(r->model_json);
+    free(r->training_json);
+}
+
+static status read_configuration(run *r)
+{
+    status s = train_config_read(r->options->config, &r->model, &r->training);
+    if (s != OK) return s;
+    if (r->model.lighting != MODEL_LIGHT_POINT)
+        return fail(ERROR_USAGE, "%s: training knows point lights only, \"lighting\" must be \"point\"",
+                    r->options->config);
+    r->model_json = model_config_write(&r->model);
+    r->training_json = train_config_write(&r->training);
+    return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+static status open_output(run *r)
+{
+    const char *folder = r->options->output;
+    status s = file_make_folder(folder);
+    if (s != OK) return s;
+    r->paths = (paths){file_join(folder, "checkpoint.safetensors"), file_join(folder, "curves.csv"),
+                       file_join(folder, "validation.csv"), file_join(folder, "curves.png"),
+                       file_join(folder, "weights.safetensors")};
+    const paths *p = &r->paths;
+    if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights)
+        return fail(ERROR_MEMORY, "out of memory");
+    bool exists = file_exists(p->checkpoint);
+    if (exists && !r->options->resume)
+        return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
+                    folder);
+    if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
+    return OK;
+}
+
+static status open_data(run *r)
+{
+    status s = trn_dataset_open(r->options->data, r->training.size, r->training.memory_gib, &r->data);
+    if (s != OK) return s;
+    size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
+    if (count <= held_back)
+        return fail(ERROR_INPUT, "%s holds %zu samples and \"validation_count\" %zu leaves none to train on",
+                    r->options->data, count, held_back);
+    r->training_count = count - held_back;
+    return trn_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
+}
+
+static status build(run *r)
+{
+    const train_config *c = &r->training;
+    nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
+    nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
+    trn_source source = {r->data, c, r->model.input_global, r->training_count};
+    status s = model_build(&r->model, MODEL_TRAINING, &r->graph);
+    if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
+    if (s == OK && r->options->init) s = nn_params_load(r->params, r->options->init);
+    if (s != OK) return s;
+    nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
+    s = nn_adam_new(r->params, &adam, &r->adam);
+    if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
+    if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
+    if (s != OK || c->validation_count == 0) return s;
+    options.purpose = NN_INFER;
+    s = nn_compile(r->graph, r->params, &options, &r->judge);
+    return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
+}
+
+static trn_identity identity_of(const run *r)
+{
+    return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data)};
+}
+
+static status resume(run *r)
+{
+    trn_identity identity = identity_of(r);
+    status s = trn_checkpoint_read(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
+    if (s == OK) s = trn_curve_truncate(r->paths.curves, r->state.step);
+    if (s == OK) s = trn_curve_truncate(r->paths.validation, r->state.step);
+    r->seconds_before = r->state.seconds;
+    return s;
+}
+
+static status begin(run *r)
+{
+    r->state.best = INFINITY;
+    status s = read_configuration(r);
+    if (s == OK) s = open_output(r);
+    if (s == OK) s = open_data(r);
+    if (s == OK) s = build(r);
+    if (s != OK) return s;
+    r->resumed_at = r->saved_at = clock_seconds();
+    if (r->options->resume) return resume(r);
+    /* curves left by a run that never reached its first checkpoint */
+    s = trn_curve_truncate(r->paths.curves, 0);
+    return s == OK ? trn_curve_truncate(r->paths.validation, 0) : s;
+}
+
+static int64_t presented(const run *r)
+{
+    return r->state.step * r->training.batch;
+}
+
+static status export_weights(run *r)
+{
+    r->state.seconds = r->seconds_before + clock_seconds() - r->resumed_at;
+    trn_provenance from = {.config = r->model_json,
+                           .training = r->training_json,
+                           .note = r->options->note,
+                           .presentations = presented(r),
+                           .samples = (int64_t)r->training_count,
+                           .size = r->training.size,
+                           .generator_version = trn_dataset_generator_version(r->data),
+                           .seconds = r->state.seconds,
+                           .validation_loss = r->state.best};
+    return train_export(r->paths.weights, r->params, &from);
+}
+
+static status save(run *r)
+{
+    r->saved_at = clock_seconds();
+    r->state.seconds = r->seconds_before + r->saved_at - r->resumed_at;
+    trn_identity identity = identity_of(r);
+    status s = trn_checkpoint_write(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
+    if (s == OK && !r->judge) s = export_weights(r);
+    if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
+    return s;
+}
+
+static trn_curve_row row_of(const run *r)
+{
+    return (trn_curve_row){.step = r->state.step,
+                           .presentations = presented(r),
+                           .skipped = nn_adam_skipped(r->adam),
+                           .learning_rate =
+                               trn_learning_rate(&r->training, r->training_count,
+                                                 (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
+}
+
+static status validate(run *r)
+{
+    trn_losses losses = {0};
+    nn_params_touch(r->params); /* running statistics have moved since the last validation */
+    for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
+        status s = trn_feed_validation(r->judge_feed, (size_t)first);
+        if (s == OK) s = nn_forward(r->judge);
+        if (s != OK) return s;
+        trn_losses_add(&losses, r->judge);
+    }
+    trn_curve_row row = row_of(r);
+    status s = trn_curve_append(r->paths.validation, &row, &losses);
+    double mean = losses.total / (double)losses.count;
+    if (s != OK || !(mean < r->state.best)) return s;
+    r->state.best = mean;
+    return export_weights(r);
+}
+
+static status end_row(run *r)
+{
+    trn_curve_row row = row_of(r);
+    status s = trn_curve_append(r->paths.curves, &row, &r->state.open);
+    if (s == OK && !isfinite(r->state.open.total))
+        s = fail(ERROR_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
+                 (long long)r->state.step);
+    r->state.open = (trn_losses){0};
+    return s;
+}
+
+static status one_step(run *r)
+{
+    uint64_t first = (uint64_t)presented(r);
+    status s = trn_feed_training(r->feed, &r->order, first);
+    if (s == OK) s = nn_forward(r->program);
+    if (s == OK) s = nn_backward(r->program);
+    if (s == OK) s = nn_adam_step(r->adam, (float)trn_learning_rate(&r->training, r->training_count, first));
+    if (s != OK) return s;
+    trn_losses_add(&r->state.open, r->program);
+    r->state.step++;
+    if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
+    if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
+        s = validate(r);
+    if (s == OK && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes) s = save(r);
+    return s;
+}
+
+static status steps(run *r, int64_t last, progress *bar)
+{
+    while (r->state.step < last) {
+        status s = one_step(r);
+        if (s != OK) return s;
+        char note[64];
+        snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->program));
+        progress_update(bar, (size_t)presented(r), note);
+        if (r->state.step < last && r->options->interrupted && r->options->interrupted()) {
+            s = save(r);
+            return s != OK ? s
+                           : fail(ERROR_STOPPED, "stopped after %lld presentations; --resume goes on from there",
+                                  (long long)presented(r));
+        }
+    }
+    return OK;
+}
+
+static status go(run *r)
+{
+    int64_t last = ((int64_t)r->training.presentations + r->training.batch - 1) / r->training.batch;
+    int64_t validation_steps = r->training.validation_steps;
+    bool finished_before = r->state.step >= last;
+    progress bar;
+    progress_begin(&bar, "train", "presentations", (size_t)presented(r), (size_t)(last * r->training.batch),
+                   r->options->quiet);
+    status s = steps(r, last, &bar);
+    progress_end(&bar);
+    if (s != OK || finished_before) return s;
+    if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = validate(r);
+    return s == OK ? save(r) : s;
+}
+
+status trn_train(const trn_options *o)
+{
+    run r = {.options = o};
+    status s = begin(&r);
+    if (s == OK) s = go(&r);
+    close_run(&r);
+    return s;
+}

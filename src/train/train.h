@@ -1,0 +1,28 @@
+/* Training: from a folder of samples to weights.
+ *
+ *     trn_options o = {.config = "configs/merlin-point.json", .data = "data/train", .output = "runs/1"};
+ *     status s = trn_train(&o);
+ *
+ * The output folder receives checkpoint.safetensors (every few minutes and when stopped), curves.csv, validation.csv
+ * and curves.png, and weights.safetensors, the best so far by validation loss (the latest, without validation). A run
+ * that was killed and resumed ends with the same parameters and curves, bit for bit, as one that was not. */
+#ifndef MERLIN_TRAIN_TRAIN_H
+#define MERLIN_TRAIN_TRAIN_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+typedef struct trn_options {
+    const char *config, *data, *output;
+    const char *init; /* weights to start from, or NULL */
+    const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
+    bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
+    bool quiet;
+    int (*interrupted)(void); /* asked after every step; NULL: never */
+} trn_options;
+
+/* ERROR_STOPPED after an interrupt, with everything saved. */
+status trn_train(const trn_options *o);
+
+#endif
