@@ -1,8 +1,8 @@
 /* A rendered training sample, in memory and as one multi-layer OpenEXR file (half float, ZIP).
  *
  * Space, light and ranges as in docs/conventions.md: camera at the origin looking along -z, depth is -z, normals unit
- * with n_z > 0, albedo and roughness in [0, 1], radiance linear. Everything outside the mask is zero. At silhouettes the
- * maps are averages over the object's own visible part of the pixel (normals renormalized), and mask is coverage;
+ * with n_z > 0, albedo and roughness in [0, 1], radiance linear. Everything outside the mask is zero. At silhouettes
+ * the maps are averages over the object's own visible part of the pixel (normals renormalized), and mask is coverage;
  * images are multiplied by coverage. */
 #ifndef MERLIN_RENDER_SAMPLE_H
 #define MERLIN_RENDER_SAMPLE_H
@@ -16,30 +16,30 @@ enum { SAMPLE_GENERATOR_VERSION = 1, SAMPLE_MAX_TARGETS = 64 };
 
 /* An image under one more point light, with cast shadows. */
 typedef struct sample_target {
-    vec3 light;         /* position in camera space */
-    img direct;         /* 3 channels, bounce 1, cast shadows included */
-    img indirect;       /* 3 channels, bounces 2 and 3 */
+    vec3 light;   /* position in camera space */
+    img direct;   /* 3 channels, bounce 1, cast shadows included */
+    img indirect; /* 3 channels, bounces 2 and 3 */
 } sample_target;
 
 typedef struct sample {
-    img albedo;              /* 3 */
-    img normal;              /* 3 */
-    img roughness;           /* 1 */
-    img depth;               /* 1 */
-    img mask;                /* 1, coverage in [0, 1] */
-    img direct;              /* 3, point light at the camera, bounce 1 */
-    img indirect;            /* 3, bounces 2 + 3 */
-    img bounce2, bounce3;    /* 3 each; empty (data NULL) unless asked for */
-    img env;                 /* 3, lit by the environment (direct and bounces), no point light */
-    float sh[9][3];          /* radiance SH of that environment, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22 */
+    img albedo;           /* 3 */
+    img normal;           /* 3 */
+    img roughness;        /* 1 */
+    img depth;            /* 1 */
+    img mask;             /* 1, coverage in [0, 1] */
+    img direct;           /* 3, point light at the camera, bounce 1 */
+    img indirect;         /* 3, bounces 2 + 3 */
+    img bounce2, bounce3; /* 3 each; empty (data NULL) unless asked for */
+    img env;              /* 3, lit by the environment (direct and bounces), no point light */
+    float sh[9][3];       /* radiance SH of that environment, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22 */
     sample_target *targets;
     int target_count;
-    vec3 light;              /* of direct and indirect: the origin */
-    float light_power;       /* Φ */
-    float fov;               /* horizontal, degrees */
+    vec3 light;        /* of direct and indirect: the origin */
+    float light_power; /* Φ */
+    float fov;         /* horizontal, degrees */
     uint64_t seed, index;
     int generator_version;
-    char shape[32];          /* class of object: "union", "blend", "revolution", "superquadric", "relief", "mesh" */
+    char shape[32]; /* class of object: "union", "blend", "revolution", "superquadric", "relief", "mesh" */
 } sample;
 
 void sample_free(sample *s);

@@ -1,0 +1,205 @@
+#include "render/environment.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "optics/sh.h"
+#include "render/sky.h"
+
+static const float pi = 3.14159265358979f;
+
+vec3 environment_direction(real u, real v)
+{
+    real around = (u - (real)0.5) * 2 * pi, down = v * pi, s = sinf(down);
+    return vec3_make(s * sinf(around), cosf(down), -s * cosf(around));
+}
+
+/* The place of a unit direction in the map, in texels. */
+static void place_of(const environment *env, vec3 d, float *x, float *y)
+{
+    float u = atan2f(d.x, -d.z) / (2 * pi) + 0.5f, v = acosf(fminf(1, fmaxf(-1, d.y))) / pi;
+    *x = u * (float)env->map.width;
+    *y = v * (float)env->map.height;
+}
+
+static float luminance(const float *c)
+{
+    return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+}
+
+/* Solid angle of a texel of row y. */
+static float texel_solid_angle(const img *map, int y)
+{
+    float top = cosf(pi * (float)y / (float)map->height), bottom = cosf(pi * (float)(y + 1) / (float)map->height);
+    return (top - bottom) * 2 * pi / (float)map->width;
+}
+
+static float mean_luminance(const img *map)
+{
+    double sum = 0;
+    for (int y = 0; y < map->height; y++) {
+        double row = 0;
+        for (int x = 0; x < map->width; x++)
+            row += luminance(img_at(map, x, y));
+        sum += row * texel_solid_angle(map, y);
+    }
+    return (float)(sum / (4 * 3.14159265358979));
+}
+
+/* Divides a cumulative sum by its last value; the last entry becomes 1 exactly. */
+static void normalize_cumulative(float *c, int count)
+{
+    float total = c[count];
+    for (int i = 0; i <= count; i++)
+        c[i] = total > 0 ? c[i] / total : (float)i / (float)count;
+    c[count] = 1;
+}
+
+/* A texel's share: its light, plus a little so that what interpolation spreads into dark texels is found too. */
+static void fill_distribution(environment *env, float floor_luminance)
+{
+    int w = env->map.width, h = env->map.height;
+    env->rows[0] = 0;
+    for (int y = 0; y < h; y++) {
+        float *row = env->columns + (size_t)y * (size_t)(w + 1);
+        row[0] = 0;
+        for (int x = 0; x < w; x++)
+            row[x + 1] = row[x] + luminance(img_at(&env->map, x, y)) + floor_luminance;
+        env->rows[y + 1] = env->rows[y] + row[w] * texel_solid_angle(&env->map, y);
+        normalize_cumulative(row, w);
+    }
+    normalize_cumulative(env->rows, h);
+}
+
+static void project_sh(environment *env)
+{
+    memset(env->sh, 0, sizeof env->sh);
+    for (int y = 0; y < env->map.height; y++) {
+        float angle = texel_solid_angle(&env->map, y);
+        for (int x = 0; x < env->map.width; x++) {
+            const float *c = img_at(&env->map, x, y);
+            vec3 d = environment_direction(((float)x + 0.5f) / (float)env->map.width,
+                                           ((float)y + 0.5f) / (float)env->map.height);
+            sh_accumulate(env->sh, d, vec3_make(c[0] * angle, c[1] * angle, c[2] * angle));
+        }
+    }
+}
+
+/* Exposes the map so that its mean luminance is `exposure`, then derives everything else from it. */
+static status finish(environment *env, float exposure)
+{
+    size_t w = (size_t)env->map.width, h = (size_t)env->map.height;
+    env->rows = malloc((h + 1) * sizeof *env->rows);
+    env->columns = malloc(h * (w + 1) * sizeof *env->columns);
+    if (!env->rows || !env->columns) {
+        environment_free(env);
+        return fail(ERROR_MEMORY, "out of memory for an environment map");
+    }
+    float mean = mean_luminance(&env->map), scale = mean > 0 ? exposure / mean : 0;
+    for (size_t i = 0; i < 3 * w * h; i++)
+        env->map.data[i] *= scale;
+    fill_distribution(env, 0.05f * exposure);
+    project_sh(env);
+    return OK;
+}
+
+/* Mean radiance of the surroundings: a grey object in them comes out between dim and well lit. */
+static float random_exposure(rng *r)
+{
+    return 0.35f * powf(3.2f, rng_uniform(r));
+}
+
+status environment_procedural(rng *r, environment *out)
+{
+    *out = (environment){0};
+    status s = img_new(&out->map, ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, 3);
+    if (s != OK) return s;
+    sky_fill(&out->map, r);
+    return finish(out, random_exposure(r));
+}
+
+status environment_from_map(const img *map, rng *r, environment *out)
+{
+    *out = (environment){0};
+    status s = img_new(&out->map, map->width, map->height, 3);
+    if (s != OK) return s;
+    int turn = rng_below(r, map->width);
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++)
+            memcpy(img_at(&out->map, (x + turn) % map->width, y), img_at(map, x, y), 3 * sizeof(float));
+    return finish(out, random_exposure(r));
+}
+
+void environment_free(environment *env)
+{
+    img_free(&env->map);
+    free(env->rows);
+    free(env->columns);
+    *env = (environment){0};
+}
+
+vec3 environment_radiance(const environment *env, vec3 d)
+{
+    float x, y;
+    int w = env->map.width, h = env->map.height;
+    place_of(env, d, &x, &y);
+    x -= 0.5f;
+    y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
+    int x0 = (int)floorf(x), y0 = (int)y, y1 = y0 + 1 < h ? y0 + 1 : y0;
+    float fx = x - (float)x0, fy = y - (float)y0;
+    int left = (x0 + w) % w, right = (x0 + 1 + w) % w;
+    const float *a = img_at(&env->map, left, y0), *b = img_at(&env->map, right, y0);
+    const float *c = img_at(&env->map, left, y1), *e = img_at(&env->map, right, y1);
+    float out[3];
+    for (int i = 0; i < 3; i++)
+        out[i] = (1 - fy) * ((1 - fx) * a[i] + fx * b[i]) + fy * ((1 - fx) * c[i] + fx * e[i]);
+    return vec3_make(out[0], out[1], out[2]);
+}
+
+/* Probability of the texel per solid angle; directions within a texel are spread evenly over its u and cosθ. */
+static float texel_pdf(const environment *env, int x, int y)
+{
+    const float *row = env->columns + (size_t)y * (size_t)(env->map.width + 1);
+    return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]) / texel_solid_angle(&env->map, y);
+}
+
+real environment_pdf(const environment *env, vec3 d)
+{
+    float x, y;
+    place_of(env, d, &x, &y);
+    int i = (int)x, j = (int)y;
+    if (i >= env->map.width) i = env->map.width - 1;
+    if (j >= env->map.height) j = env->map.height - 1;
+    return texel_pdf(env, i, j);
+}
+
+/* The interval of a cumulative sum that holds u, and where in it. */
+static int find_interval(const float *cumulative, int count, float u, float *within)
+{
+    int low = 0, high = count;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (cumulative[middle] <= u)
+            low = middle;
+        else
+            high = middle;
+    }
+    float width = cumulative[low + 1] - cumulative[low];
+    *within = width > 0 ? fminf(0.9999f, (u - cumulative[low]) / width) : 0.5f;
+    return low;
+}
+
+vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real *pdf)
+{
+    float fx, fy;
+    int w = env->map.width, h = env->map.height;
+    int y = find_interval(env->rows, h, u1, &fy);
+    int x = find_interval(env->columns + (size_t)y * (size_t)(w + 1), w, u2, &fx);
+    float top = cosf(pi * (float)y / (float)h), bottom = cosf(pi * (float)(y + 1) / (float)h);
+    float cosine = top + fy * (bottom - top), s = sqrtf(fmaxf(0, 1 - cosine * cosine));
+    float around = (((float)x + fx) / (float)w - 0.5f) * 2 * pi;
+    *d = vec3_make(s * sinf(around), cosine, -s * cosf(around));
+    *pdf = texel_pdf(env, x, y);
+    return environment_radiance(env, *d);
+}

@@ -1,0 +1,51 @@
+/* Light from all around: a latitude-longitude map of linear radiance, procedural or from a file.
+ *
+ *     environment env;
+ *     status s = environment_procedural(&generator, &env);
+ *     vec3 l, radiance = environment_sample(&env, u1, u2, &l, &pdf);
+ *     environment_free(&env);
+ *
+ * World up is +y. The map's top row is up; its columns run around the y axis, the middle one is straight ahead of the
+ * camera (-z) and columns right of it lie to the camera's right. */
+#ifndef MERLIN_RENDER_ENVIRONMENT_H
+#define MERLIN_RENDER_ENVIRONMENT_H
+
+#include "base/rng.h"
+#include "base/vec.h"
+#include "image/image.h"
+
+/* Size of procedural maps, and of those from files once shrunk. */
+enum { ENVIRONMENT_WIDTH = 256, ENVIRONMENT_HEIGHT = 128 };
+
+typedef struct environment {
+    img map;        /* 3 channels */
+    float *rows;    /* height + 1: cumulative probability of rows */
+    float *columns; /* height × (width + 1): cumulative probability within a row */
+    float sh[9][3]; /* radiance coefficients */
+} environment;
+
+/* The unit direction of a place (0..1, 0..1) of a latitude-longitude map. */
+vec3 environment_direction(real u, real v);
+
+/* A sky, a room or a studio at random, its mean radiance that of ordinary exposures. */
+status environment_procedural(rng *r, environment *out);
+/* A map read elsewhere, turned about the vertical and exposed at random. */
+status environment_from_map(const img *map, rng *r, environment *out);
+void environment_free(environment *env);
+
+/* Radiance from the unit direction d, interpolated. */
+vec3 environment_radiance(const environment *env, vec3 d);
+/* Density of environment_sample at d, 1/sr. */
+real environment_pdf(const environment *env, vec3 d);
+/* Draws a direction about as often as the map is bright there; returns its radiance. */
+vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real *pdf);
+
+/* Every picture of a folder that can serve as a map (HDR, EXR and the like), shrunk to what lighting needs. */
+typedef struct environment_folder {
+    img *maps;
+    size_t count;
+} environment_folder;
+status environment_folder_read(const char *path, environment_folder *out);
+void environment_folder_free(environment_folder *folder);
+
+#endif

@@ -1,0 +1,48 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "image/read.h"
+#include "image/resize.h"
+#include "render/environment.h"
+
+/* Reads one map and shrinks it; negative values of odd files count as black. */
+static status read_map(const char *path, img *out)
+{
+    img full = {0};
+    status s = img_read(path, &full, NULL);
+    if (s != OK) return s;
+    s = img_resize(&full, ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, out);
+    img_free(&full);
+    if (s != OK) return fail_in(s, "cannot use %s as an environment", path);
+    for (size_t i = 0; i < (size_t)ENVIRONMENT_WIDTH * ENVIRONMENT_HEIGHT * 3; i++)
+        out->data[i] = fmaxf(0, out->data[i]);
+    return OK;
+}
+
+status environment_folder_read(const char *path, environment_folder *out)
+{
+    static const char *const endings[] = {".hdr", ".exr", ".pfm", ".tif", ".tiff", ".png", ".jpg", ".jpeg", NULL};
+    char **names;
+    size_t count;
+    *out = (environment_folder){0};
+    status s = file_list(path, endings, &names, &count);
+    if (s != OK) return s;
+    if (count == 0) s = fail(ERROR_INPUT, "%s: no environment maps (.hdr, .exr, ...) in this folder", path);
+    if (s == OK && !(out->maps = calloc(count, sizeof *out->maps))) s = fail(ERROR_MEMORY, "out of memory for maps");
+    for (size_t i = 0; s == OK && i < count; i++) {
+        s = read_map(names[i], &out->maps[i]);
+        out->count = i + 1;
+    }
+    file_list_free(names, count);
+    if (s != OK) environment_folder_free(out);
+    return s;
+}
+
+void environment_folder_free(environment_folder *folder)
+{
+    for (size_t i = 0; i < folder->count; i++)
+        img_free(&folder->maps[i]);
+    free(folder->maps);
+    *folder = (environment_folder){0};
+}

@@ -1,0 +1,213 @@
+#include "render/generate.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "render/streams.h"
+
+/* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
+typedef struct run {
+    const render_options *options;
+    trace_device *device;
+    environment_folder maps;
+    render_stats *stats;
+    progress bar;
+    status failed;
+    char message[512];
+} run;
+
+render_options render_options_default(void)
+{
+    return (render_options){.image = {.size = 128, .fov = 60, .strata = 4, .paths = 8}, .environment = true};
+}
+
+static status make_environment(const run *r, uint64_t index, environment *out)
+{
+    *out = (environment){0};
+    if (!r->options->environment) return OK;
+    rng generator = rng_at(r->options->seed, index, STREAM_ENVIRONMENT);
+    if (r->maps.count == 0) return environment_procedural(&generator, out);
+    int chosen = rng_below(&generator, (int)r->maps.count);
+    return environment_from_map(&r->maps.maps[chosen], &generator, out);
+}
+
+static status make_object(const render_options *o, uint64_t index, scn_object *out)
+{
+    if (o->mesh) return scn_object_from_mesh(o->mesh, o->seed, index, o->image.fov, out);
+    return scn_object_generate(o->seed, index, o->image.fov, out);
+}
+
+static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *rays)
+{
+    const render_options *o = r->options;
+    scn_object object;
+    environment env;
+    trace_scene scene = {0};
+    status s = make_object(o, index, &object);
+    if (s != OK) return s;
+    s = make_environment(r, index, &env);
+    if (s == OK) s = trace_scene_new(r->device, &object, scn_surface_eval, &scene);
+    if (s == OK) s = render_image(&scene, &o->image, o->seed, index, o->environment ? &env : NULL, out);
+    *rays = scene.rays;
+    trace_scene_free(&scene);
+    environment_free(&env);
+    scn_object_free(&object);
+    return s;
+}
+
+/* Renders one sample and writes it, unless it is there already. */
+static status produce(const run *r, uint64_t index, bool *kept, uint64_t *rays)
+{
+    sample s = {0};
+    char *path = NULL;
+    status st = OK;
+    if (r->options->folder) {
+        path = sample_path(r->options->folder, index);
+        if (!path) return fail(ERROR_MEMORY, "out of memory");
+        *kept = file_exists(path);
+    }
+    if (!*kept) {
+        st = make_sample(r, index, &s, rays);
+        if (st == OK && path) st = sample_write(path, &s);
+        sample_free(&s);
+        if (st != OK) fail_in(st, "sample %" PRIu64, index);
+    }
+    free(path);
+    return st;
+}
+
+static void note_result(run *r, status st, bool kept, uint64_t rays)
+{
+    if (st != OK && r->failed == OK) {
+        r->failed = st;
+        snprintf(r->message, sizeof r->message, "%s", status_message());
+    }
+    if (st != OK) return;
+    r->stats->rendered += !kept;
+    r->stats->kept += kept;
+    r->stats->rays += rays;
+    if (kept) r->bar.first++; /* costs nothing, so it must not count as speed */
+    progress_update(&r->bar, r->stats->rendered + r->stats->kept, NULL);
+}
+
+static void body(void *context, size_t i)
+{
+    run *r = context;
+    bool stop, kept = false;
+    uint64_t rays = 0;
+#pragma omp critical(render_run)
+    stop = r->failed != OK;
+    if (stop) return;
+    status st;
+    if (r->options->interrupted && r->options->interrupted())
+        st = fail(ERROR_STOPPED, "interrupted; run the same command again to continue");
+    else
+        st = produce(r, r->options->first + i, &kept, &rays);
+#pragma omp critical(render_run)
+    note_result(r, st, kept, rays);
+}
+
+/* ---- the folder and what made it ------------------------------------------------------------------------------- */
+
+static void describe(const render_options *o, char *out, size_t size)
+{
+    const image_settings *m = &o->image;
+    snprintf(out, size,
+             "generator %d\nseed %" PRIu64 "\nsize %d\nfov %g\nstrata %d\npaths %d\ntargets %d\nbounces %d\n"
+             "environment %s\nobjects %s\n",
+             SAMPLE_GENERATOR_VERSION, o->seed, m->size, (double)m->fov, m->strata, m->paths, m->targets, m->bounces,
+             !o->environment         ? "none"
+             : o->environment_folder ? o->environment_folder
+                                     : "procedural",
+             o->mesh ? o->mesh : "procedural");
+}
+
+static status claim_folder(const render_options *o)
+{
+    char text[8192], *found = NULL;
+    size_t size;
+    describe(o, text, sizeof text);
+    status s = file_make_folder(o->folder);
+    if (s != OK) return s;
+    char *path = file_join(o->folder, "render.txt");
+    if (!path) return fail(ERROR_MEMORY, "out of memory");
+    if (!file_exists(path)) {
+        s = file_write(path, text, strlen(text));
+    } else {
+        s = file_read(path, sizeof text, &found, &size);
+        if (s == OK && strcmp(found, text) != 0)
+            s = fail(ERROR_USAGE, "%s holds samples made with other options (see %s): choose another folder", o->folder,
+                     path);
+    }
+    free(found);
+    free(path);
+    return s;
+}
+
+static status check_options(const render_options *o)
+{
+    const image_settings *m = &o->image;
+    if (m->size < 1 || m->size > 4096) return fail(ERROR_USAGE, "image size %d is not within 1..4096", m->size);
+    if (!(m->fov >= 1 && m->fov <= 150))
+        return fail(ERROR_USAGE, "field of view %g is not within 1..150", (double)m->fov);
+    if (m->strata < 1 || m->strata > RENDER_MAX_STRATA || (m->strata > 1 && m->strata % 2))
+        return fail(ERROR_USAGE, "%d x %d rays a pixel: must be 1, 4, 16, 36 or 64 in all", m->strata, m->strata);
+    if (m->paths < 1) return fail(ERROR_USAGE, "at least one path a pixel is needed");
+    if (m->targets < 0 || m->targets > SAMPLE_MAX_TARGETS)
+        return fail(ERROR_USAGE, "%d targets: at most %d", m->targets, SAMPLE_MAX_TARGETS);
+    return OK;
+}
+
+static status open_run(const render_options *o, run *r)
+{
+    *r = (run){.options = o};
+    status s = check_options(o);
+    if (s == OK) s = trace_device_new(&r->device);
+    if (s == OK && o->environment && o->environment_folder)
+        s = environment_folder_read(o->environment_folder, &r->maps);
+    if (s != OK) trace_device_free(r->device);
+    return s;
+}
+
+static void close_run(run *r)
+{
+    environment_folder_free(&r->maps);
+    trace_device_free(r->device);
+}
+
+status render_samples(const render_options *options, render_stats *stats)
+{
+    run r;
+    *stats = (render_stats){0};
+    status s = open_run(options, &r);
+    if (s != OK) return s;
+    r.stats = stats;
+    if (options->folder) s = claim_folder(options);
+    if (s == OK) {
+        double start = clock_seconds();
+        progress_begin(&r.bar, "rendering", "samples", 0, options->count, options->quiet);
+        parallel_for(options->count, body, &r);
+        progress_end(&r.bar);
+        stats->seconds = clock_seconds() - start;
+        if (r.failed != OK) s = fail(r.failed, "%s", r.message);
+    }
+    close_run(&r);
+    return s;
+}
+
+status render_sample(const render_options *options, uint64_t index, sample *out)
+{
+    run r;
+    uint64_t rays;
+    *out = (sample){0};
+    status s = open_run(options, &r);
+    if (s != OK) return s;
+    s = make_sample(&r, index, out, &rays);
+    close_run(&r);
+    return s;
+}

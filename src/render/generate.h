@@ -1,0 +1,48 @@
+/* A data set: samples (seed, first), (seed, first + 1), ... rendered into a folder, one thread a sample.
+ *
+ *     render_options o = render_options_default();
+ *     o.folder = "data";
+ *     o.count = 100;
+ *     render_stats stats;
+ *     status s = render_samples(&o, &stats);
+ *
+ * A sample depends on the options and (seed, index) alone, never on the number of threads. Samples already in the
+ * folder are kept, so an interrupted run is continued by repeating it; render.txt in the folder says what made them,
+ * and a run with other options is refused rather than mixed in. */
+#ifndef MERLIN_RENDER_GENERATE_H
+#define MERLIN_RENDER_GENERATE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "render/render.h"
+
+typedef struct render_options {
+    const char *folder; /* NULL: render and throw away, to measure */
+    uint64_t seed, first;
+    size_t count;
+    image_settings image;
+    bool environment;               /* an environment image and its SH coefficients as well */
+    const char *environment_folder; /* maps from files instead of procedural ones; or NULL */
+    const char *mesh;               /* a mesh file instead of procedural objects; or NULL */
+    bool quiet;                     /* no progress bar */
+    int (*interrupted)(void);       /* polled between samples; may be NULL */
+} render_options;
+
+typedef struct render_stats {
+    size_t rendered, kept; /* kept: were there already */
+    uint64_t rays;
+    double seconds;
+} render_stats;
+
+/* 128 pixels, 60 degrees, 4 × 4 strata, 8 paths, environment on; no folder, count 0. */
+render_options render_options_default(void);
+
+/* Stops at the first failure, or with ERROR_STOPPED when interrupted; finished samples stay. stats is filled either
+ * way. */
+status render_samples(const render_options *options, render_stats *stats);
+
+/* One sample of such a set, in memory. */
+status render_sample(const render_options *options, uint64_t index, sample *out);
+
+#endif

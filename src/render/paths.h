@@ -1,0 +1,43 @@
+/* Light reaching a visible point: straight from a point light, by way of other surfaces, or from an environment.
+ *
+ * Paths are drawn from the mixture of both lobes of the BRDF; at every surface they meet, the light is sampled on its
+ * own (next-event estimation). Every function is a pure function of its arguments and of the generator it advances. */
+#ifndef MERLIN_RENDER_PATHS_H
+#define MERLIN_RENDER_PATHS_H
+
+#include "base/rng.h"
+#include "render/environment.h"
+#include "render/trace.h"
+
+/* Radiance that a single path may bring, per bounce and channel. Rare paths of tiny probability would otherwise leave
+ * bright dots; what is cut is below 1 % of the indirect light of ordinary objects. */
+#define PATH_CLAMP ((real)4)
+
+typedef struct point_light {
+    vec3 position;
+    real power;
+    bool at_eye; /* a flash: whatever the camera sees is lit, so no shadow rays from there */
+} point_light;
+
+/* Where in the unit square a path starts: the sequence spreads a pixel's paths evenly. */
+typedef struct path_start {
+    real u1, u2;
+} path_start;
+
+/* Start number i of count, shifted at random per pixel (Hammersley points, Cranley & Patterson 1976). */
+path_start path_start_at(int i, int count, real shift1, real shift2);
+
+/* Bounce 1: radiance toward view, without looking for shadows. */
+vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
+/* The same, zero where another surface or the surface's own back is in the way. */
+vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
+/* Bounces 2 and 3 along one path. */
+void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light, path_start start,
+                      rng *r, vec3 bounce[2]);
+
+/* Radiance from the environment by one path of at most three surfaces; both the map and the BRDF are sampled and
+ * combined by the balance heuristic (Veach & Guibas 1995). */
+vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, path_start start,
+                      rng *r);
+
+#endif

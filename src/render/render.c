@@ -1,0 +1,246 @@
+#include "render/render.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "optics/camera.h"
+#include "optics/light.h"
+#include "render/paths.h"
+#include "render/streams.h"
+
+enum { MAX_POINTS = RENDER_MAX_STRATA * RENDER_MAX_STRATA };
+
+typedef struct renderer {
+    trace_scene *scene;
+    const image_settings *settings;
+    const environment *env;
+    camera eye;
+    point_light flash, lights[SAMPLE_MAX_TARGETS];
+    rng jitter, indirect, target, surroundings;
+    sample *out;
+} renderer;
+
+/* What one pixel sees: the shaded points and the share of the pixel that the object covers. */
+typedef struct pixel {
+    int x, y, count;
+    float coverage;
+    scn_surface at[MAX_POINTS];
+    vec3 view[MAX_POINTS];
+} pixel;
+
+/* ---- visibility ------------------------------------------------------------------------------------------------ */
+
+/* One ray per cell of the pixel's strata; directions and hits in cell order. Returns how many hit. */
+static int cast_pixel(renderer *r, const pixel *p, vec3 *direction, trace_hit *hit)
+{
+    int n = r->settings->strata, cells = n * n, met = 0;
+    for (int i = 0; i < cells; i++) {
+        float dx = ((float)(i % n) + rng_uniform(&r->jitter)) / (float)n;
+        float dy = ((float)(i / n) + rng_uniform(&r->jitter)) / (float)n;
+        direction[i] = camera_ray(&r->eye, (float)p->x + dx, (float)p->y + dy);
+    }
+    for (int i = 0; i < cells; i += TRACE_PACKET)
+        trace_camera_rays(r->scene, direction + i, cells - i < TRACE_PACKET ? cells - i : TRACE_PACKET, hit + i);
+    for (int i = 0; i < cells; i++)
+        met += hit[i].distance >= 0;
+    return met;
+}
+
+/* Whether the pixel lies inside one surface: fully covered, without a jump in depth. */
+static bool is_plain(const renderer *r, const trace_hit *hit, int met)
+{
+    int cells = r->settings->strata * r->settings->strata;
+    float nearest = hit[0].distance, farthest = nearest;
+    if (met < cells) return false;
+    for (int i = 1; i < cells; i++) {
+        nearest = fminf(nearest, hit[i].distance);
+        farthest = fmaxf(farthest, hit[i].distance);
+    }
+    return farthest - nearest < 6 * camera_pixel_size(&r->eye) * nearest;
+}
+
+/* One cell in every row and every column: row j's is column (2j + 1) mod (n + 1), a permutation for even n. */
+static bool is_chosen(int cell, int n)
+{
+    return n == 1 || cell % n == (2 * (cell / n) + 1) % (n + 1);
+}
+
+static void see_pixel(renderer *r, pixel *p)
+{
+    vec3 direction[MAX_POINTS];
+    trace_hit hit[MAX_POINTS];
+    int n = r->settings->strata, met = cast_pixel(r, p, direction, hit);
+    bool plain = met > 0 && is_plain(r, hit, met);
+    p->coverage = (float)met / (float)(n * n);
+    p->count = 0;
+    for (int i = 0; i < n * n && met > 0; i++) {
+        if (hit[i].distance < 0 || (plain && !is_chosen(i, n))) continue;
+        vec3 view = vec3_scale(direction[i], -1);
+        scn_surface *at = &p->at[p->count];
+        trace_surface_at(r->scene, &hit[i], view, at);
+        /* the stored normal must face the camera plane too; off the axis, facing the eye does not imply it */
+        if (at->normal.z < 0.01f) at->normal = vec3_normalize(vec3_make(at->normal.x, at->normal.y, 0.01f));
+        p->view[p->count++] = view;
+    }
+}
+
+/* ---- layers ---------------------------------------------------------------------------------------------------- */
+
+static void store(const img *image, const pixel *p, vec3 value, float scale)
+{
+    float *out = img_at(image, p->x, p->y);
+    out[0] = value.x * scale;
+    out[1] = value.y * scale;
+    out[2] = value.z * scale;
+}
+
+static void store_maps(renderer *r, const pixel *p)
+{
+    vec3 albedo = {0, 0, 0}, normal = {0, 0, 0};
+    float roughness = 0, depth = 0, share = 1 / (float)p->count;
+    for (int i = 0; i < p->count; i++) {
+        albedo = vec3_add(albedo, p->at[i].albedo);
+        normal = vec3_add(normal, p->at[i].normal);
+        roughness += p->at[i].roughness;
+        depth -= p->at[i].position.z;
+    }
+    store(&r->out->albedo, p, albedo, share);
+    store(&r->out->normal, p, vec3_normalize(normal), 1);
+    *img_at(&r->out->roughness, p->x, p->y) = roughness * share;
+    *img_at(&r->out->depth, p->x, p->y) = depth * share;
+    *img_at(&r->out->mask, p->x, p->y) = p->coverage;
+}
+
+static vec3 mean_direct(renderer *r, const pixel *p, const point_light *light)
+{
+    vec3 sum = {0, 0, 0};
+    for (int i = 0; i < p->count; i++)
+        sum = vec3_add(sum, light->at_eye ? point_light_unshadowed(r->scene, &p->at[i], p->view[i], light)
+                                          : point_light_direct(r->scene, &p->at[i], p->view[i], light));
+    return vec3_scale(sum, p->coverage / (float)p->count);
+}
+
+static void mean_indirect(renderer *r, const pixel *p, const point_light *light, rng *generator, vec3 bounce[2])
+{
+    int paths = r->settings->paths;
+    float shift1 = rng_uniform(generator), shift2 = rng_uniform(generator);
+    bounce[0] = bounce[1] = vec3_make(0, 0, 0);
+    for (int i = 0; i < paths; i++) {
+        vec3 path[2];
+        int at = i % p->count;
+        point_light_path(r->scene, &p->at[at], p->view[at], light, path_start_at(i, paths, shift1, shift2), generator,
+                         path);
+        bounce[0] = vec3_add(bounce[0], path[0]);
+        bounce[1] = vec3_add(bounce[1], path[1]);
+    }
+    for (int b = 0; b < 2; b++)
+        bounce[b] = vec3_scale(bounce[b], p->coverage / (float)paths);
+}
+
+static vec3 mean_environment(renderer *r, const pixel *p)
+{
+    int paths = r->settings->paths;
+    float shift1 = rng_uniform(&r->surroundings), shift2 = rng_uniform(&r->surroundings);
+    vec3 sum = {0, 0, 0};
+    for (int i = 0; i < paths; i++) {
+        int at = i % p->count;
+        sum = vec3_add(sum, environment_path(r->scene, &p->at[at], p->view[at], r->env,
+                                             path_start_at(i, paths, shift1, shift2), &r->surroundings));
+    }
+    return vec3_scale(sum, p->coverage / (float)paths);
+}
+
+static void render_pixel(renderer *r, int x, int y)
+{
+    pixel p;
+    vec3 bounce[2];
+    p.x = x;
+    p.y = y;
+    see_pixel(r, &p);
+    if (p.count == 0) return;
+    store_maps(r, &p);
+    store(&r->out->direct, &p, mean_direct(r, &p, &r->flash), 1);
+    mean_indirect(r, &p, &r->flash, &r->indirect, bounce);
+    store(&r->out->indirect, &p, vec3_add(bounce[0], bounce[1]), 1);
+    if (r->settings->bounces) {
+        store(&r->out->bounce2, &p, bounce[0], 1);
+        store(&r->out->bounce3, &p, bounce[1], 1);
+    }
+    for (int t = 0; t < r->settings->targets; t++) {
+        store(&r->out->targets[t].direct, &p, mean_direct(r, &p, &r->lights[t]), 1);
+        mean_indirect(r, &p, &r->lights[t], &r->target, bounce);
+        store(&r->out->targets[t].indirect, &p, vec3_add(bounce[0], bounce[1]), 1);
+    }
+    if (r->env) store(&r->out->env, &p, mean_environment(r, &p), 1);
+}
+
+/* ---- a sample -------------------------------------------------------------------------------------------------- */
+
+static status make_layers(const image_settings *set, bool env, sample *out)
+{
+    struct {
+        img *image;
+        int channels;
+        bool wanted;
+    } layers[] = {{&out->albedo, 3, true},
+                  {&out->normal, 3, true},
+                  {&out->roughness, 1, true},
+                  {&out->depth, 1, true},
+                  {&out->mask, 1, true},
+                  {&out->direct, 3, true},
+                  {&out->indirect, 3, true},
+                  {&out->bounce2, 3, set->bounces},
+                  {&out->bounce3, 3, set->bounces},
+                  {&out->env, 3, env}};
+    status s = OK;
+    for (size_t i = 0; s == OK && i < sizeof layers / sizeof *layers; i++)
+        if (layers[i].wanted) s = img_new(layers[i].image, set->size, set->size, layers[i].channels);
+    if (s != OK || set->targets == 0) return s;
+    out->targets = calloc((size_t)set->targets, sizeof *out->targets);
+    if (!out->targets) return fail(ERROR_MEMORY, "out of memory for %d target images", set->targets);
+    out->target_count = set->targets;
+    for (int t = 0; s == OK && t < set->targets; t++) {
+        s = img_new(&out->targets[t].direct, set->size, set->size, 3);
+        if (s == OK) s = img_new(&out->targets[t].indirect, set->size, set->size, 3);
+    }
+    return s;
+}
+
+status render_image(trace_scene *scene, const image_settings *settings, uint64_t seed, uint64_t index,
+                    const environment *env, sample *out)
+{
+    *out = (sample){.light_power = LIGHT_POWER,
+                    .fov = settings->fov,
+                    .seed = seed,
+                    .index = index,
+                    .generator_version = SAMPLE_GENERATOR_VERSION};
+    snprintf(out->shape, sizeof out->shape, "%s", scene->object->shape);
+    status s = make_layers(settings, env != NULL, out);
+    if (s != OK) {
+        sample_free(out);
+        return s;
+    }
+    renderer r = {.scene = scene,
+                  .settings = settings,
+                  .env = env,
+                  .eye = {settings->size, settings->size, settings->fov},
+                  .flash = {{0, 0, 0}, LIGHT_POWER, true},
+                  .jitter = rng_at(seed, index, STREAM_JITTER),
+                  .indirect = rng_at(seed, index, STREAM_INDIRECT),
+                  .target = rng_at(seed, index, STREAM_TARGET),
+                  .surroundings = rng_at(seed, index, STREAM_SURROUNDINGS),
+                  .out = out};
+    rng lights = rng_at(seed, index, STREAM_LIGHTS);
+    for (int t = 0; t < settings->targets; t++) {
+        float u1 = rng_uniform(&lights), u2 = rng_uniform(&lights);
+        r.lights[t] = (point_light){frontal_light(u1, u2), LIGHT_POWER, false};
+        out->targets[t].light = r.lights[t].position;
+    }
+    if (env) memcpy(out->sh, env->sh, sizeof out->sh);
+    for (int y = 0; y < settings->size; y++)
+        for (int x = 0; x < settings->size; x++)
+            render_pixel(&r, x, y);
+    return OK;
+}

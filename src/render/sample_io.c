@@ -1,0 +1,269 @@
+#include "render/sample.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/exr.h"
+
+enum { MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS, MAX_ATTRIBUTES = 16 + SAMPLE_MAX_TARGETS, NAME_SIZE = 32 };
+
+/* A layer's channels: one image and the endings of its channels' names. */
+typedef struct layer {
+    const char *name, *endings;
+    size_t offset;              /* of the img within the sample */
+    enum { ALWAYS, FULL } when; /* FULL: only by sample_read, and only where the file has it */
+} layer;
+
+static const layer layers[] = {
+    {"albedo", "RGB", offsetof(sample, albedo), ALWAYS},     {"normal", "XYZ", offsetof(sample, normal), ALWAYS},
+    {"roughness", "Y", offsetof(sample, roughness), ALWAYS}, {"depth", "Z", offsetof(sample, depth), ALWAYS},
+    {"mask", "A", offsetof(sample, mask), ALWAYS},           {"direct", "RGB", offsetof(sample, direct), ALWAYS},
+    {"indirect", "RGB", offsetof(sample, indirect), ALWAYS}, {"bounce2", "RGB", offsetof(sample, bounce2), FULL},
+    {"bounce3", "RGB", offsetof(sample, bounce3), FULL},     {"env", "RGB", offsetof(sample, env), FULL},
+};
+enum { LAYER_COUNT = sizeof layers / sizeof *layers };
+
+static img *layer_image(const sample *s, const layer *l)
+{
+    return (img *)((char *)(uintptr_t)s + l->offset);
+}
+
+/* Channels under construction; their names live as long as the list. */
+typedef struct channel_list {
+    char names[MAX_CHANNELS][NAME_SIZE];
+    const img *image[MAX_CHANNELS];
+    int part[MAX_CHANNELS];
+    size_t count;
+} channel_list;
+
+static void add_layer(channel_list *list, const char *name, const char *endings, const img *image)
+{
+    for (int c = 0; endings[c]; c++) {
+        snprintf(list->names[list->count], NAME_SIZE, "%.24s.%c", name, endings[c]);
+        list->image[list->count] = image;
+        list->part[list->count++] = c;
+    }
+}
+
+static void add_targets(channel_list *list, const sample *s)
+{
+    char name[NAME_SIZE];
+    for (int t = 0; t < s->target_count; t++) {
+        snprintf(name, sizeof name, "target%02d.direct", t);
+        add_layer(list, name, "RGB", &s->targets[t].direct);
+        snprintf(name, sizeof name, "target%02d.indirect", t);
+        add_layer(list, name, "RGB", &s->targets[t].indirect);
+    }
+}
+
+void sample_free(sample *s)
+{
+    for (int i = 0; i < LAYER_COUNT; i++)
+        img_free(layer_image(s, &layers[i]));
+    for (int t = 0; t < s->target_count; t++) {
+        img_free(&s->targets[t].direct);
+        img_free(&s->targets[t].indirect);
+    }
+    free(s->targets);
+    *s = (sample){0};
+}
+
+/* ---- writing --------------------------------------------------------------------------------------------------- */
+
+typedef struct attribute_list {
+    exr_attribute items[MAX_ATTRIBUTES];
+    char names[SAMPLE_MAX_TARGETS][NAME_SIZE];
+    char seed[24], index[24];
+    size_t count;
+} attribute_list;
+
+static void add_numbers(attribute_list *list, const char *name, const float *values, int count)
+{
+    exr_attribute *a = &list->items[list->count++];
+    *a = (exr_attribute){.name = name, .count = count};
+    memcpy(a->values, values, (size_t)count * sizeof *values);
+}
+
+static void describe(attribute_list *list, const sample *s)
+{
+    const float light[3] = {s->light.x, s->light.y, s->light.z};
+    list->count = 0;
+    add_numbers(list, "light", light, 3);
+    add_numbers(list, "lightPower", &s->light_power, 1);
+    add_numbers(list, "fieldOfView", &s->fov, 1);
+    if (s->env.data) add_numbers(list, "sphericalHarmonics", &s->sh[0][0], 27);
+    /* 64-bit numbers as text: a float cannot hold them */
+    snprintf(list->seed, sizeof list->seed, "%" PRIu64, s->seed);
+    snprintf(list->index, sizeof list->index, "%" PRIu64, s->index);
+    list->items[list->count++] = exr_text("seed", list->seed);
+    list->items[list->count++] = exr_text("index", list->index);
+    list->items[list->count++] = exr_text("shape", s->shape);
+    list->items[list->count++] = exr_number("generatorVersion", (float)s->generator_version);
+    list->items[list->count++] = exr_number("targets", (float)s->target_count);
+    for (int t = 0; t < s->target_count; t++) {
+        const float at[3] = {s->targets[t].light.x, s->targets[t].light.y, s->targets[t].light.z};
+        snprintf(list->names[t], NAME_SIZE, "target%02d.light", t);
+        add_numbers(list, list->names[t], at, 3);
+    }
+}
+
+status sample_write(const char *path, const sample *s)
+{
+    struct {
+        channel_list channels;
+        attribute_list attributes;
+        exr_channel written[MAX_CHANNELS];
+    } *work = malloc(sizeof *work);
+    if (!work) return fail(ERROR_MEMORY, "out of memory to write %s", path);
+    channel_list *list = &work->channels;
+    list->count = 0;
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        const img *image = layer_image(s, &layers[i]);
+        if (image->data) add_layer(list, layers[i].name, layers[i].endings, image);
+    }
+    add_targets(list, s);
+    for (size_t i = 0; i < list->count; i++)
+        work->written[i] =
+            (exr_channel){list->names[i], list->image[i]->data + list->part[i], list->image[i]->channels};
+    describe(&work->attributes, s);
+    status st = exr_write(path, s->albedo.width, s->albedo.height, work->written, list->count, work->attributes.items,
+                          work->attributes.count);
+    free(work);
+    return st;
+}
+
+/* ---- reading --------------------------------------------------------------------------------------------------- */
+
+static void read_identity(const exr_file *f, sample *s)
+{
+    const char *seed = exr_get_text(f, "seed"), *index = exr_get_text(f, "index"), *shape = exr_get_text(f, "shape");
+    float version = 0;
+    if (seed) s->seed = strtoull(seed, NULL, 10);
+    if (index) s->index = strtoull(index, NULL, 10);
+    if (shape) snprintf(s->shape, sizeof s->shape, "%s", shape);
+    if (exr_get_numbers(f, "generatorVersion", &version, 1)) s->generator_version = (int)version;
+    exr_get_numbers(f, "sphericalHarmonics", &s->sh[0][0], 27);
+}
+
+/* The attributes without which the images mean nothing. */
+static status read_optics(const exr_file *f, const char *path, sample *s)
+{
+    float light[3];
+    if (!exr_get_numbers(f, "light", light, 3) || !exr_get_numbers(f, "lightPower", &s->light_power, 1) ||
+        !exr_get_numbers(f, "fieldOfView", &s->fov, 1))
+        return fail(ERROR_INPUT, "%s: not a sample of this renderer (no light, lightPower or fieldOfView)", path);
+    s->light = vec3_make(light[0], light[1], light[2]);
+    if (!(s->fov > 0 && s->fov < 180) || !(s->light_power > 0))
+        return fail(ERROR_INPUT, "%s: impossible field of view %g or light power %g", path, (double)s->fov,
+                    (double)s->light_power);
+    return OK;
+}
+
+static status make_targets(const exr_file *f, const char *path, sample *s)
+{
+    float count = 0;
+    if (!exr_get_numbers(f, "targets", &count, 1) || count == 0) return OK;
+    if (!(count > 0 && count <= SAMPLE_MAX_TARGETS))
+        return fail(ERROR_INPUT, "%s: impossible number of targets %g", path, (double)count);
+    s->targets = calloc((size_t)count, sizeof *s->targets);
+    if (!s->targets) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    s->target_count = (int)count;
+    for (int t = 0; t < s->target_count; t++) {
+        char name[NAME_SIZE];
+        float at[3];
+        snprintf(name, sizeof name, "target%02d.light", t);
+        if (!exr_get_numbers(f, name, at, 3)) return fail(ERROR_INPUT, "%s: attribute %s is missing", path, name);
+        s->targets[t].light = vec3_make(at[0], at[1], at[2]);
+        status st = img_new(&s->targets[t].direct, exr_width(f), exr_height(f), 3);
+        if (st == OK) st = img_new(&s->targets[t].indirect, exr_width(f), exr_height(f), 3);
+        if (st != OK) return st;
+    }
+    return OK;
+}
+
+/* Makes the images to be read and lists their channels. */
+static status plan(const exr_file *f, const char *path, bool full, sample *s, channel_list *list)
+{
+    list->count = 0;
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        char first[NAME_SIZE];
+        snprintf(first, sizeof first, "%s.%c", layers[i].name, layers[i].endings[0]);
+        if (layers[i].when == FULL && (!full || !exr_has_channel(f, first))) continue;
+        img *image = layer_image(s, &layers[i]);
+        status st = img_new(image, exr_width(f), exr_height(f), (int)strlen(layers[i].endings));
+        if (st != OK) return fail_in(st, "cannot read %s", path);
+        add_layer(list, layers[i].name, layers[i].endings, image);
+    }
+    if (!full) return OK;
+    status st = make_targets(f, path, s);
+    add_targets(list, s);
+    return st;
+}
+
+static status check_finite(const char *path, const channel_list *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        const img *image = list->image[i];
+        size_t pixels = (size_t)image->width * (size_t)image->height;
+        for (size_t p = 0; p < pixels; p++)
+            if (!isfinite(image->data[p * (size_t)image->channels + (size_t)list->part[i]]))
+                return fail(ERROR_INPUT, "%s: %s holds NaN or infinity at pixel %zu,%zu", path, list->names[i],
+                            p % (size_t)image->width, p / (size_t)image->width);
+    }
+    return OK;
+}
+
+static status read_open(exr_file *f, const char *path, bool full, sample *s)
+{
+    struct {
+        channel_list channels;
+        exr_target targets[MAX_CHANNELS];
+    } *work = malloc(sizeof *work);
+    if (!work) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    channel_list *list = &work->channels;
+    read_identity(f, s);
+    status st = read_optics(f, path, s);
+    if (st == OK) st = plan(f, path, full, s, list);
+    if (st == OK) {
+        for (size_t i = 0; i < list->count; i++)
+            work->targets[i] =
+                (exr_target){list->names[i], list->image[i]->data + list->part[i], list->image[i]->channels};
+        st = exr_read(f, work->targets, list->count);
+    }
+    if (st == OK) st = check_finite(path, list);
+    free(work);
+    return st;
+}
+
+static status read_sample(const char *path, bool full, sample *out)
+{
+    exr_file *f;
+    *out = (sample){0};
+    status st = exr_open(path, &f);
+    if (st != OK) return st;
+    st = read_open(f, path, full, out);
+    exr_close(f);
+    if (st != OK) sample_free(out);
+    return st;
+}
+
+status sample_read(const char *path, sample *out)
+{
+    return read_sample(path, true, out);
+}
+
+status sample_read_training(const char *path, sample *out)
+{
+    return read_sample(path, false, out);
+}
+
+char *sample_path(const char *folder, uint64_t index)
+{
+    char name[32];
+    snprintf(name, sizeof name, "%06" PRIu64 ".exr", index);
+    return file_join(folder, name);
+}

@@ -1,0 +1,175 @@
+#include "render/trace.h"
+
+#include <embree3/rtcore.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct trace_device {
+    RTCDevice device;
+};
+
+/* RTCScene is a pointer to an opaque struct; this names it without Embree's header in ours. */
+static RTCScene bvh_of(const trace_scene *scene)
+{
+    return (RTCScene)(void *)scene->bvh;
+}
+
+static status device_fail(RTCDevice device, const char *what)
+{
+    static const char *const words[] = {"no error",          "unknown error", "invalid argument",
+                                        "invalid operation", "out of memory", "unsupported processor",
+                                        "cancelled"};
+    enum RTCError error = rtcGetDeviceError(device);
+    const char *word = (unsigned)error < 7 ? words[error] : "unknown error";
+    return fail(error == RTC_ERROR_OUT_OF_MEMORY ? ERROR_MEMORY : ERROR_DEVICE, "Embree cannot %s: %s", what, word);
+}
+
+status trace_device_new(trace_device **out)
+{
+    *out = calloc(1, sizeof **out);
+    if (!*out) return fail(ERROR_MEMORY, "out of memory for the ray tracer");
+    /* samples are parallel, so each hierarchy is built by the thread that wants it */
+    (*out)->device = rtcNewDevice("threads=1,user_threads=1");
+    if ((*out)->device) return OK;
+    free(*out);
+    *out = NULL;
+    return device_fail(NULL, "start");
+}
+
+void trace_device_free(trace_device *device)
+{
+    if (!device) return;
+    rtcReleaseDevice(device->device);
+    free(device);
+}
+
+static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object)
+{
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!geometry) return device_fail(device, "make a geometry");
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                              object->vertex_count);
+    uint32_t *triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                  3 * sizeof(uint32_t), object->triangle_count);
+    if (!vertices || !triangles) {
+        rtcReleaseGeometry(geometry);
+        return device_fail(device, "hold the triangles");
+    }
+    for (uint32_t i = 0; i < object->vertex_count; i++) {
+        vertices[3 * i] = (float)object->position[i].x;
+        vertices[3 * i + 1] = (float)object->position[i].y;
+        vertices[3 * i + 2] = (float)object->position[i].z;
+    }
+    memcpy(triangles, object->triangle, (size_t)object->triangle_count * sizeof *object->triangle);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(bvh, geometry);
+    rtcReleaseGeometry(geometry);
+    return OK;
+}
+
+status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface,
+                       trace_scene *out)
+{
+    *out = (trace_scene){.object = object, .surface = surface};
+    if (object->triangle_count == 0) return fail(ERROR_INPUT, "the object has no triangles");
+    RTCScene bvh = rtcNewScene(device->device);
+    if (!bvh) return device_fail(device->device, "make a scene");
+    rtcSetSceneFlags(bvh, RTC_SCENE_FLAG_ROBUST);
+    status s = attach_triangles(device->device, bvh, object);
+    if (s == OK) {
+        rtcCommitScene(bvh);
+        if (rtcGetDeviceError(device->device) != RTC_ERROR_NONE) s = fail(ERROR_DEVICE, "Embree cannot build its tree");
+    }
+    if (s != OK) {
+        rtcReleaseScene(bvh);
+        return s;
+    }
+    out->bvh = (trace_bvh *)(void *)bvh;
+    return OK;
+}
+
+void trace_scene_free(trace_scene *scene)
+{
+    if (scene->bvh) rtcReleaseScene(bvh_of(scene));
+    scene->bvh = NULL;
+}
+
+void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, trace_hit *hits)
+{
+    struct RTCRayHit16 packet;
+    int valid[TRACE_PACKET];
+    memset(&packet, 0, sizeof packet);
+    for (int i = 0; i < TRACE_PACKET; i++) {
+        vec3 d = directions[i < count ? i : 0];
+        valid[i] = i < count ? -1 : 0;
+        packet.ray.dir_x[i] = d.x;
+        packet.ray.dir_y[i] = d.y;
+        packet.ray.dir_z[i] = d.z;
+        packet.ray.tfar[i] = FLT_MAX;
+        packet.ray.mask[i] = 0xffffffffu;
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, bvh_of(scene), &context, &packet);
+    scene->rays += (uint64_t)count;
+    for (int i = 0; i < count; i++) {
+        bool met = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        hits[i] = (trace_hit){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i], met ? packet.ray.tfar[i] : -1.0f};
+    }
+}
+
+/* n moved toward the unit d until n·d is at least `least`. */
+static vec3 bend_toward(vec3 n, vec3 d, real least)
+{
+    real c = vec3_dot(n, d);
+    return c < least ? vec3_normalize(vec3_fma(n, least - c, d)) : n;
+}
+
+void trace_surface_at(const trace_scene *scene, const trace_hit *hit, vec3 view, scn_surface *out)
+{
+    scene->surface(scene->object, hit->triangle, hit->u, hit->v, out);
+    if (vec3_dot(out->geometric_normal, view) < 0) {
+        out->geometric_normal = vec3_scale(out->geometric_normal, -1);
+        out->normal = vec3_scale(out->normal, -1);
+    }
+    out->normal = bend_toward(out->normal, view, (real)0.03);
+}
+
+static struct RTCRay make_ray(vec3 origin, vec3 direction, float distance)
+{
+    return (struct RTCRay){.org_x = origin.x,
+                           .org_y = origin.y,
+                           .org_z = origin.z,
+                           .dir_x = direction.x,
+                           .dir_y = direction.y,
+                           .dir_z = direction.z,
+                           .tfar = distance,
+                           .mask = 0xffffffffu};
+}
+
+bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface *out)
+{
+    struct RTCRayHit ray = {.ray = make_ray(origin, direction, FLT_MAX)};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(bvh_of(scene), &context, &ray);
+    scene->rays++;
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    trace_hit hit = {ray.hit.primID, ray.hit.u, ray.hit.v, ray.ray.tfar};
+    trace_surface_at(scene, &hit, vec3_scale(direction, -1), out);
+    return true;
+}
+
+bool trace_occluded(trace_scene *scene, vec3 origin, vec3 direction, float distance)
+{
+    struct RTCRay ray = make_ray(origin, direction, distance);
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(bvh_of(scene), &context, &ray);
+    scene->rays++;
+    return ray.tfar < 0;
+}

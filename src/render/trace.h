@@ -1,0 +1,68 @@
+/* Rays against one object, by Embree.
+ *
+ *     trace_device *device;
+ *     status s = trace_device_new(&device);
+ *     trace_scene scene;
+ *     s = trace_scene_new(device, &object, scn_surface_eval, &scene);
+ *     scn_surface hit;
+ *     if (trace_surface(&scene, origin, direction, &hit)) ...
+ *     trace_scene_free(&scene);
+ *     trace_device_free(device);
+ *
+ * A scene is used by one thread at a time; scenes of one device may be used by as many threads as there are scenes. */
+#ifndef MERLIN_RENDER_TRACE_H
+#define MERLIN_RENDER_TRACE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scene/scene.h"
+
+typedef struct trace_device trace_device;
+typedef struct trace_bvh trace_bvh;
+
+/* Looks up what a ray sees; scn_surface_eval for real objects, something simpler in tests with closed forms. */
+typedef void trace_surface_function(const scn_object *object, uint32_t triangle, real u, real v, scn_surface *out);
+
+typedef struct trace_scene {
+    const scn_object *object; /* borrowed */
+    trace_surface_function *surface;
+    trace_bvh *bvh;
+    bool diffuse_only; /* leave the specular lobe out: tests against closed forms */
+    uint64_t rays;     /* traced so far */
+} trace_scene;
+
+status trace_device_new(trace_device **out);
+void trace_device_free(trace_device *device);
+
+/* Builds the hierarchy over the object's triangles. The object must outlive the scene. */
+status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface,
+                       trace_scene *out);
+void trace_scene_free(trace_scene *scene);
+
+/* Where a camera ray met the object; distance below 0 if it did not. */
+typedef struct trace_hit {
+    uint32_t triangle;
+    float u, v, distance;
+} trace_hit;
+
+enum { TRACE_PACKET = 16 };
+/* Up to TRACE_PACKET rays from the origin of space at once. */
+void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, trace_hit *hits);
+
+/* The surface at a hit, seen along -view (view: unit, from the surface to the eye): both normals turned to the viewer's
+ * side, the shading normal bent until the viewer sees it at least grazing. */
+void trace_surface_at(const trace_scene *scene, const trace_hit *hit, vec3 view, scn_surface *out);
+
+/* The first surface along a unit direction, ready for shading as above; false if there is none. */
+bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface *out);
+/* Whether anything lies between the origin and distance. */
+bool trace_occluded(trace_scene *scene, vec3 origin, vec3 direction, float distance);
+
+/* Where rays leave a surface: a hair above it, so that they do not meet it again. */
+static inline vec3 trace_leave(const scn_surface *s)
+{
+    return vec3_fma(s->position, (real)2e-5, s->geometric_normal);
+}
+
+#endif
