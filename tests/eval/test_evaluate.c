@@ -1,0 +1,222 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "eval/evaluate.h"
+#include "eval/report.h"
+#include "model/model.h"
+#include "nn/safetensors.h"
+#include "sphere.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+enum { SIZE = 64, SAMPLES = 3 };
+
+static const model_config tiny = {.name = "tiny",
+                                  .input_global = true,
+                                  .material_decoders = 1,
+                                  .feature_sharing = true,
+                                  .gated_attention = true,
+                                  .relight = MODEL_RELIGHT_NETWORK,
+                                  .global_illumination = true,
+                                  .lighting = MODEL_LIGHT_POINT,
+                                  .widths = {8, 8, 8, 8, 8},
+                                  .gi_widths = {8, 8, 8, 8, 8}};
+
+static void write_weights(const char *path, const model_config *config)
+{
+    nn_graph *g;
+    nn_params *params;
+    assert_int_equal(model_build(config, MODEL_WHOLE, &g), OK);
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    size_t count = nn_params_count(params);
+    st_tensor *tensors = calloc(count, sizeof *tensors);
+    assert_non_null(tensors);
+    for (size_t i = 0; i < count; i++) {
+        const nn_param *p = nn_params_at(params, i);
+        tensors[i] = (st_tensor){.name = p->name, .type = ST_F32, .rank = p->rank, .count = p->count, .data = p->value};
+        memcpy(tensors[i].shape, p->shape, sizeof tensors[i].shape);
+    }
+    char *json = model_config_write(config);
+    assert_non_null(json);
+    const char *const metadata[][2] = {{"config", json}};
+    assert_int_equal(st_write(path, tensors, count, metadata, 1), OK);
+    free(json);
+    free(tensors);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
+typedef struct fixture {
+    char folder[64], *data, *weights, *figure;
+} fixture;
+
+static void write_sphere(const char *folder, int index, int size, int targets)
+{
+    sphere of = {{0.05f * (float)index, 0, -1.2f}, 0.4f, {0.2f + 0.2f * (float)index, 0.5f, 0.4f}, 0.5f, size};
+    sample s;
+    assert_int_equal(sphere_sample(&of, targets, &s), OK);
+    s.index = (uint64_t)index;
+    strcpy(s.shape, index == 2 ? "relief" : "union");
+    char *path = sample_path(folder, s.index);
+    assert_int_equal(sample_write(path, &s), OK);
+    free(path);
+    sample_free(&s);
+}
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    assert_non_null(f);
+    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
+    assert_non_null(mkdtemp(f->folder));
+    f->data = file_join(f->folder, "data");
+    f->weights = file_join(f->folder, "tiny.safetensors");
+    f->figure = file_join(f->folder, "sheet.png");
+    assert_int_equal(file_make_folder(f->data), OK);
+    for (int i = 0; i < SAMPLES; i++)
+        write_sphere(f->data, i, SIZE, i == 0 ? 5 : 0);
+    write_weights(f->weights, &tiny);
+    *state = f;
+    return 0;
+}
+
+static void empty_folder(const char *folder)
+{
+    char **names;
+    size_t count;
+    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
+    for (size_t i = 0; i < count; i++)
+        assert_int_equal(unlink(names[i]), 0);
+    file_list_free(names, count);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    empty_folder(f->data);
+    empty_folder(f->folder);
+    free(f->data);
+    free(f->weights);
+    free(f->figure);
+    free(f);
+    return 0;
+}
+
+static void evaluation_fills_every_row_and_class(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {
+        .data = f->data, .weights = f->weights, .figure = f->figure, .figure_rows = 2, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.samples, SAMPLES);
+    assert_int_equal(r.size, SIZE);
+    assert_true(r.means_from_data);
+    assert_int_equal(r.class_count, 2);
+    assert_string_equal(r.class_names[1], "relief");
+    assert_int_equal(r.classes[0].samples, 2);
+    for (int row = 0; row < EVAL_ROWS; row++) {
+        assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MODEL)));
+        assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MEAN)));
+        assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_INFLATED)));
+    }
+    /* four lights a sample; five path-traced targets in all */
+    assert_int_equal(r.all.count[EVAL_RELIT_BRDF][EVAL_MODEL], 4 * SAMPLES);
+    assert_int_equal(r.all.count[EVAL_TRACED_NETWORK][EVAL_MODEL], 5);
+    /* the targets of this sample are the flash picture itself */
+    assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_UNCHANGED) - 1) < 1e-9);
+    assert_true(file_exists(f->figure));
+}
+
+static void evaluation_is_deterministic(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    char *json[2];
+    for (int i = 0; i < 2; i++) {
+        eval_report r;
+        assert_int_equal(eval_run(&options, &r), OK);
+        json[i] = eval_report_json(&r);
+        assert_non_null(json[i]);
+    }
+    assert_string_equal(json[0], json[1]);
+    free(json[0]);
+    free(json[1]);
+}
+
+static void a_model_without_extras_leaves_its_rows_empty(void **state)
+{
+    const fixture *f = *state;
+    model_config plain = tiny;
+    plain.relight = MODEL_RELIGHT_BRDF;
+    plain.global_illumination = false;
+    char *weights = file_join(f->folder, "plain.safetensors");
+    write_weights(weights, &plain);
+    eval_options options = {.data = f->data, .weights = weights, .count = 1, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.samples, 1);
+    assert_true(isnan(eval_score(&r.all, EVAL_RELIT_NETWORK, EVAL_MODEL)));
+    assert_false(eval_judge(&r.all, EVAL_RELIT_NETWORK).holds);
+    assert_true(isfinite(eval_score(&r.all, EVAL_RELIT_BRDF, EVAL_MODEL)));
+    free(weights);
+}
+
+static void samples_of_another_size_are_refused(void **state)
+{
+    const fixture *f = *state;
+    char *folder = file_join(f->folder, "mixed");
+    assert_int_equal(file_make_folder(folder), OK);
+    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "no samples"));
+    write_sphere(folder, 0, 50, 0);
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "multiple of 32"));
+    write_sphere(folder, 0, 64, 0);
+    write_sphere(folder, 1, 96, 0);
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "000001.exr"));
+    empty_folder(folder);
+    free(folder);
+}
+
+static void a_verdict_compares_with_the_better_trivial_answer(void **state)
+{
+    (void)state;
+    eval_scores s = {.samples = 1};
+    const double albedo[EVAL_ANSWERS] = {0.06, 0.2, 0.1}, relit[EVAL_ANSWERS] = {0.95, 0.8, 0.7, 0.92};
+    for (int a = 0; a < EVAL_ANSWERS; a++) {
+        if (a != EVAL_UNCHANGED) s.count[EVAL_ALBEDO][a] = 1;
+        s.sum[EVAL_ALBEDO][a] = albedo[a];
+        s.count[EVAL_RELIT_BRDF][a] = 1;
+        s.sum[EVAL_RELIT_BRDF][a] = relit[a];
+    }
+    eval_verdict v = eval_judge(&s, EVAL_ALBEDO);
+    assert_true(fabs(v.ratio - 0.6) < 1e-12);
+    v = eval_judge(&s, EVAL_RELIT_BRDF);
+    assert_true(fabs(v.margin - 0.03) < 1e-12);
+    assert_false(v.holds);
+    s.sum[EVAL_RELIT_BRDF][EVAL_MODEL] = 0.98; /* against 0.92 */
+    assert_true(eval_judge(&s, EVAL_RELIT_BRDF).holds);
+    assert_false(eval_judge(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(evaluation_fills_every_row_and_class),
+        cmocka_unit_test(evaluation_is_deterministic),
+        cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
+        cmocka_unit_test(samples_of_another_size_are_refused),
+        cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
