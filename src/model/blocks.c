@@ -7,7 +7,7 @@ enum { NAME = 96 };
 /* "a.b" in the caller's buffer: the graph copies names. */
 static const char *join(char *buffer, const char *a, const char *b)
 {
-    snprintf(buffer, NAME, "%s.%s", a, b);
+    snprintf(buffer, NAME, "%.63s.%.31s", a, b);
     return buffer;
 }
 
@@ -57,8 +57,8 @@ void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *feature
 {
     nn_node *d = in->bottleneck;
     for (int i = MODEL_LEVELS - 2; i >= 0; i--) {
-        char stage[NAME], buffer[2 * NAME];
-        snprintf(stage, sizeof stage, "%.64s.level%d", in->name, i);
+        char stage[NAME], buffer[NAME];
+        snprintf(stage, sizeof stage, "%.48s.level%d", in->name, i);
         int width = in->widths[i];
         nn_node *parts[3];
         int count = 0;

@@ -1,0 +1,115 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/model.h"
+
+/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const char *const good =
+    "{\"name\": \"m\", \"input_global\": true, \"material_decoders\": 1, \"feature_sharing\": true, "
+    "\"gated_attention\": true, \"relight\": \"network\", \"global_illumination\": true, \"lighting\": \"point\", "
+    "\"widths\": [32, 64, 96, 128, 192], \"gi_widths\": [16, 32, 48, 64, 96]}";
+
+static status parse(const char *json, model_config *c)
+{
+    return model_config_parse(json, strlen(json), "test.json", c);
+}
+
+/* good with one passage replaced, malloc'ed. */
+static char *with(const char *from, const char *to)
+{
+    const char *at = strstr(good, from);
+    assert_non_null(at);
+    size_t size = strlen(good) + strlen(to) + 1;
+    char *text = malloc(size);
+    assert_non_null(text);
+    snprintf(text, size, "%.*s%s%s", (int)(at - good), good, to, at + strlen(from));
+    return text;
+}
+
+static void refuses(const char *from, const char *to, const char *word)
+{
+    model_config c;
+    char *text = with(from, to);
+    assert_int_equal(parse(text, &c), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "test.json"));
+    if (!strstr(status_message(), word)) fail_msg("\"%s\" does not name %s", status_message(), word);
+    free(text);
+}
+
+static void configuration_survives_writing_and_reading(void **unused)
+{
+    (void)unused;
+    model_config a, b;
+    assert_int_equal(parse(good, &a), OK);
+    assert_int_equal(a.widths[4], 192);
+    assert_int_equal(a.gi_widths[0], 16);
+    assert_int_equal(a.relight, MODEL_RELIGHT_NETWORK);
+    char *text = model_config_write(&a);
+    assert_non_null(text);
+    assert_int_equal(parse(text, &b), OK);
+    assert_memory_equal(&a, &b, sizeof a);
+    free(text);
+}
+
+static void wrong_configurations_are_refused_by_key(void **unused)
+{
+    (void)unused;
+    refuses("\"name\": \"m\"", "\"name\": \"m\", \"naem\": 1", "naem");
+    refuses("\"input_global\": true, ", "", "input_global");
+    refuses("\"gated_attention\": true", "\"gated_attention\": 1", "gated_attention");
+    refuses("\"material_decoders\": 1", "\"material_decoders\": 2", "material_decoders");
+    refuses("\"material_decoders\": 1", "\"material_decoders\": 1.5", "material_decoders");
+    refuses("\"material_decoders\": 1", "\"material_decoders\": \"1\"", "material_decoders");
+    refuses("\"network\"", "\"magic\"", "brdf");
+    refuses("\"network\"", "\"brdf\"", "feature_sharing");
+    refuses("\"name\": \"m\"", "\"name\": \"m\", \"name\": \"n\"", "twice");
+    refuses("[32, 64", "[33, 64", "widths");
+    refuses("[32, 64", "[-32, 64", "widths");
+    refuses("[32, 64", "[64", "widths");
+    refuses("[32, 64", "[1e30, 64", "widths");
+    refuses("\"name\": \"m\"", "\"name\": \"\"", "name");
+}
+
+static void text_that_is_not_one_object_is_refused(void **unused)
+{
+    (void)unused;
+    model_config c;
+    assert_int_equal(parse("", &c), ERROR_INPUT);
+    assert_int_equal(parse("[1]", &c), ERROR_INPUT);
+    assert_int_equal(parse("{\"name\": ", &c), ERROR_INPUT);
+    char *text = with("96]}", "96]} {}");
+    assert_int_equal(parse(text, &c), ERROR_INPUT);
+    free(text);
+    assert_int_equal(model_config_read("/nonexistent/x.json", &c), ERROR_INPUT);
+}
+
+static void light_code_has_3_27_or_30_values(void **unused)
+{
+    (void)unused;
+    model_config c;
+    assert_int_equal(parse(good, &c), OK);
+    assert_int_equal(model_light_size(&c), 3);
+    c.lighting = MODEL_LIGHT_SH;
+    assert_int_equal(model_light_size(&c), 27);
+    c.lighting = MODEL_LIGHT_BOTH;
+    assert_int_equal(model_light_size(&c), 30);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(configuration_survives_writing_and_reading),
+        cmocka_unit_test(wrong_configurations_are_refused_by_key),
+        cmocka_unit_test(text_that_is_not_one_object_is_refused),
+        cmocka_unit_test(light_code_has_3_27_or_30_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

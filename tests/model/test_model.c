@@ -1,0 +1,204 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/model.h"
+
+/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const char *const files[] = {"table1-1", "table1-2", "table1-3", "table1-4", "table1-5",
+                                    "table1-6", "table1-7", "table1-8", "table1-9", "merlin-point"};
+enum { FILES = sizeof files / sizeof *files };
+
+static void read_config(const char *name, model_config *c)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/configs/%s.json", MERLIN_SOURCE_DIR, name);
+    if (model_config_read(path, c) != OK) fail_msg("%s", status_message());
+}
+
+static nn_program *compile(const model_config *c, model_part part, nn_purpose purpose, int size, nn_params **params)
+{
+    nn_graph *g;
+    nn_program *p = NULL;
+    nn_options options = {.batch = 1, .height = size, .width = size, .type = NN_FLOAT32, .purpose = purpose};
+    status s = model_build(c, part, &g);
+    if (s == OK && !*params) s = nn_params_new(g, 7, params);
+    if (s == OK) s = nn_compile(g, *params, &options, &p);
+    if (s != OK) fail_msg("%s: %s", c->name, status_message());
+    nn_graph_free(g);
+    return p;
+}
+
+static void fill(float *data, size_t n, float value)
+{
+    for (size_t i = 0; i < n; i++)
+        data[i] = value;
+}
+
+static void every_row_of_table_1_compiles_for_training(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < FILES; i++) {
+        model_config c;
+        read_config(files[i], &c);
+        nn_params *params = NULL;
+        nn_program *p = compile(&c, MODEL_TRAINING, NN_TRAIN, 64, &params);
+        fill(nn_input_data(p, "mask"), 64 * 64, 1);
+        fill(nn_input_data(p, "loss_mask"), 64 * 64, 1);
+        assert_int_equal(nn_forward(p), OK);
+        assert_int_equal(nn_backward(p), OK);
+        assert_true(isfinite(nn_total_loss(p)));
+        assert_true(isnan(nn_loss(p, "indirect")) == !c.global_illumination);
+        nn_program_free(p);
+        nn_params_free(params);
+    }
+}
+
+static void every_row_of_table_1_speaks_the_fixed_names(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < FILES; i++) {
+        model_config c;
+        read_config(files[i], &c);
+        nn_params *params = NULL;
+        nn_program *p = compile(&c, MODEL_WHOLE, NN_INFER, 64, &params);
+        static const char *const always[] = {"albedo", "normal", "roughness", "depth", "direct", "relit_brdf"};
+        assert_int_equal(nn_forward(p), OK);
+        for (int k = 0; k < 6; k++)
+            assert_non_null(nn_output_data(p, always[k]));
+        assert_true((nn_output_data(p, "indirect") != NULL) == c.global_illumination);
+        assert_true((nn_output_data(p, "relit_direct") != NULL) == (c.relight == MODEL_RELIGHT_NETWORK));
+        assert_true((nn_input_data(p, "light") != NULL) == (c.relight == MODEL_RELIGHT_NETWORK));
+        nn_program_free(p);
+        nn_params_free(params);
+    }
+}
+
+static void rows_of_table_1_differ_in_the_papers_switches(void **unused)
+{
+    (void)unused;
+    model_config c[10];
+    for (int i = 0; i < 9; i++)
+        read_config(files[i], &c[i + 1]);
+    for (int i = 1; i <= 9; i++) {
+        assert_int_equal(c[i].input_global, i != 6);
+        assert_int_equal(c[i].material_decoders, i == 8 ? 4 : 1);
+        assert_int_equal(c[i].feature_sharing, i == 2 || i >= 6);
+        assert_int_equal(c[i].gated_attention, i == 3 || i >= 5);
+        assert_int_equal(c[i].relight, i == 5 ? MODEL_RELIGHT_BRDF : MODEL_RELIGHT_NETWORK);
+        assert_int_equal(c[i].global_illumination, i == 4 || i == 5 || i >= 8);
+    }
+}
+
+/* The budget of the project: 12 M parameters and 10 GMAC at 256×256 for everything together. */
+static void default_model_keeps_the_budget(void **unused)
+{
+    (void)unused;
+    model_config c;
+    read_config("merlin-point", &c);
+    nn_params *params = NULL;
+    nn_program *p = compile(&c, MODEL_WHOLE, NN_INFER, 256, &params);
+    nn_cost cost = nn_program_cost(p);
+    double gmac = cost.forward_flops / 2e9;
+    print_message("%.2f M parameters, %.2f GMAC at 256x256\n", (double)cost.parameter_count / 1e6, gmac);
+    assert_true(cost.parameter_count <= 12000000);
+    assert_true(gmac <= 10);
+    assert_true(gmac >= 1); /* a cost of nothing would keep any budget */
+    nn_program_free(p);
+    nn_params_free(params);
+}
+
+/* The same weights through MODEL_INDIRECT give what the whole model gives for the same maps. */
+static void indirect_part_equals_the_whole_models(void **unused)
+{
+    (void)unused;
+    enum { SIZE = 64, PIXELS = SIZE * SIZE };
+    model_config c;
+    read_config("merlin-point", &c);
+    nn_params *params = NULL;
+    nn_program *whole = compile(&c, MODEL_WHOLE, NN_INFER, SIZE, &params);
+    nn_program *part = compile(&c, MODEL_INDIRECT, NN_INFER, SIZE, &params);
+    float *image = nn_input_data(whole, "image"), *mask = nn_input_data(whole, "mask");
+    for (int i = 0; i < 3 * PIXELS; i++)
+        image[i] = (float)(i % 17) / 17;
+    for (int i = 0; i < PIXELS; i++)
+        mask[i] = i % SIZE > SIZE / 4;
+    assert_int_equal(nn_forward(whole), OK);
+    static const char *const names[] = {"direct", "albedo", "normal", "roughness", "depth"};
+    static const int channels[] = {3, 3, 3, 1, 1};
+    for (int k = 0; k < 5; k++)
+        memcpy(nn_input_data(part, names[k]), nn_output_data(whole, names[k]),
+               (size_t)channels[k] * PIXELS * sizeof(float));
+    memcpy(nn_input_data(part, "mask"), mask, PIXELS * sizeof(float));
+    assert_int_equal(nn_forward(part), OK);
+    const float *a = nn_output_data(whole, "indirect"), *b = nn_output_data(part, "indirect");
+    float largest = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        assert_float_equal(a[i], b[i], 1e-5); /* the same float32 arithmetic; sums may be ordered otherwise */
+        largest = fmaxf(largest, fabsf(a[i]));
+        if (mask[i / 3] == 0) assert_true(a[i] == 0);
+    }
+    assert_true(largest > 1e-4f);
+    nn_program_free(whole);
+    nn_program_free(part);
+    nn_params_free(params);
+}
+
+static void maps_stay_in_their_ranges(void **unused)
+{
+    (void)unused;
+    enum { SIZE = 64, PIXELS = SIZE * SIZE };
+    model_config c;
+    read_config("merlin-point", &c);
+    nn_params *params = NULL;
+    nn_program *p = compile(&c, MODEL_WHOLE, NN_INFER, SIZE, &params);
+    fill(nn_input_data(p, "image"), 3 * PIXELS, 0.7f);
+    fill(nn_input_data(p, "mask"), PIXELS, 1);
+    assert_int_equal(nn_forward(p), OK);
+    const float *albedo = nn_output_data(p, "albedo"), *normal = nn_output_data(p, "normal");
+    const float *depth = nn_output_data(p, "depth"), *relit = nn_output_data(p, "relit_direct");
+    for (int i = 0; i < PIXELS; i++) {
+        const float *n = normal + 3 * i;
+        assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-4);
+        assert_in_range((int)(depth[i] * 1000), 377, 4000); /* 1 / 2.65 to 1 / 0.25 */
+        for (int k = 0; k < 3; k++) {
+            assert_true(fabsf(albedo[3 * i + k]) <= 1);
+            assert_true(relit[3 * i + k] >= 0 && relit[3 * i + k] <= 1);
+        }
+    }
+    nn_program_free(p);
+    nn_params_free(params);
+}
+
+static void image_is_encoded_as_square_root(void **unused)
+{
+    (void)unused;
+    const float linear[] = {-1, 0, 0.25f, 1, 3};
+    float encoded[5];
+    model_encode_image(linear, encoded, 5);
+    const float expected[] = {0, 0, 0.5f, 1, 1};
+    for (int i = 0; i < 5; i++)
+        assert_true(encoded[i] == expected[i]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_row_of_table_1_compiles_for_training),
+        cmocka_unit_test(every_row_of_table_1_speaks_the_fixed_names),
+        cmocka_unit_test(rows_of_table_1_differ_in_the_papers_switches),
+        cmocka_unit_test(default_model_keeps_the_budget),
+        cmocka_unit_test(indirect_part_equals_the_whole_models),
+        cmocka_unit_test(maps_stay_in_their_ranges),
+        cmocka_unit_test(image_is_encoded_as_square_root),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
