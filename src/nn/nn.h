@@ -10,9 +10,9 @@
  *     memcpy(nn_input_data(p, "image"), ...); nn_forward(p); use(nn_output_data(p, "features"));
  *
  * Activations are N×H×W×C (channels last) everywhere, on the device and at its edges. A node's precision is either
- * `float` (float32) or `compute` (the program's type: float32 or bfloat16); nn_compute and nn_float convert. Convolution,
- * transposed convolution, fully connected and batch norm run in compute; the rendering layer, vector normalization, and
- * losses need float; every other operation follows its input.
+ * `float` (float32) or `compute` (the program's type: float32 or bfloat16); nn_compute and nn_float convert.
+ * Convolution, transposed convolution, fully connected and batch norm run in compute; the rendering layer, vector
+ * normalization, and losses need float; every other operation follows its input.
  *
  * Builder functions return NULL after an error and take NULL quietly, so that a model is written without checks in
  * between; nn_compile and nn_params_new report the first error. Nodes are owned by their graph. */
@@ -47,8 +47,8 @@ void nn_output(nn_graph *g, nn_node *x, const char *name);
 nn_node *nn_compute(nn_graph *g, nn_node *x);
 nn_node *nn_float(nn_graph *g, nn_node *x);
 
-/* Parameters `name.weight` (out × in × k × k, like PyTorch) and `name.bias`. Padding keeps size/stride: (k - 1)/2 before,
- * the rest behind. */
+/* Parameters `name.weight` (out × in × k × k, like PyTorch) and `name.bias`. Padding keeps size/stride: (k - 1)/2
+ * before, the rest behind. */
 nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias);
 /* 4×4 stride 2 padding 1: doubles the size. `name.weight` is in × out × 4 × 4, like PyTorch. */
 nn_node *nn_conv_transpose2d(nn_graph *g, nn_node *x, const char *name, int out, nn_bias bias);
@@ -108,8 +108,8 @@ typedef struct nn_param {
     int rank;
     int64_t shape[4];
     size_t count;
-    float *value;    /* float32 master */
-    float *gradient; /* filled by nn_backward; NULL for running statistics */
+    float *value;              /* float32 master */
+    float *gradient;           /* filled by nn_backward; NULL for running statistics */
     float learning_rate_scale; /* multiplies Adam's rate; 1 unless nn_params_scale_rate said otherwise */
 } nn_param;
 nn_param *nn_params_at(nn_params *params, size_t i);
@@ -126,8 +126,8 @@ status nn_params_load(nn_params *params, const char *path);
 
 typedef enum nn_type { NN_FLOAT32, NN_BFLOAT16 } nn_type;
 typedef enum nn_purpose {
-    NN_INFER,    /* batch norm by running statistics, folded into the convolution before it */
-    NN_TRAIN,    /* batch statistics; nn_backward works */
+    NN_INFER, /* batch norm by running statistics, folded into the convolution before it */
+    NN_TRAIN, /* batch statistics; nn_backward works */
 } nn_purpose;
 typedef struct nn_options {
     int batch, height, width;
@@ -151,7 +151,8 @@ float nn_loss(const nn_program *p, const char *name);
 float nn_total_loss(const nn_program *p);
 
 typedef struct nn_cost {
-    double forward_flops, backward_flops; /* of convolutions and fully connected layers, 2 per multiply-add, whole batch */
+    double forward_flops,
+        backward_flops; /* of convolutions and fully connected layers, 2 per multiply-add, whole batch */
     size_t activation_bytes, workspace_bytes, parameter_bytes;
     size_t parameter_count;
 } nn_cost;

@@ -11,19 +11,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "nn/nn.h"
+#include "nn/tensor.h"
 
 enum { CPU_MAX_CHANNELS = 2048 }; /* the widest tensor these loops take: their buffers live on the stack */
 
-typedef struct cpu_tensor {
-    void *data;
-    nn_type type;
-    int n, h, w, c;
-} cpu_tensor;
+typedef nn_tensor cpu_tensor;
 
 static inline size_t cpu_count(const cpu_tensor *t)
 {
-    return (size_t)t->n * (size_t)t->h * (size_t)t->w * (size_t)t->c;
+    return tensor_count(t);
 }
 
 /* y = x, converting type; with accumulate y += x. Also the backward of a conversion. */

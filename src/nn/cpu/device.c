@@ -1,0 +1,77 @@
+/* The CPU as a device: oneDNN for convolutions, OpenMP loops for the rest. */
+#include <stdlib.h>
+#include <string.h>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
+#include "nn/cpu/dnn.h"
+#include "nn/cpu/kernels.h"
+#include "nn/cpu/steps.h"
+
+void *cpu_allocate(size_t bytes)
+{
+    bytes = (bytes + 64) / 64 * 64;
+    void *memory = aligned_alloc(64, bytes);
+    if (memory) memset(memory, 0, bytes);
+    return memory;
+}
+
+static nn_type usable_type(nn_type wanted)
+{
+    unsigned isa = (unsigned)dnnl_get_effective_cpu_isa(), needed = (unsigned)dnnl_cpu_isa_avx512_core;
+    return (isa & needed) == needed ? wanted : NN_FLOAT32;
+}
+
+static status create(nn_step *step)
+{
+    if (op_is_conv(step->op)) return conv_create(step);
+    if (step->op == OP_NORM) return norm_create(step);
+    return kernel_create(step);
+}
+
+/* Denormal numbers cost a hundred times their worth: every compute thread takes them for zero during a run. */
+static void begin(void *p)
+{
+#ifdef __SSE__
+    dnn_context *context = p;
+    context->control = _mm_getcsr();
+#pragma omp parallel
+    _mm_setcsr(_mm_getcsr() | 0x8040u); /* flush to zero, denormals are zero */
+#else
+    (void)p;
+#endif
+}
+
+static void end(void *p)
+{
+#ifdef __SSE__
+    const dnn_context *context = p;
+    _mm_setcsr(context->control);
+#else
+    (void)p;
+#endif
+}
+
+static void convert(const nn_tensor *from, nn_tensor *to)
+{
+    cpu_cast(from, to, false);
+}
+
+const nn_device *cpu_device(void)
+{
+    static const nn_device device = {
+        .name = "cpu",
+        .usable_type = usable_type,
+        .open = dnn_open,
+        .close = dnn_close,
+        .create = create,
+        .allocate = cpu_allocate,
+        .release = free,
+        .begin = begin,
+        .end = end,
+        .convert = convert,
+        .measure_peak = cpu_measure_peak,
+    };
+    return &device;
+}

@@ -1,0 +1,366 @@
+/* Convolutions by oneDNN.
+ *
+ * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
+ * layout and type it asked for, made anew after every change. Batch norm by running statistics is folded into weights
+ * and bias: w' = w γ/√(σ² + ε), b' = β + (b - μ) γ/√(σ² + ε). */
+#include <math.h>
+#include <stdlib.h>
+
+#include "nn/cpu/dnn.h"
+#include "nn/cpu/kernels.h"
+#include "nn/cpu/norm.h"
+#include "nn/cpu/steps.h"
+
+typedef struct conv {
+    dnn_call forward, data, weights;
+    dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
+    dnnl_memory_desc_t plain;                /* the float32 weights */
+    float *folded_weight, *folded_bias;
+    void *forward_weights, *data_weights, *weight_gradient;
+    bool has_bias;
+} conv;
+
+/* Strides and padding: (k - 1)/2 before, the rest behind (transposed convolution: 1 and 1). */
+typedef struct geometry {
+    dnnl_dims_t strides, before, behind;
+} geometry;
+
+static geometry geometry_of(const nn_step *step)
+{
+    int k = step->at.kernel, stride = step->at.stride, before = (k - 1) / 2, behind = k - stride - before;
+    if (behind < 0) behind = 0; /* a kernel smaller than its stride leaves pixels out */
+    return (geometry){{stride, stride}, {before, before}, {behind, behind}};
+}
+
+static dnnl_memory_desc_t weights_layout(const nn_step *step)
+{
+    int64_t in = step->in[0].c, out = step->out.c, k = step->at.kernel;
+    dnnl_memory_desc_t layout;
+    const dnnl_dims_t size = {out, in, k, k};
+    const dnnl_dims_t conv_strides = {in * k * k, k * k, k, 1}, deconv_strides = {k * k, out * k * k, k, 1};
+    dnnl_memory_desc_init_by_strides(&layout, 4, size, dnnl_f32, step->op == OP_DECONV ? deconv_strides : conv_strides);
+    return layout;
+}
+
+static dnnl_memory_desc_t any_weights(const nn_step *step, nn_type type)
+{
+    dnnl_memory_desc_t layout;
+    const dnnl_dims_t size = {step->out.c, step->in[0].c, step->at.kernel, step->at.kernel};
+    dnnl_memory_desc_init_by_tag(&layout, 4, size, dnn_type(type), dnnl_format_tag_any);
+    return layout;
+}
+
+static dnnl_memory_desc_t bias_layout(const nn_step *step)
+{
+    dnnl_memory_desc_t layout;
+    const dnnl_dims_t size = {step->out.c};
+    dnnl_memory_desc_init_by_tag(&layout, 1, size, dnnl_f32, dnnl_a);
+    return layout;
+}
+
+static status describe_forward(nn_step *step, conv *state)
+{
+    geometry g = geometry_of(step);
+    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), w = any_weights(step, step->compute),
+                       b = bias_layout(step), y = dnn_activation(&step->out, step->out.type);
+    dnnl_prop_kind_t kind = step->train ? dnnl_forward_training : dnnl_forward_inference;
+    const dnnl_memory_desc_t *bias = state->has_bias ? &b : NULL;
+    dnnl_convolution_desc_t descriptor; /* the same type as dnnl_deconvolution_desc_t */
+    dnnl_status_t code = step->op == OP_DECONV
+                             ? dnnl_deconvolution_forward_desc_init(&descriptor, kind, dnnl_deconvolution_direct, &x,
+                                                                    &w, bias, &y, g.strides, g.before, g.behind)
+                             : dnnl_convolution_forward_desc_init(&descriptor, kind, dnnl_convolution_direct, &x, &w,
+                                                                  bias, &y, g.strides, g.before, g.behind);
+    status s = dnn_check(code, "convolution");
+    return s == OK ? dnn_describe(&state->forward, step->context, &descriptor, step->relu, NULL) : s;
+}
+
+/* The forward primitive that oneDNN wants as a hint for backward: without float32 output and post-operations. */
+static status describe_hint(nn_step *step, dnn_call *hint)
+{
+    nn_step bare = *step;
+    conv state = {.has_bias = step->at.bias};
+    bare.relu = false;
+    bare.out.type = step->compute;
+    status s = describe_forward(&bare, &state);
+    *hint = state.forward;
+    return s;
+}
+
+static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
+{
+    geometry g = geometry_of(step);
+    dnnl_memory_desc_t dx = dnn_activation(&step->in[0], step->compute), w = any_weights(step, step->compute),
+                       dy = dnn_activation(&step->out, step->compute);
+    dnnl_convolution_desc_t descriptor;
+    dnnl_status_t code = step->op == OP_DECONV
+                             ? dnnl_deconvolution_backward_data_desc_init(&descriptor, dnnl_deconvolution_direct, &dx,
+                                                                          &w, &dy, g.strides, g.before, g.behind)
+                             : dnnl_convolution_backward_data_desc_init(&descriptor, dnnl_convolution_direct, &dx, &w,
+                                                                        &dy, g.strides, g.before, g.behind);
+    status s = dnn_check(code, "convolution backward data");
+    return s == OK ? dnn_describe(&state->data, step->context, &descriptor, false, hint) : s;
+}
+
+static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
+{
+    geometry g = geometry_of(step);
+    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), dw = any_weights(step, NN_FLOAT32),
+                       db = bias_layout(step), dy = dnn_activation(&step->out, step->compute);
+    const dnnl_memory_desc_t *bias = state->has_bias ? &db : NULL;
+    dnnl_convolution_desc_t descriptor;
+    dnnl_status_t code =
+        step->op == OP_DECONV
+            ? dnnl_deconvolution_backward_weights_desc_init(&descriptor, dnnl_deconvolution_direct, &x, &dw, bias, &dy,
+                                                            g.strides, g.before, g.behind)
+            : dnnl_convolution_backward_weights_desc_init(&descriptor, dnnl_convolution_direct, &x, &dw, bias, &dy,
+                                                          g.strides, g.before, g.behind);
+    status s = dnn_check(code, "convolution backward weights");
+    return s == OK ? dnn_describe(&state->weights, step->context, &descriptor, false, hint) : s;
+}
+
+static size_t align64(size_t bytes)
+{
+    return (bytes + 63) / 64 * 64;
+}
+
+/* Bytes of the output's gradient once it is in the compute type and masked by the fused ReLU; 0 if it already is. */
+static size_t prepared_bytes(const nn_step *step)
+{
+    if (!step->relu && step->out_gradient.type == step->compute) return 0;
+    nn_tensor t = step->out;
+    t.type = step->compute;
+    return align64(tensor_bytes(&t));
+}
+
+static size_t own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
+{
+    size_t bytes = dnnl_memory_desc_get_size(layout);
+    *memory = cpu_allocate(bytes);
+    step->own_bytes += bytes;
+    return bytes;
+}
+
+static status describe_backward(nn_step *step, conv *state)
+{
+    dnn_call hint = {0};
+    status s = describe_hint(step, &hint);
+    if (s == OK && step->wants[0]) s = describe_data(step, state, &hint);
+    if (s == OK) s = describe_weights(step, state, &hint);
+    dnn_release(&hint);
+    if (s != OK) return s;
+    own(step, &state->weight_gradient, dnn_query(&state->weights, dnnl_query_diff_weights_md));
+    if (step->wants[0]) own(step, &state->data_weights, dnn_query(&state->data, dnnl_query_weights_md));
+    if (!state->weight_gradient || (step->wants[0] && !state->data_weights))
+        return fail(ERROR_MEMORY, "no memory for weights");
+    size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
+    /* prepared gradient, unaccumulated gradient of the input, oneDNN's own */
+    step->backward_scratch =
+        prepared_bytes(step) + align64(tensor_bytes(&step->in[0])) + (data > weights ? data : weights);
+    return OK;
+}
+
+static void conv_release(nn_step *step)
+{
+    conv *state = step->state;
+    dnn_call *calls[] = {&state->forward, &state->data,         &state->weights,
+                         &state->convert, &state->convert_back, &state->collect};
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
+        dnn_release(calls[i]);
+    free(state->folded_weight);
+    free(state->folded_bias);
+    free(state->forward_weights);
+    free(state->data_weights);
+    free(state->weight_gradient);
+    free(state);
+}
+
+static float *bias_data(const nn_step *step)
+{
+    const conv *state = step->state;
+    return state->folded_bias ? state->folded_bias : step->params.bias->value;
+}
+
+static status bind_forward(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->forward;
+    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), b = bias_layout(step),
+                       y = dnn_activation(&step->out, step->out.type);
+    const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
+    float *master = state->folded_weight ? state->folded_weight : step->params.weight->value;
+    status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
+    if (s == OK && state->has_bias) s = dnn_argument(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DST, &y, step->out.data);
+    if (s == OK) s = dnn_make(call, step->forward_space, context);
+    if (s == OK) s = dnn_make_reorder(&state->convert, context, &state->plain, master, w, state->forward_weights);
+    return s;
+}
+
+/* Places in the backward scratch. */
+static char *prepared_place(const nn_step *step)
+{
+    return step->backward_space;
+}
+
+static char *unaccumulated_place(const nn_step *step)
+{
+    return prepared_place(step) + prepared_bytes(step);
+}
+
+static char *library_place(const nn_step *step)
+{
+    return unaccumulated_place(step) + align64(tensor_bytes(&step->in[0]));
+}
+
+static void *gradient_place(const nn_step *step)
+{
+    return prepared_bytes(step) ? prepared_place(step) : step->out_gradient.data;
+}
+
+static status bind_data(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->data;
+    dnnl_memory_desc_t dx = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute);
+    const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
+    void *target = step->accumulate[0] ? unaccumulated_place(step) : step->in_gradient[0].data;
+    status s = dnn_argument(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->data_weights);
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_SRC, &dx, target);
+    if (s == OK) s = dnn_make(call, library_place(step), context);
+    if (s == OK)
+        s = dnn_make_reorder(&state->convert_back, context, &state->plain, step->params.weight->value, w,
+                             state->data_weights);
+    return s;
+}
+
+static status bind_weights(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->weights;
+    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute),
+                       db = bias_layout(step);
+    const dnnl_memory_desc_t *dw = dnn_query(call, dnnl_query_diff_weights_md);
+    status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_WEIGHTS, dw, state->weight_gradient);
+    if (s == OK && state->has_bias)
+        s = dnn_argument(call, context, DNNL_ARG_DIFF_BIAS, &db, step->params.bias->gradient);
+    if (s == OK) s = dnn_make(call, library_place(step), context);
+    if (s == OK)
+        s = dnn_make_reorder(&state->collect, context, dw, state->weight_gradient, &state->plain,
+                             step->params.weight->gradient);
+    return s;
+}
+
+static status conv_bind(nn_step *step)
+{
+    conv *state = step->state;
+    status s = bind_forward(step, state);
+    if (s == OK && step->backs && step->wants[0]) s = bind_data(step, state);
+    if (s == OK && step->backs) s = bind_weights(step, state);
+    return s;
+}
+
+static void fold(const nn_step *step)
+{
+    const conv *state = step->state;
+    int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
+    bool transposed = step->op == OP_DECONV;
+    for (int o = 0; o < out; o++) {
+        float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
+        float bias = step->params.bias ? step->params.bias->value[o] : 0;
+        state->folded_bias[o] = step->folded.bias->value[o] + (bias - step->folded.running_mean->value[o]) * factor;
+        for (int i = 0; i < in; i++) {
+            size_t at = (size_t)(transposed ? i * out + o : o * in + i) * (size_t)taps;
+            for (int t = 0; t < taps; t++)
+                state->folded_weight[at + (size_t)t] = step->params.weight->value[at + (size_t)t] * factor;
+        }
+    }
+}
+
+static status conv_refresh(nn_step *step)
+{
+    conv *state = step->state;
+    if (step->folded.weight) fold(step);
+    status s = dnn_run(&state->convert, step->context);
+    if (s == OK && state->convert_back.primitive) s = dnn_run(&state->convert_back, step->context);
+    return s;
+}
+
+static status conv_forward(nn_step *step)
+{
+    conv *state = step->state;
+    return dnn_run(&state->forward, step->context);
+}
+
+status conv_backward_data(nn_step *step)
+{
+    conv *state = step->state;
+    status s = dnn_run(&state->data, step->context);
+    if (s != OK || !step->accumulate[0]) return s;
+    nn_tensor fresh = step->in_gradient[0];
+    fresh.data = unaccumulated_place(step);
+    cpu_cast(&fresh, &step->in_gradient[0], true);
+    return OK;
+}
+
+status conv_backward_weights(nn_step *step)
+{
+    conv *state = step->state;
+    status s = dnn_run(&state->weights, step->context);
+    return s == OK ? dnn_run(&state->collect, step->context) : s;
+}
+
+static status conv_backward(nn_step *step)
+{
+    if (prepared_bytes(step)) {
+        nn_tensor prepared = step->out;
+        prepared.data = prepared_place(step);
+        prepared.type = step->compute;
+        if (step->relu)
+            cpu_relu_backward(&step->out, &step->out_gradient, &prepared, false);
+        else
+            cpu_cast(&step->out_gradient, &prepared, false);
+    }
+    status s = conv_backward_weights(step);
+    return s == OK && step->wants[0] ? conv_backward_data(step) : s;
+}
+
+static void count_flops(nn_step *step)
+{
+    const nn_tensor *x = &step->in[0], *y = &step->out;
+    double pixels = (double)y->n * y->h * y->w;
+    if (step->op == OP_DECONV) pixels = (double)x->n * x->h * x->w;
+    step->forward_flops = 2 * pixels * x->c * y->c * step->at.kernel * step->at.kernel;
+    if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
+}
+
+static status allocate_folded(nn_step *step, conv *state)
+{
+    state->folded_weight = calloc(step->params.weight->count, sizeof(float));
+    state->folded_bias = calloc((size_t)step->out.c, sizeof(float));
+    step->own_bytes += (step->params.weight->count + (size_t)step->out.c) * sizeof(float);
+    return state->folded_weight && state->folded_bias ? OK : fail(ERROR_MEMORY, "no memory for weights");
+}
+
+status conv_create(nn_step *step)
+{
+    static const step_functions functions = {conv_bind, conv_refresh, conv_forward, conv_backward, conv_release};
+    conv *state = calloc(1, sizeof *state);
+    if (!state) return fail(ERROR_MEMORY, "no memory for a convolution");
+    step->run = &functions;
+    step->state = state;
+    state->has_bias = step->at.bias || step->folded.weight;
+    state->plain = weights_layout(step);
+    count_flops(step);
+    status s = step->folded.weight ? allocate_folded(step, state) : OK;
+    if (s == OK) s = describe_forward(step, state);
+    if (s != OK) return s;
+    own(step, &state->forward_weights, dnn_query(&state->forward, dnnl_query_weights_md));
+    if (!state->forward_weights) return fail(ERROR_MEMORY, "no memory for weights");
+    step->forward_scratch = dnn_scratch_bytes(&state->forward);
+    return step->backs ? describe_backward(step, state) : OK;
+}

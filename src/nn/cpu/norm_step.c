@@ -1,0 +1,89 @@
+/* Batch norm as a step: batch statistics in training, running ones otherwise. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "nn/cpu/norm.h"
+#include "nn/cpu/steps.h"
+
+typedef struct norm {
+    float *mean, *variance, *inverse_deviation, *scale, *shift; /* per channel, in one block */
+    float *partial;
+} norm;
+
+static void prepare(const nn_step *step, const float *mean, const float *variance)
+{
+    const norm *state = step->state;
+    for (int i = 0; i < step->out.c; i++) {
+        state->inverse_deviation[i] = 1 / sqrtf(variance[i] + NORM_EPSILON);
+        state->scale[i] = step->params.weight->value[i] * state->inverse_deviation[i];
+        state->shift[i] = step->params.bias->value[i] - mean[i] * state->scale[i];
+    }
+}
+
+/* As PyTorch does: the running variance takes the unbiased one. */
+static void update_running(const nn_step *step)
+{
+    const norm *state = step->state;
+    double count = (double)step->out.n * step->out.h * step->out.w;
+    float unbiased = count > 1 ? (float)(count / (count - 1)) : 1;
+    float *mean = step->params.running_mean->value, *variance = step->params.running_var->value;
+    for (int i = 0; i < step->out.c; i++) {
+        mean[i] += NORM_MOMENTUM * (state->mean[i] - mean[i]);
+        variance[i] += NORM_MOMENTUM * (unbiased * state->variance[i] - variance[i]);
+    }
+}
+
+static status norm_forward(nn_step *step)
+{
+    norm *state = step->state;
+    if (step->train) {
+        norm_statistics(&step->in[0], state->partial, state->mean, state->variance);
+        prepare(step, state->mean, state->variance);
+        update_running(step);
+    } else {
+        prepare(step, step->params.running_mean->value, step->params.running_var->value);
+    }
+    norm_apply(&step->in[0], state->scale, state->shift, step->relu, &step->out);
+    return OK;
+}
+
+static status norm_backward_step(nn_step *step)
+{
+    norm *state = step->state;
+    const norm_channels channels = {state->mean,
+                                    state->inverse_deviation,
+                                    step->params.weight->value,
+                                    step->params.bias->value,
+                                    step->params.weight->gradient,
+                                    step->params.bias->gradient};
+    norm_backward(&step->in[0], &step->out_gradient, step->relu, &channels, state->partial,
+                  step->wants[0] ? &step->in_gradient[0] : NULL, step->accumulate[0]);
+    return OK;
+}
+
+static void norm_release(nn_step *step)
+{
+    norm *state = step->state;
+    free(state->mean);
+    free(state);
+}
+
+status norm_create(nn_step *step)
+{
+    static const step_functions functions = {
+        .forward = norm_forward, .backward = norm_backward_step, .release = norm_release};
+    norm *state = calloc(1, sizeof *state);
+    if (!state) return fail(ERROR_MEMORY, "no memory for batch norm");
+    step->run = &functions;
+    step->state = state;
+    size_t c = (size_t)step->out.c, count = 5 * c + norm_partial_floats(step->out.c);
+    state->mean = calloc(count, sizeof(float));
+    if (!state->mean) return fail(ERROR_MEMORY, "no memory for batch norm");
+    step->own_bytes = count * sizeof(float);
+    state->variance = state->mean + c;
+    state->inverse_deviation = state->variance + c;
+    state->scale = state->inverse_deviation + c;
+    state->shift = state->scale + c;
+    state->partial = state->shift + c;
+    return OK;
+}

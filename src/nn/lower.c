@@ -1,0 +1,157 @@
+/* Shapes, live nodes, fusion and the flow of gradients. */
+#include "nn/lower.h"
+
+#include <stdlib.h>
+
+enum { SIZE_LIMIT = 1 << 15 };
+
+int lower_resolve(nn_type compute, const nn_node *x)
+{
+    while (compute == NN_FLOAT32 && (x->op == OP_COMPUTE || x->op == OP_FLOAT))
+        x = x->in[0];
+    return x->index;
+}
+
+static status check_options(const nn_options *o)
+{
+    if (o->batch < 1 || o->height < 1 || o->width < 1 || o->batch > SIZE_LIMIT || o->height > SIZE_LIMIT ||
+        o->width > SIZE_LIMIT)
+        return fail(ERROR_USAGE, "a program of batch %d, height %d, width %d (1 to %d each)", o->batch, o->height,
+                    o->width, SIZE_LIMIT);
+    return OK;
+}
+
+static status infer_shape(const nn_options *o, value *v)
+{
+    const nn_node *node = v->node;
+    v->tensor =
+        (nn_tensor){.type = node->is_float ? NN_FLOAT32 : o->type, .n = o->batch, .h = 1, .w = 1, .c = node->channels};
+    if (node->reduction == NN_VECTOR) return OK;
+    if (o->height % node->reduction || o->width % node->reduction)
+        return fail(ERROR_USAGE, "%s %s works at 1/%d of the size, which %d by %d is not a multiple of",
+                    op_name(node->op), node->name ? node->name : "", node->reduction, o->height, o->width);
+    v->tensor.h = o->height / node->reduction;
+    v->tensor.w = o->width / node->reduction;
+    return OK;
+}
+
+/* Which inputs a gradient flows to. */
+bool lower_passes_gradient(const nn_node *node, int input)
+{
+    if (op_is_loss(node->op)) return input == 0;
+    return node->op != OP_RENDER || input < 4;
+}
+
+static void find_live(lowering *l)
+{
+    const nn_graph *g = l->graph;
+    for (int i = 0; i < g->output_count; i++) {
+        value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
+        v->live = v->is_output = true;
+    }
+    for (int i = g->count - 1; i >= 0; i--) {
+        value *v = &l->values[i];
+        if (op_is_loss(v->node->op)) v->live = true;
+        for (int k = 0; v->live && k < v->node->inputs; k++) {
+            value *x = &l->values[v->in[k]];
+            x->live = true;
+            x->consumers++;
+            if (x->consumer < i) x->consumer = i;
+        }
+    }
+}
+
+static void find_differentiable(lowering *l)
+{
+    if (l->options.purpose != NN_TRAIN) return;
+    int count = l->graph->count;
+    for (int i = 0; i < count; i++) { /* depends on a parameter */
+        value *v = &l->values[i];
+        v->differentiable = op_is_conv(v->node->op) || v->node->op == OP_NORM;
+        for (int k = 0; k < v->node->inputs; k++)
+            if (lower_passes_gradient(v->node, k) && l->values[v->in[k]].differentiable) v->differentiable = true;
+    }
+    for (int i = count - 1; i >= 0; i--) { /* and a loss depends on it */
+        value *v = &l->values[i];
+        if (op_is_loss(v->node->op)) v->reaches_loss = true;
+        for (int k = 0; v->reaches_loss && k < v->node->inputs; k++)
+            if (lower_passes_gradient(v->node, k)) l->values[v->in[k]].reaches_loss = true;
+        v->differentiable = v->differentiable && v->reaches_loss;
+    }
+}
+
+/* The node that alone uses i and has this operation, or -1. */
+static int sole_consumer(const lowering *l, int i, nn_op op)
+{
+    const value *v = &l->values[i];
+    if (v->consumers != 1 || v->is_output) return -1;
+    return l->values[v->consumer].node->op == op ? v->consumer : -1;
+}
+
+/* Extends a step that starts at a convolution or batch norm by what can be computed with it. */
+static void fuse(const lowering *l, lowered_step *step)
+{
+    nn_op op = l->values[step->head].node->op;
+    bool train = l->options.purpose == NN_TRAIN;
+    if (op_is_conv(op) && !train) {
+        step->norm = sole_consumer(l, step->result, OP_NORM);
+        if (step->norm >= 0) step->result = step->norm;
+    }
+    if (op_is_conv(op) || op == OP_NORM) {
+        int relu = sole_consumer(l, step->result, OP_RELU);
+        step->relu = relu >= 0;
+        if (step->relu) step->result = relu;
+    }
+    /* a convolution writes float32 as easily as bfloat16, and that saves a pass; batch norm does not */
+    if (op_is_conv(op) && !(train && step->relu)) {
+        int converted = sole_consumer(l, step->result, OP_FLOAT);
+        if (converted >= 0) step->result = converted;
+    }
+}
+
+static void make_steps(lowering *l)
+{
+    for (int i = 0; i < l->graph->count; i++) {
+        value *v = &l->values[i];
+        if (!v->live || v->covered || v->node->op == OP_INPUT) continue;
+        lowered_step *step = &l->steps[l->step_count];
+        *step = (lowered_step){.head = i, .norm = -1, .result = i};
+        fuse(l, step);
+        for (int k = i; k != step->result; k = l->values[k].consumer)
+            l->values[l->values[k].consumer].covered = true;
+        l->values[step->result].step = l->step_count++;
+    }
+}
+
+status lower_graph(const nn_graph *g, const nn_options *options, lowering *out)
+{
+    *out = (lowering){.graph = g, .options = *options};
+    status s = graph_check(g);
+    if (s == OK) s = check_options(options);
+    if (s != OK) return s;
+    out->values = calloc((size_t)g->count + 1, sizeof *out->values);
+    out->steps = calloc((size_t)g->count + 1, sizeof *out->steps);
+    if (!out->values || !out->steps) s = fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
+    for (int i = 0; s == OK && i < g->count; i++) {
+        value *v = &out->values[i];
+        *v = (value){.node = g->nodes[i], .consumer = -1, .step = -1, .buffer = -1, .gradient_buffer = -1};
+        for (int k = 0; k < v->node->inputs; k++)
+            v->in[k] = lower_resolve(options->type, v->node->in[k]);
+        s = infer_shape(options, v);
+    }
+    if (s != OK) {
+        lowering_free(out);
+        return s;
+    }
+    find_live(out);
+    find_differentiable(out);
+    make_steps(out);
+    return OK;
+}
+
+void lowering_free(lowering *l)
+{
+    free(l->values);
+    free(l->steps);
+    *l = (lowering){0};
+}

@@ -1,0 +1,175 @@
+/* Parameters: float32 masters by name, their first values, their gradients. */
+#include "nn/params.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/rng.h"
+
+enum { PARAMS_PER_NODE = 4, NAME_LIMIT = 256 };
+
+typedef struct param_spec {
+    char name[NAME_LIMIT];
+    int rank;
+    int64_t shape[4];
+    double fan_in; /* 0: constant */
+    float constant;
+    bool trained;
+} param_spec;
+
+static param_spec vector_spec(const nn_node *node, const char *suffix, float constant, bool trained)
+{
+    param_spec spec = {.rank = 1, .shape = {node->channels}, .constant = constant, .trained = trained};
+    snprintf(spec.name, sizeof spec.name, "%s.%s", node->name, suffix);
+    return spec;
+}
+
+static param_spec weight_spec(const nn_node *node)
+{
+    int64_t in = node->in[0]->channels, out = node->channels, k = node->at.kernel;
+    param_spec spec = {.rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true};
+    spec.fan_in = (double)(in * k * k);
+    if (node->op == OP_LINEAR) spec.shape[2] = spec.shape[3] = 0;
+    if (node->op == OP_DECONV) {
+        spec.shape[0] = in;
+        spec.shape[1] = out;
+        /* an output pixel sees one tap in stride² of the kernel */
+        spec.fan_in /= (double)(node->at.stride * node->at.stride);
+    }
+    snprintf(spec.name, sizeof spec.name, "%s.weight", node->name);
+    return spec;
+}
+
+/* Fills specs in the order of node_params; returns how many. */
+static int node_specs(const nn_node *node, param_spec specs[PARAMS_PER_NODE])
+{
+    int count = 0;
+    if (op_is_conv(node->op)) {
+        specs[count++] = weight_spec(node);
+        if (node->at.bias) specs[count++] = vector_spec(node, "bias", 0, true);
+    } else if (node->op == OP_NORM) {
+        specs[count++] = vector_spec(node, "weight", 1, true);
+        specs[count++] = vector_spec(node, "bias", 0, true);
+        specs[count++] = vector_spec(node, "running_mean", 0, false);
+        specs[count++] = vector_spec(node, "running_var", 1, false);
+    }
+    return count;
+}
+
+static uint64_t hash_name(const char *name)
+{
+    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
+    for (; *name; name++)
+        hash = (hash ^ (unsigned char)*name) * 0x100000001b3u;
+    return hash;
+}
+
+static float *new_floats(size_t count)
+{
+    size_t bytes = (count * sizeof(float) + 63) / 64 * 64;
+    float *x = aligned_alloc(64, bytes);
+    if (x) memset(x, 0, bytes);
+    return x;
+}
+
+static status add_param(nn_params *params, const param_spec *spec, uint64_t seed)
+{
+    nn_param *p = &params->items[params->count++];
+    *p = (nn_param){.rank = spec->rank, .count = 1, .learning_rate_scale = 1};
+    memcpy(p->shape, spec->shape, sizeof p->shape);
+    for (int i = 0; i < p->rank; i++)
+        p->count *= (size_t)p->shape[i];
+    p->name = strdup(spec->name);
+    p->value = new_floats(p->count);
+    if (spec->trained) p->gradient = new_floats(p->count);
+    if (!p->name || !p->value || (spec->trained && !p->gradient))
+        return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
+    rng random = rng_at(seed, hash_name(spec->name), 0);
+    float deviation = spec->fan_in > 0 ? (float)sqrt(2 / spec->fan_in) : 0;
+    for (size_t i = 0; i < p->count; i++)
+        p->value[i] = spec->fan_in > 0 ? deviation * rng_normal(&random) : spec->constant;
+    return OK;
+}
+
+status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
+{
+    *out = NULL;
+    status s = graph_check(g);
+    if (s != OK) return s;
+    nn_params *params = calloc(1, sizeof *params);
+    if (params) params->items = calloc((size_t)g->count * PARAMS_PER_NODE + 1, sizeof *params->items);
+    if (!params || !params->items) {
+        nn_params_free(params);
+        return fail(ERROR_MEMORY, "no memory for parameters");
+    }
+    params->version = 1;
+    for (int i = 0; i < g->count; i++) {
+        param_spec specs[PARAMS_PER_NODE];
+        int count = node_specs(g->nodes[i], specs);
+        for (int k = 0; k < count && s == OK; k++)
+            s = add_param(params, &specs[k], seed);
+    }
+    if (s == OK)
+        *out = params;
+    else
+        nn_params_free(params);
+    return s;
+}
+
+void nn_params_free(nn_params *params)
+{
+    if (!params) return;
+    for (size_t i = 0; params->items && i < params->count; i++) {
+        free((void *)params->items[i].name);
+        free(params->items[i].value);
+        free(params->items[i].gradient);
+    }
+    free(params->items);
+    free(params);
+}
+
+size_t nn_params_count(const nn_params *params)
+{
+    return params->count;
+}
+
+nn_param *nn_params_at(nn_params *params, size_t i)
+{
+    return i < params->count ? &params->items[i] : NULL;
+}
+
+nn_param *nn_params_find(nn_params *params, const char *name)
+{
+    for (size_t i = 0; i < params->count; i++)
+        if (strcmp(params->items[i].name, name) == 0) return &params->items[i];
+    return NULL;
+}
+
+void nn_params_scale_rate(nn_params *params, const char *prefix, float scale)
+{
+    for (size_t i = 0; i < params->count; i++)
+        if (strncmp(params->items[i].name, prefix, strlen(prefix)) == 0) params->items[i].learning_rate_scale = scale;
+}
+
+void nn_params_touch(nn_params *params)
+{
+    params->version++;
+}
+
+status params_of_node(nn_params *params, const nn_node *node, node_params *out)
+{
+    param_spec specs[PARAMS_PER_NODE];
+    nn_param **slots[PARAMS_PER_NODE] = {&out->weight, &out->bias, &out->running_mean, &out->running_var};
+    int count = node_specs(node, specs);
+    *out = (node_params){0};
+    for (int k = 0; k < count; k++) {
+        nn_param *p = nn_params_find(params, specs[k].name);
+        if (!p) return fail(ERROR_USAGE, "the parameters lack %s, which the graph needs", specs[k].name);
+        if (p->rank != specs[k].rank || memcmp(p->shape, specs[k].shape, sizeof p->shape) != 0)
+            return fail(ERROR_USAGE, "parameter %s has another shape than the graph's", specs[k].name);
+        *slots[k] = p;
+    }
+    return OK;
+}

@@ -1,0 +1,21 @@
+/* Parameters' inside: what programs need beyond nn.h. Internal to src/nn. */
+#ifndef MERLIN_NN_PARAMS_H
+#define MERLIN_NN_PARAMS_H
+
+#include "nn/graph.h"
+
+struct nn_params {
+    nn_param *items;
+    size_t count;
+    uint64_t version; /* grows whenever values change */
+};
+
+/* The parameters an operation may have; absent ones are NULL. */
+typedef struct node_params {
+    nn_param *weight, *bias, *running_mean, *running_var;
+} node_params;
+
+/* Finds a node's parameters and checks their shapes. */
+status params_of_node(nn_params *params, const nn_node *node, node_params *out);
+
+#endif

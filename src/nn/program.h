@@ -1,0 +1,30 @@
+/* A compiled program: a flat list of steps over one arena. Internal to src/nn. */
+#ifndef MERLIN_NN_PROGRAM_H
+#define MERLIN_NN_PROGRAM_H
+
+#include "nn/device.h"
+
+typedef struct program_port {
+    char *name;
+    nn_tensor device; /* where the program reads or leaves it */
+    float *host;      /* what the caller sees; the same memory where types agree */
+    bool owned;       /* host was allocated for this port */
+} program_port;
+
+struct nn_program {
+    const nn_device *device;
+    void *context;
+    nn_params *params;
+    nn_options options;
+    nn_step *steps; /* in forward order */
+    int step_count;
+    program_port *inputs, *outputs;
+    int input_count, output_count;
+    void *arena;
+    size_t arena_bytes, own_bytes;
+    uint64_t version; /* of the parameters that the steps hold converted copies of */
+    bool *untouched;  /* per parameter: no step writes its gradient */
+    bool forwarded;
+};
+
+#endif
