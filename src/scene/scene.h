@@ -19,13 +19,13 @@ typedef struct scn_material scn_material;
 
 typedef struct scn_object {
     uint32_t vertex_count, triangle_count;
-    vec3 *position;         /* camera space, the object near (0, 0, -1) */
-    vec3 *normal;           /* unit, outward, smooth; camera space */
-    vec3 *reference;        /* where the material is looked up: the undeformed, unposed place of the vertex */
+    vec3 *position;          /* camera space, the object near (0, 0, -1) */
+    vec3 *normal;            /* unit, outward, smooth; camera space */
+    vec3 *reference;         /* where the material is looked up: the undeformed, unposed place of the vertex */
     uint32_t (*triangle)[3]; /* counter-clockwise from outside */
-    uint8_t *part;          /* per triangle: which primitive of the union it belongs to */
+    uint8_t *part;           /* per triangle: which primitive of the union it belongs to */
     scn_material *material;
-    const char *shape;      /* class name, static */
+    const char *shape; /* class name, static */
 } scn_object;
 
 /* What a ray sees at a point of the surface. */
@@ -37,8 +37,8 @@ typedef struct scn_surface {
     real roughness;        /* [0.1, 1] */
 } scn_surface;
 
-/* A random object, posed, filling 25 to 75 % of the frame of a camera with this horizontal field of view (degrees) and a
- * square frame, now and then near its edge. Deterministic from (seed, index). */
+/* A random object, posed, filling 25 to 75 % of the frame of a camera with this horizontal field of view (degrees) and
+ * a square frame, now and then near its edge. Deterministic from (seed, index). */
 status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out);
 
 /* The mesh in an OBJ, PLY or glTF file, scaled and posed at random from (seed, index) like a generated object, with a

@@ -1,0 +1,55 @@
+/* A procedural svBRDF: paints laid over one another, each where its mask says, and relief finer than the mesh. */
+#ifndef MERLIN_SCENE_MATERIAL_H
+#define MERLIN_SCENE_MATERIAL_H
+
+#include "scene/pattern.h"
+#include "scene/scene.h"
+#include "scene/shape.h"
+
+/* One stuff: up to three colours mixed by a pattern, and a roughness that may follow it. */
+typedef struct paint {
+    int colours;
+    vec3 colour[3];
+    pattern mix;             /* used with two or three colours, or where roughness varies */
+    float roughness, spread; /* at the middle of the mix; added over its whole range */
+} paint;
+
+typedef struct layer {
+    uint32_t parts;  /* bit i: lies on part i (modulo 32) */
+    bool everywhere; /* no mask */
+    pattern mask;
+    float opacity;
+    paint paint;
+} layer;
+
+/* Normal detail: height x pattern above the surface, in units of the object's radius. */
+typedef struct bump {
+    uint32_t parts;
+    pattern pattern;
+    float height, step; /* step: how far apart the differences are taken, well under a feature */
+} bump;
+
+enum { LAYERS = 10, BUMPS = 3 };
+
+struct scn_material {
+    int layers, bumps;
+    layer layer[LAYERS];
+    bump bump[BUMPS];
+    bool smudged; /* roughness varies by itself */
+    pattern smudge;
+    float smudge_amount;
+};
+
+/* A random material for this mesh (its parts and references). NULL when memory ran out. */
+scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *traits);
+
+/* Albedo and roughness at a reference point; facing is the reference surface's normal. */
+void material_eval(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, vec3 *albedo,
+                   real *roughness);
+
+/* Height of the normal detail at a reference point moved along a tangent: differences d[0], d[1] of the height a unit
+ * length along the two unit tangents. */
+void material_slope(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, const vec3 tangent[2],
+                    float d[2]);
+
+#endif

@@ -1,0 +1,112 @@
+#include "scene/mesh_file.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/file.h"
+
+enum { TRIANGLE_LIMIT = 5000000 };
+
+static bool known_ending(const char *path)
+{
+    static const char *const ENDINGS[] = {".obj", ".ply", ".gltf", ".glb"};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof ENDINGS / sizeof *ENDINGS; i++)
+        if (strcasecmp(dot, ENDINGS[i]) == 0) return true;
+    return false;
+}
+
+static vec3 from_ai(struct aiVector3D v)
+{
+    return vec3_make((real)v.x, (real)v.y, (real)v.z);
+}
+
+static bool finite_vector(vec3 v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z) && fabsf(v.x) < 1e15f && fabsf(v.y) < 1e15f &&
+           fabsf(v.z) < 1e15f;
+}
+
+static status add_mesh(scn_mesh *mesh, const struct aiMesh *from, vec3 *normal, uint8_t part)
+{
+    uint32_t first = mesh->vertex_count;
+    for (unsigned i = 0; i < from->mNumVertices; i++) {
+        vec3 p = from_ai(from->mVertices[i]);
+        if (!finite_vector(p)) return fail(ERROR_INPUT, "a vertex that is not finite");
+        if (normal) normal[mesh->vertex_count] = vec3_normalize(from_ai(from->mNormals[i]));
+        mesh_add_vertex(mesh, p);
+    }
+    for (unsigned i = 0; i < from->mNumFaces; i++) {
+        const struct aiFace *f = &from->mFaces[i];
+        if (f->mNumIndices != 3) continue;
+        const unsigned *v = f->mIndices;
+        if (v[0] >= from->mNumVertices || v[1] >= from->mNumVertices || v[2] >= from->mNumVertices)
+            return fail(ERROR_INPUT, "a face of vertices that are not there");
+        mesh_add_triangle(mesh, first + v[0], first + v[1], first + v[2], part);
+    }
+    return mesh->failed ? fail(ERROR_MEMORY, "no memory for the mesh") : OK;
+}
+
+/* Turns all triangles when the surface winds inward: against the file's normals, or around a negative volume. */
+static void wind_outward(scn_mesh *mesh)
+{
+    double outward = 0;
+    mesh_normalize(mesh); /* centred, so that an open surface's volume has a sensible sign */
+    for (uint32_t i = 0; mesh->normal && i < mesh->triangle_count; i++) {
+        const uint32_t *t = mesh->triangle[i];
+        vec3 a = mesh->position[t[0]];
+        vec3 n = vec3_cross(vec3_sub(mesh->position[t[1]], a), vec3_sub(mesh->position[t[2]], a));
+        outward += (double)vec3_dot(n, vec3_add(vec3_add(mesh->normal[t[0]], mesh->normal[t[1]]), mesh->normal[t[2]]));
+    }
+    if (outward == 0) outward = mesh_signed_volume(mesh);
+    for (uint32_t i = 0; outward < 0 && i < mesh->triangle_count; i++) {
+        uint32_t *t = mesh->triangle[i], swap = t[1];
+        t[1] = t[2];
+        t[2] = swap;
+    }
+}
+
+static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts)
+{
+    size_t vertices = 0, faces = 0;
+    bool normals = true;
+    for (unsigned i = 0; i < scene->mNumMeshes; i++) {
+        vertices += scene->mMeshes[i]->mNumVertices;
+        faces += scene->mMeshes[i]->mNumFaces;
+        normals &= scene->mMeshes[i]->mNormals != NULL;
+    }
+    if (faces == 0) return fail(ERROR_INPUT, "no triangles in it");
+    if (faces > TRIANGLE_LIMIT) return fail(ERROR_INPUT, "%zu triangles; at most %d", faces, TRIANGLE_LIMIT);
+    vec3 *normal = normals ? malloc(vertices * sizeof *normal) : NULL;
+    if (normals && !normal) return fail(ERROR_MEMORY, "no memory for the mesh");
+    status s = OK;
+    for (unsigned i = 0; i < scene->mNumMeshes && s == OK; i++)
+        s = add_mesh(mesh, scene->mMeshes[i], normal, (uint8_t)(i % 32));
+    mesh->normal = normal;
+    *parts = scene->mNumMeshes < 32 ? (int)scene->mNumMeshes : 32;
+    if (s == OK) wind_outward(mesh);
+    return s;
+}
+
+status mesh_read(const char *path, scn_mesh *mesh, int *parts)
+{
+    if (!file_exists(path)) return fail(ERROR_INPUT, "no such file");
+    if (!known_ending(path)) return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
+    struct aiPropertyStore *settings = aiCreatePropertyStore();
+    if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");
+    aiSetImportPropertyInteger(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const struct aiScene *scene =
+        aiImportFileExWithProperties(path,
+                                     aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                         aiProcess_PreTransformVertices | aiProcess_SortByPType,
+                                     NULL, settings);
+    aiReleasePropertyStore(settings);
+    if (!scene) return fail(ERROR_INPUT, "cannot read the mesh: %s", aiGetErrorString());
+    status s = take_scene(scene, mesh, parts);
+    aiReleaseImport(scene);
+    return s;
+}

@@ -1,0 +1,70 @@
+#include "scene/palette.h"
+
+static float decode(float x)
+{
+    return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+}
+
+static float channel(float hue, float saturation, float value, float offset)
+{
+    float k = fmodf(offset + 6 * hue, 6), ramp = fminf(1, fmaxf(0, fminf(k, 4 - k)));
+    return fminf(0.95f, fmaxf(0.01f, decode(value * (1 - saturation * ramp))));
+}
+
+vec3 colour_hsv(float hue, float saturation, float value)
+{
+    hue -= floorf(hue);
+    return vec3_make(channel(hue, saturation, value, 5), channel(hue, saturation, value, 3),
+                     channel(hue, saturation, value, 1));
+}
+
+/* Wood, clay, stone, leaves, leather: oranges to greens of low saturation. */
+static vec3 natural(rng *r)
+{
+    return colour_hsv(rng_range(r, 0.01f, 0.3f), rng_range(r, 0.08f, 0.6f), rng_range(r, 0.15f, 0.85f));
+}
+
+static vec3 painted(rng *r)
+{
+    return colour_hsv(rng_uniform(r), rng_range(r, 0.6f, 1), rng_range(r, 0.35f, 1));
+}
+
+static vec3 pale(rng *r)
+{
+    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.12f), rng_range(r, 0.75f, 0.98f));
+}
+
+static vec3 dark(rng *r)
+{
+    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.6f), rng_range(r, 0.05f, 0.25f));
+}
+
+static vec3 grey(rng *r)
+{
+    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.15f), rng_range(r, 0.2f, 0.8f));
+}
+
+static vec3 anything(rng *r)
+{
+    return colour_hsv(rng_uniform(r), rng_uniform(r), rng_range(r, 0.1f, 1));
+}
+
+void palette_random(rng *r, vec3 colour[PALETTE])
+{
+    typedef vec3 (*maker)(rng *);
+    static const maker THEMES[][4] = {
+        {natural, natural, natural, pale},        {painted, painted, painted, pale},
+        {pale, painted, dark, painted},           {pale, pale, natural, dark},
+        {anything, anything, anything, anything}, {dark, grey, dark, painted},
+        {natural, painted, dark, pale},           {grey, grey, natural, pale},
+    };
+    const maker *theme = THEMES[rng_below(r, (int)(sizeof THEMES / sizeof *THEMES))];
+    float hue = rng_uniform(r), saturation = rng_uniform(r);
+    int one_hue = rng_uniform(r) < 0.18f;
+    for (int i = 0; i < PALETTE; i++) {
+        colour[i] = i == 0 ? theme[0](r) : theme[rng_below(r, 4)](r);
+        if (one_hue)
+            colour[i] = colour_hsv(hue + rng_normal(r) * 0.03f, fminf(1, saturation * rng_range(r, 0.6f, 1.2f)),
+                                   rng_range(r, 0.1f, 0.97f));
+    }
+}
