@@ -1,0 +1,135 @@
+/* merlin: one photograph of an object, taken apart into its material and lit again from elsewhere.
+ *
+ *     merlin_image photo, alpha;
+ *     merlin_model *model;
+ *     merlin_maps maps;
+ *     merlin_image relit;
+ *     const float from_the_left[3] = {-0.8f, 0.3f, -0.5f};
+ *
+ *     if (merlin_image_read("cup.jpg", &photo, &alpha) || merlin_model_open("merlin-point.safetensors", &model) ||
+ *         merlin_estimate(model, &photo, &alpha, NULL, &maps) ||
+ *         merlin_relight(model, &maps, from_the_left, MERLIN_BY_BRDF, &relit) ||
+ *         merlin_maps_write(model, &maps, "cup.merlin") || merlin_image_write("cup-from-left.png", &relit))
+ *         fprintf(stderr, "%s\n", merlin_error());
+ *
+ * The photograph is best taken with the camera's flash: the model was trained on objects lit by a light beside the
+ * lens.
+ *
+ * Images are float, interleaved, rows from the top, on linear sRGB primaries. Space: the camera is at the origin and
+ * looks along -z, x right, y up; the object stands near (0, 0, -1). The square `crop` around the object counts as the
+ * whole frame of that camera: 60 degrees wide, its centre on the optical axis, whatever lens took the photograph.
+ *
+ * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. Nothing is
+ * printed, nothing exits. There are no globals: a model may be used from several threads (runs through one model take
+ * turns). */
+#ifndef MERLIN_MERLIN_H
+#define MERLIN_MERLIN_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum merlin_status {
+    MERLIN_OK = 0,
+    MERLIN_WRONG_USE, /* the call makes no sense: sizes that do not fit, values out of range */
+    MERLIN_BAD_INPUT, /* a file or its content is missing, damaged or of another kind */
+    MERLIN_CANNOT_WRITE,
+    MERLIN_NO_MEMORY,
+    MERLIN_DEVICE_FAILED,
+    MERLIN_STOPPED, /* params.stop said so */
+} merlin_status;
+
+/* The message of this thread's last failure. Valid until the next call in this thread. */
+const char *merlin_error(void);
+
+/* ---- images ---- */
+
+typedef struct merlin_image {
+    int width, height, channels;
+    float *data; /* height × width × channels; NULL: no image */
+} merlin_image;
+
+/* PNG, JPEG, TIFF, WebP, HEIC, EXR or Radiance HDR into 3 linear channels; alpha (may be NULL) gets 1 channel in [0, 1]
+ * where the file has one that is not opaque everywhere, else no image. On failure both are left without data. */
+merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
+/* 1 channel in [0, 1]. */
+merlin_status merlin_mask_read(const char *path, merlin_image *mask);
+/* 8-bit sRGB PNG, values clamped to [0, 1]. */
+merlin_status merlin_image_write(const char *path, const merlin_image *image);
+void merlin_image_free(merlin_image *image);
+
+/* ---- the model ---- */
+
+typedef struct merlin_model merlin_model;
+
+merlin_status merlin_model_open(const char *weights, merlin_model **out);
+void merlin_model_close(merlin_model *model);
+const char *merlin_model_name(const merlin_model *model);
+
+/* ---- from a photograph to maps ---- */
+
+typedef struct merlin_params {
+    int size;          /* side of the square the network sees: a multiple of 32, from 64 to 1024; trained at 256 */
+    int auto_exposure; /* 1: bring a photograph that is too dark or too bright to the brightness of the training data */
+    float exposure;    /* EV on top if auto_exposure is 0 */
+    int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
+} merlin_params;
+
+merlin_params merlin_params_default(void); /* 256, automatic, never stopped */
+
+typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
+
+typedef struct merlin_timing {
+    double mask, prepare, compile, network, upsample; /* seconds */
+} merlin_timing;
+
+/* All of the photograph's size, zero where mask is zero, finite everywhere. */
+typedef struct merlin_maps {
+    merlin_image albedo;         /* 3, [0, 1] */
+    merlin_image normal;         /* 3, unit, z > 0 toward the camera */
+    merlin_image roughness;      /* 1, [0.03, 1] */
+    merlin_image depth;          /* 1, distance along -z in scene units */
+    merlin_image mask;           /* 1, coverage in [0, 1] */
+    merlin_image photo;          /* 3, the photograph times the mask */
+    merlin_image reconstruction; /* 3, the maps under the flash, in the photograph's exposure */
+    struct {
+        int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
+    } crop;
+    int size;   /* what that square was resized to */
+    float gain; /* the photograph was multiplied by this before the network saw it */
+    merlin_mask_source mask_source;
+    float mask_confidence; /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.5: check it) */
+    char model[64];
+    merlin_timing timing;
+} merlin_maps;
+
+/* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size, nonzero
+ * on the object; NULL or without data: the object is searched for. params NULL: the defaults. */
+merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
+                              const merlin_params *params, merlin_maps *maps);
+void merlin_maps_free(merlin_maps *maps);
+
+/* maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or, after a
+ * failure, none. The model adds two new lights to the overview. */
+merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder);
+/* From the maps.exr of such a folder. The reconstruction stays without data. */
+merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
+
+/* ---- from maps to new light ---- */
+
+typedef enum merlin_relighting {
+    MERLIN_BY_BRDF, /* the maps' microfacet BRDF, plus the network's global illumination */
+    MERLIN_BY_NETWORK, /* the relighting decoder, for lights on the frontal hemisphere: (sinθ cosφ, sinθ sinφ, cosθ - 1)
+                        */
+} merlin_relighting;
+
+/* The object under one point light at this place instead of the flash; the photograph's size, 3 channels, [0, 1], in
+ * the exposure of the training data (a flash of power 5.95 at distance 1). */
+merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
+                             merlin_image *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,91 @@
+#include "estimate/api.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "estimate/mask.h"
+#include "image/read.h"
+#include "image/write.h"
+
+static_assert((int)MERLIN_WRONG_USE == (int)ERROR_USAGE && (int)MERLIN_BAD_INPUT == (int)ERROR_INPUT &&
+                  (int)MERLIN_CANNOT_WRITE == (int)ERROR_OUTPUT && (int)MERLIN_NO_MEMORY == (int)ERROR_MEMORY &&
+                  (int)MERLIN_DEVICE_FAILED == (int)ERROR_DEVICE && (int)MERLIN_STOPPED == (int)ERROR_STOPPED,
+              "the public codes are the inside's");
+
+const char *merlin_error(void)
+{
+    return status_message();
+}
+
+merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
+{
+    *color = (merlin_image){0};
+    if (alpha) *alpha = (merlin_image){0};
+    img c = {0}, a = {0};
+    status s = img_read(path, &c, alpha ? &a : NULL);
+    if (s != OK) return result_of(s);
+    if (a.data && mask_is_opaque(&a)) img_free(&a);
+    *color = image_of(&c);
+    if (alpha) *alpha = image_of(&a);
+    return MERLIN_OK;
+}
+
+merlin_status merlin_mask_read(const char *path, merlin_image *mask)
+{
+    img m = {0};
+    status s = img_read_mask(path, &m);
+    *mask = image_of(&m);
+    return result_of(s);
+}
+
+merlin_status merlin_image_write(const char *path, const merlin_image *image)
+{
+    img m = img_of(image);
+    return result_of(img_write_png(path, &m, IMG_SRGB8));
+}
+
+void merlin_image_free(merlin_image *image)
+{
+    img m = img_of(image);
+    img_free(&m);
+    *image = (merlin_image){0};
+}
+
+void merlin_maps_free(merlin_maps *maps)
+{
+    merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
+                              &maps->mask,   &maps->photo,  &maps->reconstruction};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        merlin_image_free(images[i]);
+    *maps = (merlin_maps){0};
+}
+
+merlin_status merlin_model_open(const char *weights, merlin_model **out)
+{
+    *out = NULL;
+    merlin_model *model = calloc(1, sizeof *model);
+    if (!model) return result_of(fail(ERROR_MEMORY, "no memory for a model"));
+    status s = network_open(weights, &model->network);
+    if (s != OK)
+        free(model);
+    else
+        *out = model;
+    return result_of(s);
+}
+
+void merlin_model_close(merlin_model *model)
+{
+    if (!model) return;
+    network_close(model->network);
+    free(model);
+}
+
+const char *merlin_model_name(const merlin_model *model)
+{
+    return network_config(model->network)->name;
+}
+
+merlin_params merlin_params_default(void)
+{
+    return (merlin_params){.size = 256, .auto_exposure = 1};
+}

@@ -1,0 +1,55 @@
+/* Between the public header's types and the inside's, which are laid out alike. */
+#ifndef MERLIN_ESTIMATE_API_H
+#define MERLIN_ESTIMATE_API_H
+
+#include "estimate/crop.h"
+#include "estimate/network.h"
+#include "estimate/surface.h"
+#include "image/image.h"
+#include "merlin/merlin.h"
+
+struct merlin_model {
+    network *network;
+};
+
+/* The same pixels under the other name; nothing is copied. */
+static inline img img_of(const merlin_image *m)
+{
+    return (img){m->width, m->height, m->channels, m->data};
+}
+
+static inline merlin_image image_of(const img *m)
+{
+    return (merlin_image){m->width, m->height, m->channels, m->data};
+}
+
+static inline merlin_status result_of(status s)
+{
+    return (merlin_status)s;
+}
+
+static inline crop_square crop_of(const merlin_maps *maps)
+{
+    return (crop_square){maps->crop.x, maps->crop.y, maps->crop.side};
+}
+
+/* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
+typedef struct stage {
+    surface full, low;
+    img low_photo; /* by network only */
+    merlin_relighting how;
+} stage;
+
+/* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
+status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out);
+void stage_free(stage *s);
+/* The square under a point light, bounces included: 3 channels in [0, 1] in the training data's exposure. */
+status stage_relight(network *n, const stage *s, vec3 light, img *out);
+
+/* What merlin_maps_write does; stop (may be NULL) is asked between files. */
+status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void));
+/* report.json's text, malloc'ed; NULL if memory ran out. */
+char *maps_report(const merlin_maps *maps);
+status maps_write_exr(const merlin_maps *maps, const char *path);
+
+#endif

@@ -1,0 +1,22 @@
+/* The square of a photograph that the network sees.
+ *
+ * In the training data the object fills 25 to 75 % of a square frame, its bounding box about 80 % of the side; a
+ * photograph is cropped to look like that. A square photograph that is framed like that already is taken whole. */
+#ifndef MERLIN_ESTIMATE_CROP_H
+#define MERLIN_ESTIMATE_CROP_H
+
+#include "image/image.h"
+
+typedef struct crop_square {
+    int x, y, side; /* pixels of the photograph; may hang over its edges */
+} crop_square;
+
+/* mask: 1 channel; a pixel belongs to the object from 0.5 on. ERROR_INPUT if fewer than 64 pixels do. */
+status crop_around(const img *mask, crop_square *out);
+
+/* The crop out of an image of the photograph's size, zero where it hangs over; and back into a zeroed image of that
+ * size (`to` has from's channels). */
+status crop_take(const img *from, crop_square c, img *out);
+void crop_put(const img *from, crop_square c, img *to);
+
+#endif

@@ -1,0 +1,45 @@
+#include "estimate/exposure.h"
+
+#include <math.h>
+
+enum { BINS = 1024 };
+/* Luminance from 2^-24 to 2^8, 32 bins a stop. */
+static const float LOWEST_STOP = -24.0f, BINS_PER_STOP = 32.0f;
+static const float PERCENTILE = 0.95f;
+/* The span of that percentile in the training data, about its 10th and 90th percentile over samples. */
+static const float DARK_END = 0.30f, BRIGHT_END = 1.0f, LARGEST_GAIN = 64.0f;
+
+static float luminance(const float rgb[3])
+{
+    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
+
+static float bright_luminance(const img *color, const img *mask)
+{
+    size_t bins[BINS] = {0}, count = 0, pixels = (size_t)color->width * (size_t)color->height;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!(mask->data[i] >= 0.5f)) continue;
+        float place = (log2f(fmaxf(luminance(color->data + 3 * i), 1e-9f)) - LOWEST_STOP) * BINS_PER_STOP;
+        bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        count++;
+    }
+    size_t below = 0, wanted = (size_t)(PERCENTILE * (float)count);
+    int bin = 0;
+    while (bin < BINS - 1 && (below += bins[bin]) <= wanted)
+        bin++;
+    return bin == 0 ? 0 : exp2f(((float)bin + 0.5f) / BINS_PER_STOP + LOWEST_STOP);
+}
+
+float exposure_gain(const img *color, const img *mask)
+{
+    float bright = bright_luminance(color, mask), gain = 1;
+    if (!(bright > 1e-6f)) return 1;
+    if (bright < DARK_END) gain = DARK_END / bright;
+    if (bright > BRIGHT_END) gain = BRIGHT_END / bright;
+    return fminf(fmaxf(gain, 1 / LARGEST_GAIN), LARGEST_GAIN);
+}
+
+float exposure_from_ev(float ev)
+{
+    return exp2f(ev);
+}

@@ -1,0 +1,168 @@
+#include "estimate/light_list.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+
+enum { LINE_MAX_LENGTH = 1024, FILE_MAX_SIZE = 1 << 22 };
+static const float LARGEST = 1000.0f;
+
+typedef struct reader {
+    const char *text, *end, *where;
+    int line;
+    bool lp;        /* the first line held a count */
+    long announced; /* that count */
+} reader;
+
+void light_list_free(light_list *list)
+{
+    free(list->at);
+    *list = (light_list){0};
+}
+
+status light_list_add(light_list *list, vec3 light)
+{
+    if (list->count >= LIGHT_LIST_MAX) return fail(ERROR_INPUT, "more than %d lights", LIGHT_LIST_MAX);
+    vec3 *larger = realloc(list->at, (list->count + 1) * sizeof *larger);
+    if (!larger) return fail(ERROR_MEMORY, "no memory for %zu lights", list->count + 1);
+    larger[list->count++] = light;
+    list->at = larger;
+    return OK;
+}
+
+/* The next line without its comment and outer blanks into line; false at the end of the text. */
+static status next_line(reader *r, char line[LINE_MAX_LENGTH], bool *found)
+{
+    *found = r->text < r->end;
+    if (!*found) return OK;
+    r->line++;
+    const char *stop = memchr(r->text, '\n', (size_t)(r->end - r->text));
+    const char *begin = r->text, *end = stop ? stop : r->end;
+    r->text = stop ? stop + 1 : r->end;
+    if (memchr(begin, 0, (size_t)(end - begin))) return fail(ERROR_INPUT, "%s:%d: not a text file", r->where, r->line);
+    const char *comment = memchr(begin, '#', (size_t)(end - begin));
+    if (comment) end = comment;
+    while (begin < end && strchr(" \t\r\v\f", *begin))
+        begin++;
+    while (begin < end && strchr(" \t\r\v\f", end[-1]))
+        end--;
+    if (end - begin >= LINE_MAX_LENGTH) return fail(ERROR_INPUT, "%s:%d: the line is too long", r->where, r->line);
+    memcpy(line, begin, (size_t)(end - begin));
+    line[end - begin] = 0;
+    return OK;
+}
+
+/* Whole-word finite number. */
+static bool word_number(const char *word, float *out)
+{
+    char *end;
+    errno = 0;
+    *out = strtof(word, &end);
+    return end != word && *end == 0 && isfinite(*out);
+}
+
+static int split(char *line, char *words[], int most)
+{
+    int count = 0;
+    char *rest = NULL;
+    for (char *w = strtok_r(line, " \t\r\v\f,", &rest); w; w = strtok_r(NULL, " \t\r\v\f,", &rest)) {
+        if (count < most) words[count] = w;
+        count++;
+    }
+    return count;
+}
+
+static status direction_to_position(const reader *r, vec3 *v)
+{
+    real length = vec3_length(*v);
+    if (!(length > (real)1e-6)) return fail(ERROR_INPUT, "%s:%d: the direction has no length", r->where, r->line);
+    *v = vec3_add(vec3_scale(*v, 1 / length), vec3_make(0, 0, -1));
+    return OK;
+}
+
+static status parse_light(const reader *r, char *const *words, int count, vec3 *out)
+{
+    int wanted = r->lp ? 4 : 3;
+    if (count != wanted)
+        return fail(ERROR_INPUT, "%s:%d: expected %s, found %d word%s", r->where, r->line,
+                    r->lp ? "a name and x y z" : "x y z", count, count == 1 ? "" : "s");
+    float v[3];
+    for (int i = 0; i < 3; i++) {
+        const char *word = words[wanted - 3 + i];
+        if (!word_number(word, &v[i]))
+            return fail(ERROR_INPUT, "%s:%d: \"%.40s\" is not a finite number", r->where, r->line, word);
+        if (fabsf(v[i]) > LARGEST)
+            return fail(ERROR_INPUT, "%s:%d: %.40s is out of range (±%g)", r->where, r->line, word, (double)LARGEST);
+    }
+    *out = vec3_make(v[0], v[1], v[2]);
+    return r->lp ? direction_to_position(r, out) : OK;
+}
+
+/* A first line that holds one whole number is the count of an .lp file. */
+static status parse_count(reader *r, const char *word)
+{
+    char *end;
+    errno = 0;
+    long value = strtol(word, &end, 10);
+    if (end == word || *end || errno || value < 1)
+        return fail(ERROR_INPUT, "%s:%d: expected x y z or a count of lights, found \"%.40s\"", r->where, r->line,
+                    word);
+    if (value > LIGHT_LIST_MAX)
+        return fail(ERROR_INPUT, "%s:%d: %ld lights are more than %d", r->where, r->line, value, LIGHT_LIST_MAX);
+    r->lp = true;
+    r->announced = value;
+    return OK;
+}
+
+static status parse_line(reader *r, char *line, bool first, light_list *out)
+{
+    char *words[5];
+    int count = split(line, words, 5);
+    if (first && count == 1) return parse_count(r, words[0]);
+    vec3 light;
+    status s = parse_light(r, words, count, &light);
+    if (s != OK) return s;
+    s = light_list_add(out, light);
+    return s == OK ? OK : fail_in(s, "%s:%d", r->where, r->line);
+}
+
+static status parse_lines(reader *r, light_list *out)
+{
+    char line[LINE_MAX_LENGTH];
+    bool found, first = true;
+    status s = next_line(r, line, &found);
+    for (; s == OK && found; s = next_line(r, line, &found)) {
+        if (!line[0]) continue;
+        if ((s = parse_line(r, line, first, out)) != OK) break;
+        first = false;
+    }
+    if (s != OK) return s;
+    if (r->lp && (size_t)r->announced != out->count)
+        return fail(ERROR_INPUT, "%s: the first line says %ld lights, but there are %zu", r->where, r->announced,
+                    out->count);
+    return out->count ? OK : fail(ERROR_INPUT, "%s: no lights in it (one x y z a line)", r->where);
+}
+
+status light_list_parse(const char *text, size_t size, const char *where, light_list *out)
+{
+    *out = (light_list){0};
+    reader r = {.text = text, .end = text + size, .where = where};
+    status s = parse_lines(&r, out);
+    if (s != OK) light_list_free(out);
+    return s;
+}
+
+status light_list_read(const char *path, light_list *out)
+{
+    *out = (light_list){0};
+    char *text;
+    size_t size;
+    status s = file_read(path, FILE_MAX_SIZE, &text, &size);
+    if (s != OK) return s;
+    s = light_list_parse(text, size, path, out);
+    free(text);
+    return s;
+}

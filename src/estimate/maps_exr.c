@@ -1,0 +1,123 @@
+/* maps.exr, both ways. Beside the maps it holds the photograph, so that a folder can be relit by the network too. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "estimate/api.h"
+#include "image/exr.h"
+
+enum { CHANNELS = 12 };
+static const float LARGEST_COORDINATE = 65536.0f;
+
+/* Name, image's place in maps_images, channel. */
+typedef struct layer {
+    const char *name;
+    int image, channel;
+} layer;
+
+static const layer layers[CHANNELS] = {
+    {"albedo.R", 0, 0}, {"albedo.G", 0, 1}, {"albedo.B", 0, 2},    {"normal.X", 1, 0},
+    {"normal.Y", 1, 1}, {"normal.Z", 1, 2}, {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},
+    {"mask.A", 4, 0},   {"photo.R", 5, 0},  {"photo.G", 5, 1},     {"photo.B", 5, 2},
+};
+
+enum { IMAGES = 6 };
+static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
+
+status maps_write_exr(const merlin_maps *maps, const char *path)
+{
+    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                          &maps->depth,  &maps->mask,   &maps->photo};
+    exr_channel channels[CHANNELS];
+    for (int i = 0; i < CHANNELS; i++)
+        channels[i] = (exr_channel){layers[i].name, images[layers[i].image]->data + layers[i].channel,
+                                    images[layers[i].image]->channels};
+    exr_attribute square = {.name = "merlinCrop", .count = 3};
+    square.values[0] = (float)maps->crop.x;
+    square.values[1] = (float)maps->crop.y;
+    square.values[2] = (float)maps->crop.side;
+    exr_attribute attributes[] = {
+        square,
+        exr_number("merlinSize", (float)maps->size),
+        exr_number("merlinGain", maps->gain),
+        exr_number("merlinMaskFound", maps->mask_source == MERLIN_MASK_FOUND),
+        exr_number("merlinMaskConfidence", maps->mask_confidence),
+        exr_text("merlinModel", maps->model),
+    };
+    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes,
+                     sizeof attributes / sizeof attributes[0]);
+}
+
+static status read_attributes(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    float square[3], size, found, confidence;
+    const char *model = exr_get_text(f, "merlinModel");
+    bool complete = exr_get_numbers(f, "merlinCrop", square, 3) && exr_get_numbers(f, "merlinSize", &size, 1) &&
+                    exr_get_numbers(f, "merlinGain", &maps->gain, 1) &&
+                    exr_get_numbers(f, "merlinMaskFound", &found, 1) &&
+                    exr_get_numbers(f, "merlinMaskConfidence", &confidence, 1) && model;
+    if (!complete) return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attributes are missing", path);
+    bool sound = fabsf(square[0]) < LARGEST_COORDINATE && fabsf(square[1]) < LARGEST_COORDINATE && square[2] >= 1 &&
+                 square[2] < LARGEST_COORDINATE && size >= NETWORK_LEAST_SIZE && size <= NETWORK_LARGEST_SIZE &&
+                 fmodf(size, MODEL_SIZE_MULTIPLE) == 0 && maps->gain > 1e-6f && maps->gain < 1e6f;
+    if (!sound) return fail(ERROR_INPUT, "%s: crop, size or gain is out of range", path);
+    maps->crop.x = (int)square[0];
+    maps->crop.y = (int)square[1];
+    maps->crop.side = (int)square[2];
+    maps->size = (int)size;
+    maps->mask_source = found != 0 ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
+    maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
+    snprintf(maps->model, sizeof maps->model, "%s", model);
+    return OK;
+}
+
+static status read_layers(exr_file *f, merlin_maps *maps)
+{
+    merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                    &maps->depth,  &maps->mask,   &maps->photo};
+    exr_target targets[CHANNELS];
+    for (int i = 0; i < IMAGES; i++) {
+        img m = {0};
+        status s = img_new(&m, exr_width(f), exr_height(f), image_channels[i]);
+        if (s != OK) return s;
+        *images[i] = image_of(&m);
+    }
+    for (int i = 0; i < CHANNELS; i++)
+        targets[i] = (exr_target){layers[i].name, images[layers[i].image]->data + layers[i].channel,
+                                  image_channels[layers[i].image]};
+    return exr_read(f, targets, CHANNELS);
+}
+
+/* Half floats are not quite unit normals, and anybody may have edited the file. */
+static void tidy(merlin_maps *maps)
+{
+    surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness), img_of(&maps->depth),
+                   img_of(&maps->mask)};
+    surface_tidy(&all);
+    size_t count = 3 * (size_t)maps->photo.width * (size_t)maps->photo.height;
+    for (size_t i = 0; i < count; i++) {
+        float x = maps->photo.data[i];
+        maps->photo.data[i] = isfinite(x) && x > 0 ? x : 0;
+    }
+}
+
+merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
+{
+    *maps = (merlin_maps){0};
+    char *path = file_join(folder, "maps.exr");
+    if (!path) return result_of(fail(ERROR_MEMORY, "no memory for a file name"));
+    exr_file *f = NULL;
+    status s = file_exists(path) ? exr_open(path, &f)
+                                 : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
+    if (s == OK) s = read_attributes(f, path, maps);
+    if (s == OK) s = read_layers(f, maps);
+    if (f) exr_close(f);
+    free(path);
+    if (s == OK)
+        tidy(maps);
+    else
+        merlin_maps_free(maps);
+    return result_of(s);
+}

@@ -1,0 +1,284 @@
+/* merlin_maps_write: a folder with everything, or nothing.
+ *
+ * All files are made in a hidden folder inside the target, then renamed into place, so that a full disk or an interrupt
+ * leaves no half result behind. */
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "estimate/api.h"
+#include "image/figure.h"
+#include "image/write.h"
+
+/* ---- one file each ---- */
+
+enum { TILES = 8, TILE_SIZE = 256, COLUMNS = 4 };
+static const vec3 from_left = {-0.67f, 0.47f, -0.43f}, from_right = {0.77f, 0.28f, -0.43f};
+
+typedef struct overview {
+    stage stage;
+    img normal, roughness, depth, reconstruction, left, right;
+} overview;
+
+typedef struct job {
+    const merlin_maps *maps;
+    overview overview;
+} job;
+
+static status write_image(const merlin_image *image, img_encoding encoding, const char *path)
+{
+    img m = img_of(image);
+    return img_write_png(path, &m, encoding);
+}
+
+static status write_exr(const job *j, const char *path)
+{
+    return maps_write_exr(j->maps, path);
+}
+
+static status write_albedo(const job *j, const char *path)
+{
+    return write_image(&j->maps->albedo, IMG_SRGB8, path);
+}
+
+static status write_roughness(const job *j, const char *path)
+{
+    return write_image(&j->maps->roughness, IMG_LINEAR8, path);
+}
+
+static status write_mask(const job *j, const char *path)
+{
+    return write_image(&j->maps->mask, IMG_LINEAR8, path);
+}
+
+static status write_reconstruction(const job *j, const char *path)
+{
+    return write_image(&j->maps->reconstruction, IMG_SRGB8, path);
+}
+
+static status write_normal(const job *j, const char *path)
+{
+    img from = img_of(&j->maps->normal), encoded = {0};
+    status s = img_new(&encoded, from.width, from.height, 3);
+    if (s != OK) return s;
+    size_t count = 3 * (size_t)from.width * (size_t)from.height;
+    for (size_t i = 0; i < count; i++)
+        encoded.data[i] = j->maps->mask.data[i / 3] > 0 ? 0.5f * from.data[i] + 0.5f : 0;
+    s = img_write_png(path, &encoded, IMG_LINEAR16);
+    img_free(&encoded);
+    return s;
+}
+
+/* Near is bright; the object's depths (report.json: statistics.depth) span 1 down to 0.05. */
+static status write_depth(const job *j, const char *path)
+{
+    img from = img_of(&j->maps->depth), encoded = {0};
+    status s = img_new(&encoded, from.width, from.height, 1);
+    if (s != OK) return s;
+    size_t count = (size_t)from.width * (size_t)from.height;
+    float near = 1e9f, far = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (j->maps->mask.data[i] < 0.5f) continue;
+        near = from.data[i] < near ? from.data[i] : near;
+        far = from.data[i] > far ? from.data[i] : far;
+    }
+    for (size_t i = 0; i < count; i++)
+        encoded.data[i] = from.data[i] > 0 ? 1 - 0.95f * (from.data[i] - near) / (far - near + 1e-6f) : 0;
+    s = img_write_png(path, &encoded, IMG_LINEAR16);
+    img_free(&encoded);
+    return s;
+}
+
+static status write_report(const job *j, const char *path)
+{
+    char *text = maps_report(j->maps);
+    if (!text) return fail(ERROR_MEMORY, "no memory for a report");
+    status s = file_write(path, text, strlen(text));
+    free(text);
+    return s;
+}
+
+/* ---- the overview ---- */
+
+static void overview_free(overview *o)
+{
+    stage_free(&o->stage);
+    img *images[] = {&o->normal, &o->roughness, &o->depth, &o->reconstruction, &o->left, &o->right};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        img_free(images[i]);
+}
+
+/* What the sheet shows as sRGB is the value itself. */
+static status show_values(const img *values, img *out)
+{
+    status s = img_copy(out, values);
+    if (s != OK) return s;
+    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
+    for (size_t i = 0; i < count; i++)
+        out->data[i] = srgb_decode(out->data[i]);
+    return OK;
+}
+
+/* Before the files are written side by side, because the network uses every processor itself. */
+static status make_overview(network *n, const merlin_maps *maps, overview *o)
+{
+    /* by network, because that keeps the photograph for the first tile */
+    status s = stage_new(maps, maps->size, MERLIN_BY_NETWORK, &o->stage);
+    if (s != OK) return s;
+    o->stage.how = MERLIN_BY_BRDF;
+    const surface *full = &o->stage.full;
+    s = figure_normals(&full->normal, &full->mask, &o->normal);
+    if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
+    if (s == OK) s = show_values(&full->roughness, &o->roughness);
+    if (s == OK) s = stage_relight(n, &o->stage, vec3_make(0, 0, 0), &o->reconstruction);
+    if (s == OK) s = stage_relight(n, &o->stage, from_left, &o->left);
+    if (s == OK) s = stage_relight(n, &o->stage, from_right, &o->right);
+    return s;
+}
+
+static status write_overview(const job *j, const char *path)
+{
+    const overview *o = &j->overview;
+    const figure_tile tiles[TILES] = {
+        {"photograph", &o->stage.low_photo},
+        {"albedo", &o->stage.full.albedo},
+        {"normal", &o->normal},
+        {"roughness", &o->roughness},
+        {"depth", &o->depth},
+        {"reconstruction", &o->reconstruction},
+        {"light from the left", &o->left},
+        {"light from the right", &o->right},
+    };
+    return figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
+}
+
+/* ---- all of them ---- */
+
+typedef struct output {
+    const char *name;
+    status (*write)(const job *j, const char *path);
+} output;
+
+/* The slowest first, so that two processors end together. */
+static const output outputs[] = {
+    {"overview.png", write_overview},   {"maps.exr", write_exr},
+    {"normal.png", write_normal},       {"reconstruction.png", write_reconstruction},
+    {"albedo.png", write_albedo},       {"depth.png", write_depth},
+    {"roughness.png", write_roughness}, {"mask.png", write_mask},
+    {"report.json", write_report},
+};
+enum { OUTPUTS = sizeof outputs / sizeof outputs[0], MESSAGE_SIZE = 512 };
+
+typedef struct batch {
+    job job;
+    const char *folder;
+    int (*stop)(void);
+    status results[OUTPUTS];
+    char messages[OUTPUTS][MESSAGE_SIZE]; /* words are kept per thread, and these threads go away */
+} batch;
+
+static void write_one(void *context, size_t i)
+{
+    batch *b = context;
+    if (b->stop && b->stop()) {
+        b->results[i] = fail(ERROR_STOPPED, "stopped");
+    } else {
+        char *path = file_join(b->folder, outputs[i].name);
+        b->results[i] = path ? outputs[i].write(&b->job, path) : fail(ERROR_MEMORY, "no memory for a file name");
+        free(path);
+    }
+    if (b->results[i] != OK) snprintf(b->messages[i], MESSAGE_SIZE, "%s", status_message());
+}
+
+static status write_all(batch *b)
+{
+    parallel_for(OUTPUTS, write_one, b);
+    for (int i = 0; i < OUTPUTS; i++)
+        if (b->results[i] != OK) return fail(b->results[i], "%s", b->messages[i]);
+    return OK;
+}
+
+static void remove_folder(const char *folder)
+{
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d));)
+        if (strcmp(e->d_name, ".") != 0 && strcmp(e->d_name, "..") != 0) unlinkat(dirfd(d), e->d_name, 0);
+    if (d) closedir(d);
+    rmdir(folder);
+}
+
+/* Renames every file into place; first makes sure that nothing but files is in the way. */
+static status move_all(const char *from, const char *to)
+{
+    status s = OK;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < OUTPUTS && s == OK; i++) {
+            char *source = file_join(from, outputs[i].name), *target = file_join(to, outputs[i].name);
+            if (!source || !target)
+                s = fail(ERROR_MEMORY, "no memory for a file name");
+            else if (pass == 0 && file_is_folder(target))
+                s = fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", target);
+            else if (pass == 1 && rename(source, target) != 0)
+                s = fail(ERROR_OUTPUT, "cannot write %s: %s", target, strerror(errno));
+            free(source);
+            free(target);
+        }
+    }
+    return s;
+}
+
+/* A message about a file in the hidden folder would name a path that nobody can look at. */
+static status hide(status s, const char *hidden, const char *folder)
+{
+    char message[MESSAGE_SIZE], clean[MESSAGE_SIZE];
+    snprintf(message, sizeof message, "%s", status_message());
+    char *at = strstr(message, hidden);
+    if (!at) return s;
+    *at = 0;
+    snprintf(clean, sizeof clean, "%.200s%.200s%.100s", message, folder, at + strlen(hidden));
+    return fail(s, "%s", clean);
+}
+
+static status write_through(batch *b, const char *folder)
+{
+    char *hidden = file_join(folder, ".merlin-XXXXXX");
+    if (!hidden) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!mkdtemp(hidden)) {
+        free(hidden);
+        return fail(ERROR_OUTPUT, "cannot write into %s: %s", folder, strerror(errno));
+    }
+    b->folder = hidden;
+    status s = write_all(b);
+    if (s == OK && b->stop && b->stop()) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK) s = move_all(hidden, folder);
+    if (s != OK) s = hide(s, hidden, folder);
+    remove_folder(hidden);
+    free(hidden);
+    return s;
+}
+
+status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void))
+{
+    batch *b = calloc(1, sizeof *b);
+    if (!b) return fail(ERROR_MEMORY, "no memory to write %s", folder);
+    b->job.maps = maps;
+    b->stop = stop;
+    bool existed = file_exists(folder);
+    status s = make_overview(model->network, maps, &b->job.overview);
+    if (s == OK) s = file_make_folder(folder);
+    if (s == OK) s = write_through(b, folder);
+    if (s != OK && !existed) rmdir(folder);
+    overview_free(&b->job.overview);
+    free(b);
+    return s;
+}
+
+merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder)
+{
+    return result_of(maps_write(model, maps, folder, NULL));
+}

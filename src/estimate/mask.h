@@ -1,0 +1,21 @@
+/* Which part of a photograph is the object. */
+#ifndef MERLIN_ESTIMATE_MASK_H
+#define MERLIN_ESTIMATE_MASK_H
+
+#include <stdbool.h>
+
+#include "image/image.h"
+
+typedef struct mask_choice {
+    bool found;       /* by find_object, because none was given */
+    float confidence; /* 1 if given */
+} mask_choice;
+
+/* given: 1 channel of the photograph's size (else ERROR_INPUT), or NULL or without data: the object is searched for.
+ * Values below 0.05 count as 0 and above 0.95 as 1, so that a mask that went through JPEG has clean sides. */
+status mask_choose(const img *photo, const img *given, img *mask, mask_choice *choice);
+
+/* Says nothing: 1 everywhere. */
+bool mask_is_opaque(const img *mask);
+
+#endif

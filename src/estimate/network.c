@@ -1,0 +1,216 @@
+#include "estimate/network.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct compiled {
+    nn_graph *graph;
+    nn_program *program;
+    int size;
+} compiled;
+
+struct network {
+    model_config config;
+    nn_params *params;
+    pthread_mutex_t lock; /* of the programs: a run uses their buffers */
+    compiled whole, indirect;
+};
+
+static nn_type best_type(void)
+{
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("avx512bf16") ? NN_BFLOAT16 : NN_FLOAT32;
+}
+
+status network_open(const char *weights, network **out)
+{
+    *out = NULL;
+    network *n = calloc(1, sizeof *n);
+    if (!n) return fail(ERROR_MEMORY, "no memory for a model");
+    status s = model_load(weights, &n->config, &n->params);
+    if (s != OK) {
+        free(n);
+        return s;
+    }
+    if (pthread_mutex_init(&n->lock, NULL) != 0) {
+        nn_params_free(n->params);
+        free(n);
+        return fail(ERROR_MEMORY, "no memory for a lock");
+    }
+    *out = n;
+    return OK;
+}
+
+static void compiled_free(compiled *c)
+{
+    nn_program_free(c->program);
+    nn_graph_free(c->graph);
+    *c = (compiled){0};
+}
+
+void network_close(network *n)
+{
+    if (!n) return;
+    compiled_free(&n->whole);
+    compiled_free(&n->indirect);
+    nn_params_free(n->params);
+    pthread_mutex_destroy(&n->lock);
+    free(n);
+}
+
+const model_config *network_config(const network *n)
+{
+    return &n->config;
+}
+
+static status compile(network *n, model_part part, int size, compiled *c)
+{
+    if (c->program && c->size == size) return OK;
+    compiled_free(c);
+    nn_options options = {.batch = 1, .height = size, .width = size, .type = best_type(), .purpose = NN_INFER};
+    status s = model_build(&n->config, part, &c->graph);
+    if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);
+    if (s != OK)
+        compiled_free(c);
+    else
+        c->size = size;
+    return s;
+}
+
+status network_prepare(network *n, int size)
+{
+    if (size < NETWORK_LEAST_SIZE || size > NETWORK_LARGEST_SIZE || size % MODEL_SIZE_MULTIPLE != 0)
+        return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
+                    MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, size);
+    pthread_mutex_lock(&n->lock);
+    status s = compile(n, MODEL_WHOLE, size, &n->whole);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
+/* ---- between images and the program's buffers ---- */
+
+static size_t value_count(const img *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+/* scale·x + shift. */
+static void put(nn_program *p, const char *name, const img *from, float scale, float shift)
+{
+    float *to = nn_input_data(p, name);
+    if (!to) return;
+    size_t count = value_count(from);
+    for (size_t i = 0; i < count; i++)
+        to[i] = scale * from->data[i] + shift;
+}
+
+static status take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out)
+{
+    const float *from = nn_output_data(p, name);
+    if (!from) return fail(ERROR_USAGE, "this model has no output \"%s\"", name);
+    status s = img_new(out, size, size, channels);
+    if (s != OK) return s;
+    size_t count = value_count(out);
+    for (size_t i = 0; i < count; i++)
+        out->data[i] = scale * from[i] + shift;
+    return OK;
+}
+
+/* Every value of the photograph passes through once, so a fresh image and light are put in for each run. */
+static status run_whole(network *n, const img *photo, const img *mask, vec3 light)
+{
+    status s = compile(n, MODEL_WHOLE, photo->width, &n->whole);
+    if (s != OK) return s;
+    nn_program *p = n->whole.program;
+    model_encode_image(photo->data, nn_input_data(p, "image"), value_count(photo));
+    put(p, "mask", mask, 1, 0);
+    float position[3] = {light.x, light.y, light.z};
+    memcpy(nn_input_data(p, "light_position"), position, sizeof position);
+    float *code = nn_input_data(p, "light");
+    if (code) {
+        memset(code, 0, (size_t)model_light_size(&n->config) * sizeof *code);
+        memcpy(code, position, sizeof position);
+    }
+    return nn_forward(p);
+}
+
+static status take_maps(nn_program *p, const img *mask, surface *maps)
+{
+    int size = mask->width;
+    status s = img_copy(&maps->mask, mask);
+    /* albedo and roughness leave the network in [-1, 1] */
+    if (s == OK) s = take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
+    if (s == OK) s = take(p, "normal", size, 3, 1, 0, &maps->normal);
+    if (s == OK) s = take(p, "roughness", size, 1, 0.5f, 0.5f, &maps->roughness);
+    if (s == OK) s = take(p, "depth", size, 1, 1, 0, &maps->depth);
+    if (s == OK) surface_tidy(maps);
+    return s;
+}
+
+status network_estimate(network *n, const img *photo, const img *mask, surface *maps, img *indirect)
+{
+    *maps = (surface){0};
+    *indirect = (img){0};
+    pthread_mutex_lock(&n->lock);
+    status s = run_whole(n, photo, mask, vec3_make(0, 0, 0));
+    if (s == OK) s = take_maps(n->whole.program, mask, maps);
+    if (s == OK && n->config.global_illumination)
+        s = take(n->whole.program, "indirect", photo->width, 3, 1, 0, indirect);
+    else if (s == OK)
+        s = img_new(indirect, photo->width, photo->height, 3);
+    pthread_mutex_unlock(&n->lock);
+    if (s != OK) {
+        surface_free(maps);
+        img_free(indirect);
+    }
+    return s;
+}
+
+status network_relight(network *n, const img *photo, const img *mask, vec3 light, img *direct)
+{
+    *direct = (img){0};
+    if (n->config.relight != MODEL_RELIGHT_NETWORK)
+        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
+    if (n->config.lighting == MODEL_LIGHT_SH)
+        return fail(ERROR_USAGE, "model \"%s\" relights by environments only, not by point lights", n->config.name);
+    pthread_mutex_lock(&n->lock);
+    status s = run_whole(n, photo, mask, light);
+    if (s == OK) s = take(n->whole.program, "relit_direct", photo->width, 3, 1, 0, direct);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
+static void put_clipped(nn_program *p, const img *direct)
+{
+    float *to = nn_input_data(p, "direct");
+    size_t count = value_count(direct);
+    for (size_t i = 0; i < count; i++)
+        to[i] = fminf(fmaxf(direct->data[i], 0), 1);
+}
+
+static status run_indirect(network *n, const surface *maps, const img *direct, img *indirect)
+{
+    status s = compile(n, MODEL_INDIRECT, direct->width, &n->indirect);
+    if (s != OK) return s;
+    nn_program *p = n->indirect.program;
+    put_clipped(p, direct);
+    put(p, "albedo", &maps->albedo, 2, -1);
+    put(p, "normal", &maps->normal, 1, 0);
+    put(p, "roughness", &maps->roughness, 2, -1);
+    put(p, "depth", &maps->depth, 1, 0);
+    put(p, "mask", &maps->mask, 1, 0);
+    s = nn_forward(p);
+    return s == OK ? take(p, "indirect", direct->width, 3, 1, 0, indirect) : s;
+}
+
+status network_indirect(network *n, const surface *maps, const img *direct, img *indirect)
+{
+    *indirect = (img){0};
+    if (!n->config.global_illumination) return img_new(indirect, direct->width, direct->height, 3);
+    pthread_mutex_lock(&n->lock);
+    status s = run_indirect(n, maps, direct, indirect);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}

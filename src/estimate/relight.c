@@ -1,0 +1,155 @@
+/* merlin_relight: maps under another point light. */
+#include <stdlib.h>
+
+#include "estimate/api.h"
+#include "image/resize.h"
+
+static void clip(float *x, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        x[i] = x[i] > 0 ? (x[i] < 1 ? x[i] : 1) : 0;
+}
+
+static size_t value_count(const img *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static void multiply_mask(img *image, const img *mask)
+{
+    for (size_t i = 0; i < value_count(image); i++)
+        image->data[i] *= mask->data[i / 3];
+}
+
+/* ---- the stage ---- */
+
+void stage_free(stage *s)
+{
+    surface_free(&s->full);
+    surface_free(&s->low);
+    img_free(&s->low_photo);
+}
+
+static status crop_surface(const merlin_maps *maps, surface *out)
+{
+    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
+    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
+    status s = OK;
+    for (int i = 0; i < 5 && s == OK; i++) {
+        img whole = img_of(from[i]);
+        s = crop_take(&whole, crop_of(maps), to[i]);
+    }
+    return s;
+}
+
+static status surface_at(const surface *from, int side, surface *out)
+{
+    img mask = {0};
+    status s = img_resize(&from->mask, side, side, &mask);
+    if (s == OK) {
+        clip(mask.data, value_count(&mask));
+        s = surface_resize(from, &mask, out);
+    }
+    img_free(&mask);
+    return s;
+}
+
+/* The photograph as the network saw it. */
+static status take_low_photo(const merlin_maps *maps, img *out)
+{
+    img whole = img_of(&maps->photo), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &part);
+    if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
+    img_free(&part);
+    if (s != OK) return s;
+    for (size_t i = 0; i < value_count(out); i++)
+        out->data[i] *= maps->gain;
+    clip(out->data, value_count(out));
+    return OK;
+}
+
+status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
+{
+    *out = (stage){.how = how};
+    surface whole = {0};
+    status s = crop_surface(maps, &whole);
+    if (s == OK) s = surface_at(&whole, maps->size, &out->low);
+    if (s == OK && side != 0 && side != maps->crop.side) {
+        s = surface_at(&whole, side, &out->full);
+        surface_free(&whole);
+    } else {
+        out->full = whole;
+    }
+    if (s == OK && how == MERLIN_BY_NETWORK) s = take_low_photo(maps, &out->low_photo);
+    if (s != OK) stage_free(out);
+    return s;
+}
+
+/* ---- light ---- */
+
+/* Bounce 1 at both sizes. */
+static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
+{
+    status result = surface_shade(&s->full, light, full);
+    if (result == OK) result = surface_shade(&s->low, light, low);
+    return result;
+}
+
+static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
+{
+    int side = s->full.mask.width;
+    status result = network_relight(n, &s->low_photo, &s->low.mask, light, low);
+    if (result == OK) result = surface_resize_image(low, &s->low.mask, side, side, full);
+    if (result == OK && side != low->width) multiply_mask(full, &s->full.mask);
+    return result;
+}
+
+/* The network's bounces 2 and up for `low`, resized and added to `full`; everything clipped. */
+static status add_indirect(network *n, const stage *s, const img *low, img *full)
+{
+    img indirect = {0}, large = {0};
+    status result = network_indirect(n, &s->low, low, &indirect);
+    if (result == OK) result = surface_resize_image(&indirect, &s->low.mask, full->width, full->height, &large);
+    if (result == OK) {
+        multiply_mask(&large, &s->full.mask);
+        clip(full->data, value_count(full));
+        for (size_t i = 0; i < value_count(full); i++)
+            full->data[i] += large.data[i];
+        clip(full->data, value_count(full));
+    }
+    img_free(&indirect);
+    img_free(&large);
+    return result;
+}
+
+status stage_relight(network *n, const stage *s, vec3 light, img *out)
+{
+    *out = (img){0};
+    img low = {0};
+    status result =
+        s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, out, &low) : light_by_brdf(s, light, out, &low);
+    if (result == OK) result = add_indirect(n, s, &low, out);
+    img_free(&low);
+    if (result != OK) img_free(out);
+    return result;
+}
+
+merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
+                             merlin_image *out)
+{
+    *out = (merlin_image){0};
+    vec3 place = vec3_make(light[0], light[1], light[2]);
+    if (!isfinite(place.x) || !isfinite(place.y) || !isfinite(place.z))
+        return result_of(fail(ERROR_USAGE, "the light's position is not finite"));
+    stage st;
+    status s = stage_new(maps, 0, how, &st);
+    if (s != OK) return result_of(s);
+    img part = {0}, whole = {0};
+    s = stage_relight(model->network, &st, place, &part);
+    stage_free(&st);
+    if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
+    if (s == OK) crop_put(&part, crop_of(maps), &whole);
+    img_free(&part);
+    *out = image_of(&whole);
+    return result_of(s);
+}

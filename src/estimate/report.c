@@ -1,0 +1,101 @@
+/* report.json: what was done to a photograph, and the maps' statistics. */
+#include <cJSON.h>
+#include <math.h>
+
+#include "estimate/api.h"
+
+typedef struct range {
+    double low, high, sum;
+    size_t count;
+} range;
+
+static void add(range *r, double x)
+{
+    if (r->count == 0 || x < r->low) r->low = x;
+    if (r->count == 0 || x > r->high) r->high = x;
+    r->sum += x;
+    r->count++;
+}
+
+/* Of the pixels that are object, one channel of a map. */
+static range range_of(const merlin_maps *maps, const merlin_image *map, int channel)
+{
+    range r = {0};
+    size_t count = (size_t)map->width * (size_t)map->height;
+    for (size_t i = 0; i < count; i++)
+        if (maps->mask.data[i] >= 0.5f) add(&r, map->data[i * (size_t)map->channels + (size_t)channel]);
+    return r;
+}
+
+static double mean(const range *r)
+{
+    return r->count ? r->sum / (double)r->count : 0;
+}
+
+static void put_range(cJSON *to, const char *name, const range *r)
+{
+    cJSON *o = cJSON_AddObjectToObject(to, name);
+    cJSON_AddNumberToObject(o, "min", r->low);
+    cJSON_AddNumberToObject(o, "mean", mean(r));
+    cJSON_AddNumberToObject(o, "max", r->high);
+}
+
+static void put_statistics(cJSON *root, const merlin_maps *maps)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "statistics");
+    cJSON *albedo = cJSON_AddArrayToObject(o, "albedo_mean");
+    range roughness = range_of(maps, &maps->roughness, 0), depth = range_of(maps, &maps->depth, 0);
+    for (int c = 0; c < 3; c++) {
+        range r = range_of(maps, &maps->albedo, c);
+        cJSON_AddItemToArray(albedo, cJSON_CreateNumber(mean(&r)));
+    }
+    put_range(o, "roughness", &roughness);
+    put_range(o, "depth", &depth);
+    cJSON_AddNumberToObject(o, "object_pixels", (double)depth.count);
+}
+
+static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
+{
+    if (!maps->reconstruction.data) return;
+    range r = {0};
+    size_t count = (size_t)maps->mask.width * (size_t)maps->mask.height;
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (maps->mask.data[i / 3] < 0.5f) continue;
+        /* in the exposure the network worked in, clipped as it was */
+        double seen = fmin(maps->photo.data[i] * maps->gain, 1), made = maps->reconstruction.data[i] * maps->gain;
+        add(&r, (seen - made) * (seen - made));
+    }
+    cJSON_AddNumberToObject(root, "reconstruction_rmse", sqrt(mean(&r)));
+}
+
+static void put_timing(cJSON *root, const merlin_timing *t)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "seconds");
+    cJSON_AddNumberToObject(o, "mask", t->mask);
+    cJSON_AddNumberToObject(o, "compile", t->compile);
+    cJSON_AddNumberToObject(o, "prepare", t->prepare);
+    cJSON_AddNumberToObject(o, "network", t->network);
+    cJSON_AddNumberToObject(o, "upsample", t->upsample);
+}
+
+char *maps_report(const merlin_maps *maps)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "model", maps->model);
+    cJSON_AddNumberToObject(root, "width", maps->albedo.width);
+    cJSON_AddNumberToObject(root, "height", maps->albedo.height);
+    cJSON *square = cJSON_AddObjectToObject(root, "crop");
+    cJSON_AddNumberToObject(square, "x", maps->crop.x);
+    cJSON_AddNumberToObject(square, "y", maps->crop.y);
+    cJSON_AddNumberToObject(square, "side", maps->crop.side);
+    cJSON_AddNumberToObject(root, "network_size", maps->size);
+    cJSON_AddNumberToObject(root, "exposure_gain", maps->gain);
+    cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
+    cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
+    put_statistics(root, maps);
+    put_reconstruction_error(root, maps);
+    put_timing(root, &maps->timing);
+    char *text = cJSON_Print(root);
+    cJSON_Delete(root);
+    return text;
+}

@@ -1,0 +1,195 @@
+#include "estimate/surface.h"
+
+#include <string.h>
+
+#include "base/parallel.h"
+#include "estimate/fill.h"
+#include "image/resize.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+static const float FIELD_OF_VIEW = 60.0f;
+static const float LEAST_ROUGHNESS = 0.03f, LEAST_DEPTH = 0.05f, LARGEST_DEPTH = 20.0f;
+/* Normals at the very silhouette are grazing, not behind it. */
+static const float LEAST_NORMAL_Z = 0.02f;
+
+status surface_new(int width, int height, surface *out)
+{
+    *out = (surface){0};
+    status s = img_new(&out->albedo, width, height, 3);
+    if (s == OK) s = img_new(&out->normal, width, height, 3);
+    if (s == OK) s = img_new(&out->roughness, width, height, 1);
+    if (s == OK) s = img_new(&out->depth, width, height, 1);
+    if (s == OK) s = img_new(&out->mask, width, height, 1);
+    if (s != OK) surface_free(out);
+    return s;
+}
+
+void surface_free(surface *s)
+{
+    img_free(&s->albedo);
+    img_free(&s->normal);
+    img_free(&s->roughness);
+    img_free(&s->depth);
+    img_free(&s->mask);
+}
+
+/* NaN becomes low. */
+static float clamp(float x, float low, float high)
+{
+    return x > low ? (x < high ? x : high) : low;
+}
+
+static void tidy_normal(float n[3])
+{
+    vec3 v =
+        vec3_make(clamp(n[0], -1, 1), clamp(n[1], -1, 1), n[2] > LEAST_NORMAL_Z ? clamp(n[2], 0, 1) : LEAST_NORMAL_Z);
+    v = vec3_normalize(v);
+    n[0] = v.x;
+    n[1] = v.y;
+    n[2] = v.z;
+}
+
+static void tidy_pixels(void *context, size_t begin, size_t end)
+{
+    surface *s = context;
+    for (size_t i = begin; i < end; i++) {
+        float *albedo = s->albedo.data + 3 * i, *normal = s->normal.data + 3 * i;
+        if (!(s->mask.data[i] > 0)) {
+            memset(albedo, 0, 3 * sizeof(float));
+            memset(normal, 0, 3 * sizeof(float));
+            s->roughness.data[i] = s->depth.data[i] = s->mask.data[i] = 0;
+            continue;
+        }
+        s->mask.data[i] = clamp(s->mask.data[i], 0, 1);
+        for (int c = 0; c < 3; c++)
+            albedo[c] = clamp(albedo[c], 0, 1);
+        tidy_normal(normal);
+        s->roughness.data[i] = clamp(s->roughness.data[i], LEAST_ROUGHNESS, 1);
+        s->depth.data[i] = clamp(s->depth.data[i], LEAST_DEPTH, LARGEST_DEPTH);
+    }
+}
+
+void surface_tidy(surface *s)
+{
+    parallel_blocks((size_t)s->mask.width * (size_t)s->mask.height, tidy_pixels, s);
+}
+
+status surface_resize_image(const img *from, const img *mask, int width, int height, img *out)
+{
+    if (from->width == width && from->height == height) return img_copy(out, from);
+    img filled = {0};
+    status s = img_copy(&filled, from);
+    if (s == OK) s = fill_outside(&filled, mask);
+    if (s == OK) s = img_resize(&filled, width, height, out);
+    img_free(&filled);
+    return s;
+}
+
+status surface_resize(const surface *from, const img *mask, surface *out)
+{
+    *out = (surface){0};
+    int w = mask->width, h = mask->height;
+    status s = img_copy(&out->mask, mask);
+    if (s == OK) s = surface_resize_image(&from->albedo, &from->mask, w, h, &out->albedo);
+    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, w, h, &out->normal);
+    if (s == OK) s = surface_resize_image(&from->roughness, &from->mask, w, h, &out->roughness);
+    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, w, h, &out->depth);
+    if (s != OK)
+        surface_free(out);
+    else
+        surface_tidy(out);
+    return s;
+}
+
+/* What one map needs to be brought to the guide's size. */
+typedef struct refinement {
+    const img *low_mask, *guide, *mask;
+} refinement;
+
+static status refine(const refinement *r, const img *from, float epsilon, img *out)
+{
+    enum { RADIUS = 2 };
+    img filled = {0};
+    status s = img_copy(&filled, from);
+    if (s == OK) s = fill_outside(&filled, r->low_mask);
+    if (s == OK) s = img_guided_upsample(&filled, r->low_mask, r->guide, r->mask, RADIUS, epsilon, out);
+    img_free(&filled);
+    return s;
+}
+
+/* The guide's noise should be even from shadow to light: a square root does that for photon noise. */
+static status encode_guide(const img *linear, img *out)
+{
+    status s = img_copy(out, linear);
+    if (s != OK) return s;
+    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
+    for (size_t i = 0; i < count; i++)
+        out->data[i] = sqrtf(clamp(out->data[i], 0, 1));
+    return OK;
+}
+
+status surface_refine(const surface *from, const img *guide, const img *mask, surface *out)
+{
+    /* colour follows the photograph closely; shape follows it only where the edge is strong, or print on a flat side
+     * would become relief */
+    const float colour_epsilon = 1e-4f, shape_epsilon = 1e-2f;
+    if (guide->width <= from->mask.width) return surface_resize(from, mask, out);
+    *out = (surface){0};
+    img encoded = {0};
+    refinement r = {&from->mask, &encoded, mask};
+    status s = encode_guide(guide, &encoded);
+    if (s == OK) s = img_copy(&out->mask, mask);
+    if (s == OK) s = refine(&r, &from->albedo, colour_epsilon, &out->albedo);
+    if (s == OK) s = refine(&r, &from->normal, shape_epsilon, &out->normal);
+    if (s == OK) s = refine(&r, &from->roughness, shape_epsilon, &out->roughness);
+    if (s == OK) s = refine(&r, &from->depth, shape_epsilon, &out->depth);
+    img_free(&encoded);
+    if (s != OK)
+        surface_free(out);
+    else
+        surface_tidy(out);
+    return s;
+}
+
+typedef struct shading {
+    const surface *s;
+    camera view;
+    vec3 light;
+    img *out;
+} shading;
+
+static void shade_rows(void *context, size_t begin, size_t end)
+{
+    const shading *job = context;
+    const surface *s = job->s;
+    size_t width = (size_t)s->mask.width;
+    for (size_t i = begin * width; i < end * width; i++) {
+        float coverage = s->mask.data[i];
+        if (!(coverage > 0)) continue;
+        const float *a = s->albedo.data + 3 * i, *n = s->normal.data + 3 * i;
+        shade_input in = {
+            .albedo = vec3_make(a[0], a[1], a[2]),
+            .roughness = s->roughness.data[i],
+            .normal = vec3_make(n[0], n[1], n[2]),
+            .depth = s->depth.data[i],
+            .ray = camera_point(&job->view, (float)(i % width) + 0.5f, (float)(i / width) + 0.5f, 1),
+            .light = job->light,
+            .power = LIGHT_POWER,
+        };
+        vec3 radiance = vec3_scale(shade_point(&in), coverage);
+        float *out = job->out->data + 3 * i;
+        out[0] = radiance.x;
+        out[1] = radiance.y;
+        out[2] = radiance.z;
+    }
+}
+
+status surface_shade(const surface *s, vec3 light, img *out)
+{
+    status result = img_new(out, s->mask.width, s->mask.height, 3);
+    if (result != OK) return result;
+    shading job = {s, {s->mask.width, s->mask.height, FIELD_OF_VIEW}, light, out};
+    parallel_blocks((size_t)s->mask.height, shade_rows, &job);
+    return OK;
+}

@@ -1,0 +1,46 @@
+/* A visible surface in a square frame: the maps of one crop, and what is done with them.
+ *
+ *     surface low;                         what the network said, at its size
+ *     surface_refine(&low, &guide, &mask, &full);  the same at the photograph's resolution
+ *     surface_shade(&full, light, &direct);        under a point light
+ *     surface_free(&low);
+ *
+ * The frame is the camera of docs/conventions.md: 60 degrees wide, the optical axis through its centre. Maps are zero
+ * outside the mask, normals unit with z > 0, everything finite; albedo and roughness in [0, 1]. */
+#ifndef MERLIN_ESTIMATE_SURFACE_H
+#define MERLIN_ESTIMATE_SURFACE_H
+
+#include "base/vec.h"
+#include "image/image.h"
+
+typedef struct surface {
+    img albedo;    /* 3 */
+    img normal;    /* 3 */
+    img roughness; /* 1 */
+    img depth;     /* 1 */
+    img mask;      /* 1, coverage */
+} surface;
+
+/* Zero maps of width × height. */
+status surface_new(int width, int height, surface *out);
+void surface_free(surface *s);
+
+/* Makes what the header promises true for any content: out-of-range values are clamped, normals made unit and turned
+ * toward the camera, non-finite values replaced, everything outside the mask zeroed. */
+void surface_tidy(surface *s);
+
+/* To another square size, averaging or interpolating the object's own pixels only. mask: the new size's. */
+status surface_resize(const surface *from, const img *mask, surface *out);
+
+/* The same with edges that follow a guide (3 channels, linear, mask's size). For a guide no larger than the surface
+ * this is surface_resize. */
+status surface_refine(const surface *from, const img *guide, const img *mask, surface *out);
+
+/* Radiance under a point light of the training data's power at `light`, before clipping, times coverage; no shadows. */
+status surface_shade(const surface *s, vec3 light, img *out);
+
+/* Any image that belongs to a surface, resized without letting its outside in: values where mask < 0.5 are replaced by
+ * their neighbours' first. */
+status surface_resize_image(const img *from, const img *mask, int width, int height, img *out);
+
+#endif
