@@ -134,15 +134,24 @@ typedef struct reader {
     bool started;
 } reader;
 
+/* Readies the decoder for a chunk: reading and unzipping are the library's, unpacking is ours. */
+static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
+{
+    exr_context_t context = r->file->context;
+    if (r->started) return exr_decoding_update(context, 0, chunk, &r->decoder);
+    r->started = true;
+    exr_result_t code = exr_decoding_initialize(context, 0, chunk, &r->decoder);
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_choose_default_routines(context, 0, &r->decoder);
+    r->decoder.unpack_and_convert_fn = NULL;
+    return code;
+}
+
 /* Decodes one chunk and spreads the asked channels over their targets; x, y: its first pixel in the image. */
 static exr_result_t read_chunk(reader *r, const exr_chunk_info_t *chunk, int x, int y)
 {
     exr_decode_pipeline_t *d = &r->decoder;
-    exr_context_t context = r->file->context;
-    exr_result_t code =
-        r->started ? exr_decoding_update(context, 0, chunk, d) : exr_decoding_initialize(context, 0, chunk, d);
-    r->started = true;
-    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(context, 0, d);
+    exr_result_t code = aim_decoder(r, chunk);
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(r->file->context, 0, d);
     if (code != EXR_ERR_SUCCESS) return code;
     const uint8_t *bytes = d->unpacked_buffer ? d->unpacked_buffer : d->packed_buffer;
     size_t width = (size_t)chunk->width, line_bytes = width * r->pixel_bytes;

@@ -122,6 +122,20 @@ static status write_file(writer *w, const char *temporary, const exr_attribute *
     return r == EXR_ERR_SUCCESS ? OK : exr_fail(ERROR_OUTPUT, "write", w->path, &w->complaint, r);
 }
 
+/* Done here because the library, refusing a channel, keeps its lock (3.1.5) and then never finishes. */
+static status check_channels(const char *path, const exr_channel *channels, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t length = strlen(channels[i].name);
+        if (length < 1 || length > 255)
+            return fail(ERROR_USAGE, "cannot write %s: a channel's name needs 1 to 255 letters", path);
+        for (size_t j = 0; j < i; j++)
+            if (strcmp(channels[i].name, channels[j].name) == 0)
+                return fail(ERROR_USAGE, "cannot write %s: two channels are called %s", path, channels[i].name);
+    }
+    return OK;
+}
+
 status exr_write(const char *path, int width, int height, const exr_channel *channels, size_t channel_count,
                  const exr_attribute *attributes, size_t attribute_count)
 {
@@ -129,7 +143,8 @@ status exr_write(const char *path, int width, int height, const exr_channel *cha
         return fail(ERROR_USAGE, "an EXR file of %d x %d pixels and %zu channels cannot be", width, height,
                     channel_count);
     char *temporary = NULL;
-    status s = file_temporary(path, &temporary);
+    status s = check_channels(path, channels, channel_count);
+    if (s == OK) s = file_temporary(path, &temporary);
     if (s != OK) return s;
     writer w = {.path = path, .width = width, .height = height, .channels = channels, .channel_count = channel_count};
     s = write_file(&w, temporary, attributes, attribute_count);

@@ -1,0 +1,270 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <OpenEXR/openexr.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "image/exr.h"
+
+/* after the project's headers: its macro fail() would break the declaration of ours */
+#include <cmocka.h>
+
+enum { WIDTH = 37, HEIGHT = 41, COUNT = WIDTH * HEIGHT };
+
+static char folder[] = "/tmp/merlin-exr-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char **names = NULL;
+    size_t count = 0;
+    if (file_list(folder, NULL, &names, &count) != OK) return -1;
+    for (size_t i = 0; i < count; i++)
+        unlink(names[i]);
+    file_list_free(names, count);
+    return rmdir(folder);
+}
+
+static const char *in_folder(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static status write_example(const char *path, const float *rgb, const float *depth)
+{
+    const exr_channel channels[] = {
+        {"depth.Z", depth, 1}, {"albedo.R", rgb, 3}, {"albedo.G", rgb + 1, 3}, {"albedo.B", rgb + 2, 3}};
+    const exr_attribute attributes[] = {exr_number("fov", 60),
+                                        exr_text("shape", "union"),
+                                        {.name = "light", .values = {0.25f, -1, 3}, .count = 3},
+                                        exr_text("a name that is longer than thirty-one letters", "kept")};
+    return exr_write(path, WIDTH, HEIGHT, channels, 4, attributes, 4);
+}
+
+static void fill(float *rgb, float *depth)
+{
+    for (int i = 0; i < 3 * COUNT; i++)
+        rgb[i] = (float)(i % 2048) / 2048; /* exact in half */
+    for (int i = 0; i < COUNT; i++)
+        depth[i] = 1 + (float)i / 3;
+}
+
+static void written_channels_and_attributes_are_read_back(void **state)
+{
+    (void)state;
+    static float rgb[3 * COUNT], depth[COUNT], rgb2[4 * COUNT], depth2[COUNT];
+    fill(rgb, depth);
+    assert_int_equal(write_example(in_folder("a.exr"), rgb, depth), OK);
+    exr_file *f = NULL;
+    assert_int_equal(exr_open(in_folder("a.exr"), &f), OK);
+    assert_int_equal(exr_width(f), WIDTH);
+    assert_int_equal(exr_height(f), HEIGHT);
+    assert_true(exr_has_channel(f, "albedo.G"));
+    assert_false(exr_has_channel(f, "albedo"));
+    const exr_target targets[] = {
+        {"albedo.B", rgb2 + 2, 4}, {"depth.Z", depth2, 1}, {"albedo.R", rgb2, 4}, {"albedo.G", rgb2 + 1, 4}};
+    assert_int_equal(exr_read(f, targets, 4), OK);
+    for (int i = 0; i < COUNT; i++) {
+        for (int c = 0; c < 3; c++)
+            assert_true(rgb2[4 * i + c] == rgb[3 * i + c]);
+        /* half keeps 11 significant bits, rounded to nearest: a relative error of 2^-12 at most */
+        assert_true(fabsf(depth2[i] - depth[i]) <= depth[i] * 0x1p-11f);
+        assert_true(rgb2[4 * i + 3] == 0);
+    }
+    float number = 0, light[3] = {0}, two[2];
+    assert_true(exr_get_numbers(f, "fov", &number, 1));
+    assert_true(number == 60);
+    assert_true(exr_get_numbers(f, "light", light, 3));
+    assert_true(light[0] == 0.25f && light[1] == -1 && light[2] == 3);
+    assert_false(exr_get_numbers(f, "light", two, 2));
+    assert_false(exr_get_numbers(f, "shape", &number, 1));
+    assert_false(exr_get_numbers(f, "none", &number, 1));
+    assert_string_equal(exr_get_text(f, "shape"), "union");
+    assert_string_equal(exr_get_text(f, "a name that is longer than thirty-one letters"), "kept");
+    assert_null(exr_get_text(f, "none"));
+    assert_null(exr_get_text(f, "fov"));
+    exr_close(f);
+}
+
+static void values_beyond_half_are_clamped(void **state)
+{
+    (void)state;
+    const float values[4] = {1e9f, -INFINITY, 65519, 0x1p-24f};
+    float back[4] = {0};
+    const exr_channel channel = {"Y", values, 1};
+    const exr_target target = {"Y", back, 1};
+    assert_int_equal(exr_write(in_folder("b.exr"), 2, 2, &channel, 1, NULL, 0), OK);
+    exr_file *f = NULL;
+    assert_int_equal(exr_open(in_folder("b.exr"), &f), OK);
+    assert_int_equal(exr_read(f, &target, 1), OK);
+    exr_close(f);
+    assert_true(back[0] == 65504 && back[1] == -65504 && back[2] == 65504 && back[3] == 0x1p-24f);
+}
+
+static void missing_channel_is_named(void **state)
+{
+    (void)state;
+    float y = 0;
+    const exr_channel channel = {"Y", &y, 1};
+    assert_int_equal(exr_write(in_folder("c.exr"), 1, 1, &channel, 1, NULL, 0), OK);
+    exr_file *f = NULL;
+    assert_int_equal(exr_open(in_folder("c.exr"), &f), OK);
+    const exr_target target = {"normal.X", &y, 1};
+    assert_int_equal(exr_read(f, &target, 1), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "normal.X"));
+    assert_non_null(strstr(status_message(), "c.exr"));
+    exr_close(f);
+}
+
+/* Reads as far as it goes and says whether all of it went. */
+static status read_depth(const char *path)
+{
+    static float depth[COUNT];
+    exr_file *f = NULL;
+    status s = exr_open(path, &f);
+    if (s != OK) return s;
+    assert_int_equal(exr_width(f), WIDTH);
+    assert_int_equal(exr_height(f), HEIGHT);
+    const exr_target target = {"depth.Z", depth, 1};
+    s = exr_read(f, &target, 1);
+    exr_close(f);
+    return s;
+}
+
+static void every_truncation_is_refused(void **state)
+{
+    (void)state;
+    static float rgb[3 * COUNT], depth[COUNT];
+    fill(rgb, depth);
+    assert_int_equal(write_example(in_folder("d.exr"), rgb, depth), OK);
+    char *data = NULL;
+    size_t size = 0;
+    assert_int_equal(file_read(in_folder("d.exr"), 1u << 20, &data, &size), OK);
+    for (size_t keep = 0; keep < size; keep += keep < 700 ? 1 : 97) {
+        FILE *out = fopen(in_folder("cut.exr"), "wb");
+        assert_non_null(out);
+        assert_int_equal(fwrite(data, 1, keep, out), keep);
+        fclose(out);
+        assert_int_not_equal(read_depth(in_folder("cut.exr")), OK);
+        assert_non_null(strstr(status_message(), "cut.exr"));
+        assert_null(strchr(status_message(), '\n'));
+    }
+    free(data);
+}
+
+static void missing_and_foreign_files_are_refused(void **state)
+{
+    (void)state;
+    exr_file *f = NULL;
+    assert_int_equal(exr_open(in_folder("none.exr"), &f), ERROR_INPUT);
+    assert_null(f);
+    assert_non_null(strstr(status_message(), "none.exr"));
+    assert_int_equal(file_write(in_folder("text.exr"), "not a picture\n", 14), OK);
+    assert_int_equal(exr_open(in_folder("text.exr"), &f), ERROR_INPUT);
+    assert_null(f);
+}
+
+static void failed_write_leaves_nothing(void **state)
+{
+    (void)state;
+    float y = 0;
+    const exr_channel channel = {"Y", &y, 1};
+    assert_int_equal(exr_write(in_folder("no/such/folder.exr"), 1, 1, &channel, 1, NULL, 0), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "folder.exr"));
+    assert_null(strchr(status_message(), '~'));
+    /* the header is refused after the file was begun: an attribute may not change the type of a standard one */
+    const exr_attribute wrong = exr_text("screenWindowWidth", "wide");
+    assert_int_equal(exr_write(in_folder("wrong.exr"), 1, 1, &channel, 1, &wrong, 1), ERROR_OUTPUT);
+    assert_false(file_exists(in_folder("wrong.exr")));
+    const exr_channel twice[] = {{"Y", &y, 1}, {"Y", &y, 1}};
+    assert_int_equal(exr_write(in_folder("twice.exr"), 1, 1, twice, 2, NULL, 0), ERROR_USAGE);
+    assert_false(file_exists(in_folder("twice.exr")));
+    char **names = NULL;
+    size_t count = 0;
+    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
+    for (size_t i = 0; i < count; i++)
+        assert_null(strchr(names[i], '~'));
+    file_list_free(names, count);
+}
+
+/* A tiled file of float and uint channels, written with the library itself. */
+static void write_tiles(const char *path, const float *depth, const uint32_t *id, int tile)
+{
+    exr_context_t c = NULL;
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    int part = 0;
+    assert_int_equal(exr_start_write(&c, path, EXR_WRITE_FILE_DIRECTLY, &init), 0);
+    assert_int_equal(exr_add_part(c, "tiles", EXR_STORAGE_TILED, &part), 0);
+    assert_int_equal(exr_initialize_required_attr_simple(c, 0, WIDTH, HEIGHT, EXR_COMPRESSION_NONE), 0);
+    assert_int_equal(
+        exr_set_tile_descriptor(c, 0, (uint32_t)tile, (uint32_t)tile, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN), 0);
+    assert_int_equal(exr_add_channel(c, 0, "depth.Z", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1), 0);
+    assert_int_equal(exr_add_channel(c, 0, "id.Y", EXR_PIXEL_UINT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1), 0);
+    assert_int_equal(exr_write_header(c), 0);
+    exr_encode_pipeline_t e = EXR_ENCODE_PIPELINE_INITIALIZER;
+    for (int y = 0, first = 1; y < HEIGHT; y += tile) {
+        for (int x = 0; x < WIDTH; x += tile, first = 0) {
+            exr_chunk_info_t chunk;
+            assert_int_equal(exr_write_tile_chunk_info(c, 0, x / tile, y / tile, 0, 0, &chunk), 0);
+            assert_int_equal((first ? exr_encoding_initialize : exr_encoding_update)(c, 0, &chunk, &e), 0);
+            for (int i = 0; i < 2; i++) {
+                const void *from = i == 0 ? (const void *)(depth + y * WIDTH + x) : (const void *)(id + y * WIDTH + x);
+                e.channels[i].encode_from_ptr = from;
+                e.channels[i].user_pixel_stride = 4;
+                e.channels[i].user_line_stride = 4 * WIDTH;
+            }
+            if (first) assert_int_equal(exr_encoding_choose_default_routines(c, 0, &e), 0);
+            assert_int_equal(exr_encoding_run(c, 0, &e), 0);
+        }
+    }
+    exr_encoding_destroy(c, &e);
+    assert_int_equal(exr_finish(&c), 0);
+}
+
+static void tiles_of_float_and_uint_are_read(void **state)
+{
+    (void)state;
+    static float depth[COUNT], depth2[COUNT], id2[COUNT];
+    static uint32_t id[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        depth[i] = 0.1f * (float)i;
+        id[i] = (uint32_t)i;
+    }
+    write_tiles(in_folder("tiles.exr"), depth, id, 16);
+    exr_file *f = NULL;
+    assert_int_equal(exr_open(in_folder("tiles.exr"), &f), OK);
+    const exr_target targets[] = {{"id.Y", id2, 1}, {"depth.Z", depth2, 1}};
+    assert_int_equal(exr_read(f, targets, 2), OK);
+    exr_close(f);
+    for (int i = 0; i < COUNT; i++)
+        assert_true(depth2[i] == depth[i] && id2[i] == (float)i);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(written_channels_and_attributes_are_read_back),
+        cmocka_unit_test(values_beyond_half_are_clamped),
+        cmocka_unit_test(missing_channel_is_named),
+        cmocka_unit_test(every_truncation_is_refused),
+        cmocka_unit_test(missing_and_foreign_files_are_refused),
+        cmocka_unit_test(failed_write_leaves_nothing),
+        cmocka_unit_test(tiles_of_float_and_uint_are_read),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
