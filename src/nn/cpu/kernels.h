@@ -42,7 +42,7 @@ void cpu_add(const cpu_tensor *a, const cpu_tensor *b, cpu_tensor *y);
 void cpu_insert_channels(const cpu_tensor *x, cpu_tensor *y, int first, bool accumulate);
 void cpu_extract_channels(const cpu_tensor *y, int first, cpu_tensor *x, bool accumulate);
 
-/* y = x·gate, gate.c == 1. Backward: dx or dgate NULL where none is wanted. */
+/* y = x·gate, gate.c == 1. Backward: dx or dgate NULL (or without data) where none is wanted. */
 void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y);
 void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
                        bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate);

@@ -1,0 +1,114 @@
+/* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013). */
+#include "nn/nn.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "nn/cpu/kernels.h"
+
+struct nn_adam {
+    nn_params *params;
+    nn_adam_options options;
+    int64_t steps, skipped;
+    float *moments; /* both moments of every parameter, parameter after parameter */
+    size_t *first;  /* where in moments a parameter begins */
+};
+
+static status allocate(nn_adam *adam)
+{
+    size_t count = nn_params_count(adam->params), total = 0;
+    adam->first = calloc(count + 1, sizeof *adam->first);
+    if (!adam->first) return fail(ERROR_MEMORY, "no memory for the optimizer");
+    for (size_t i = 0; i < count; i++) {
+        adam->first[i] = total;
+        total += 2 * nn_params_at(adam->params, i)->count;
+    }
+    adam->moments = calloc(total + 1, sizeof *adam->moments);
+    return adam->moments ? OK : fail(ERROR_MEMORY, "no memory for the optimizer's %zu moments", total);
+}
+
+status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out)
+{
+    if (!(options->beta1 >= 0 && options->beta1 < 1 && options->beta2 >= 0 && options->beta2 < 1))
+        return fail(ERROR_USAGE, "Adam's betas must be at least 0 and below 1");
+    if (!(options->epsilon > 0 && options->clip_norm >= 0))
+        return fail(ERROR_USAGE, "Adam's epsilon must be positive and its clipping norm at least 0");
+    nn_adam *adam = calloc(1, sizeof *adam);
+    if (!adam) return fail(ERROR_MEMORY, "no memory for the optimizer");
+    adam->params = params;
+    adam->options = *options;
+    status s = allocate(adam);
+    if (s != OK) {
+        nn_adam_free(adam);
+        return s;
+    }
+    *out = adam;
+    return OK;
+}
+
+void nn_adam_free(nn_adam *adam)
+{
+    if (!adam) return;
+    free(adam->first);
+    free(adam->moments);
+    free(adam);
+}
+
+static double gradient_norm(nn_params *params)
+{
+    double sum = 0;
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        if (p->gradient) sum += cpu_sum_squares(p->gradient, p->count);
+    }
+    return sqrt(sum);
+}
+
+status nn_adam_step(nn_adam *adam, float learning_rate)
+{
+    if (!(learning_rate >= 0) || isinf(learning_rate))
+        return fail(ERROR_USAGE, "the learning rate must be a number of at least 0");
+    double norm = gradient_norm(adam->params), clip = (double)adam->options.clip_norm;
+    if (!isfinite(norm)) {
+        adam->skipped++;
+        return OK;
+    }
+    adam->steps++;
+    cpu_adam_step step = {.beta1 = adam->options.beta1,
+                          .beta2 = adam->options.beta2,
+                          .epsilon = adam->options.epsilon,
+                          .correction1 = (float)(1 - pow((double)adam->options.beta1, (double)adam->steps)),
+                          .correction2 = (float)(1 - pow((double)adam->options.beta2, (double)adam->steps)),
+                          .gradient_scale = clip > 0 && norm > clip ? (float)(clip / norm) : 1};
+    for (size_t i = 0; i < nn_params_count(adam->params); i++) {
+        nn_param *p = nn_params_at(adam->params, i);
+        if (!p->gradient) continue;
+        step.learning_rate = learning_rate * p->learning_rate_scale;
+        cpu_adam(&step, p->count, p->value, p->gradient, nn_adam_moment(adam, i, 1), nn_adam_moment(adam, i, 2));
+    }
+    nn_params_touch(adam->params);
+    return OK;
+}
+
+int64_t nn_adam_steps(const nn_adam *adam)
+{
+    return adam->steps;
+}
+
+int64_t nn_adam_skipped(const nn_adam *adam)
+{
+    return adam->skipped;
+}
+
+void nn_adam_set_steps(nn_adam *adam, int64_t steps, int64_t skipped)
+{
+    adam->steps = steps;
+    adam->skipped = skipped;
+}
+
+float *nn_adam_moment(nn_adam *adam, size_t param, int which)
+{
+    size_t count = nn_params_at(adam->params, param)->count;
+    return adam->moments + adam->first[param] + (which == 1 ? 0 : count);
+}

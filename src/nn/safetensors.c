@@ -1,0 +1,296 @@
+/* Reading: the header is parsed into a list of tensors sorted by place, each checked by itself, then the list as a
+ * whole, then the data's checksum. */
+#include "nn/safetensors.h"
+
+#include <cjson/cJSON.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "base/file.h"
+#include "base/half.h"
+#include "nn/safetensors_format.h"
+
+enum { FILE_LIMIT = 1 << 30 };
+
+struct st_file {
+    char *owned; /* the bytes, if st_open read them */
+    cJSON *header;
+    st_tensor *tensors;
+    size_t count;
+    const char *where;
+    const unsigned char *data;
+    size_t data_size;
+};
+
+/* Where a tensor lies in the data. */
+static size_t begin_of(const st_file *f, const st_tensor *t)
+{
+    return (size_t)((const unsigned char *)t->data - f->data);
+}
+
+static size_t bytes_of(const st_tensor *t)
+{
+    return t->count * st_type_size(t->type);
+}
+
+/* A non-negative whole number that a double holds exactly. */
+static bool read_size(const cJSON *item, size_t *out)
+{
+    if (!cJSON_IsNumber(item)) return false;
+    double d = item->valuedouble;
+    if (!(d >= 0 && d <= 0x1p53) || d != (double)(uint64_t)d) return false;
+    *out = (size_t)d;
+    return true;
+}
+
+static bool read_type(const cJSON *item, st_type *out)
+{
+    if (!cJSON_IsString(item)) return false;
+    for (int t = 0; t < ST_TYPES; t++) {
+        if (strcmp(item->valuestring, st_type_name((st_type)t)) != 0) continue;
+        *out = (st_type)t;
+        return true;
+    }
+    return false;
+}
+
+static bool read_shape(const cJSON *item, st_tensor *t)
+{
+    int rank = cJSON_IsArray(item) ? cJSON_GetArraySize(item) : -1;
+    if (rank < 0 || rank > 4) return false;
+    t->rank = rank;
+    t->count = 1;
+    const cJSON *dimension;
+    int i = 0;
+    cJSON_ArrayForEach(dimension, item)
+    {
+        size_t size;
+        if (!read_size(dimension, &size) || __builtin_mul_overflow(t->count, size, &t->count)) return false;
+        t->shape[i++] = (int64_t)size;
+    }
+    return true;
+}
+
+static status read_tensor(const st_file *f, const cJSON *item, st_tensor *t)
+{
+    const cJSON *type = cJSON_GetObjectItemCaseSensitive(item, "dtype");
+    const cJSON *shape = cJSON_GetObjectItemCaseSensitive(item, "shape");
+    const cJSON *offsets = cJSON_GetObjectItemCaseSensitive(item, "data_offsets");
+    *t = (st_tensor){.name = item->string};
+    if (!cJSON_IsObject(item) || cJSON_GetArraySize(item) != 3 || !type || !shape || !offsets)
+        return fail(ERROR_INPUT, "%s: the tensor \"%s\" needs dtype, shape and data_offsets", f->where, t->name);
+    if (!read_type(type, &t->type))
+        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has a type other than F32, F16, BF16 or I64", f->where,
+                    t->name);
+    if (!read_shape(shape, t))
+        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has no shape of up to four sizes", f->where, t->name);
+    size_t begin, end, bytes;
+    if (!cJSON_IsArray(offsets) || cJSON_GetArraySize(offsets) != 2 || !read_size(offsets->child, &begin) ||
+        !read_size(offsets->child->next, &end) || begin > end)
+        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has no usable data_offsets", f->where, t->name);
+    if (__builtin_mul_overflow(t->count, st_type_size(t->type), &bytes) || bytes != end - begin)
+        return fail(ERROR_INPUT, "%s: the shape of the tensor \"%s\" does not fit its %zu bytes", f->where, t->name,
+                    end - begin);
+    if (end > f->data_size)
+        return fail(ERROR_INPUT, "%s is truncated: the tensor \"%s\" ends at byte %zu of %zu", f->where, t->name, end,
+                    f->data_size);
+    t->data = f->data + begin;
+    return OK;
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const st_tensor *x = a, *y = b;
+    if (x->data != y->data) return (const char *)x->data < (const char *)y->data ? -1 : 1;
+    size_t size_x = bytes_of(x), size_y = bytes_of(y);
+    if (size_x != size_y) return size_x < size_y ? -1 : 1;
+    return strcmp(x->name, y->name);
+}
+
+/* The tensors tile the data without holes, overlaps or a rest. */
+static status check_places(const st_file *f)
+{
+    size_t expected = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        const st_tensor *t = &f->tensors[i];
+        if (begin_of(f, t) != expected)
+            return fail(ERROR_INPUT, "%s: the tensor \"%s\" %s", f->where, t->name,
+                        begin_of(f, t) < expected ? "overlaps another" : "has a hole before it");
+        expected += bytes_of(t);
+    }
+    if (expected != f->data_size)
+        return fail(ERROR_INPUT, "%s has %zu bytes behind its last tensor", f->where, f->data_size - expected);
+    return OK;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static status check_keys(const st_file *f, const cJSON *object)
+{
+    size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
+    const char **names = malloc((count + 1) * sizeof *names);
+    if (!names) return fail(ERROR_MEMORY, "no memory for the names in %s", f->where);
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object)
+    {
+        names[i++] = item->string;
+    }
+    qsort(names, count, sizeof *names, compare_names);
+    status s = OK;
+    for (i = 1; s == OK && i < count; i++)
+        if (strcmp(names[i - 1], names[i]) == 0) s = fail(ERROR_INPUT, "%s: \"%s\" is there twice", f->where, names[i]);
+    free(names);
+    return s;
+}
+
+static status check_metadata(const st_file *f, const cJSON *metadata)
+{
+    if (!cJSON_IsObject(metadata)) return fail(ERROR_INPUT, "%s: __metadata__ is not an object", f->where);
+    const cJSON *item;
+    cJSON_ArrayForEach(item, metadata)
+    {
+        if (!cJSON_IsString(item))
+            return fail(ERROR_INPUT, "%s: the metadata \"%s\" is not a string", f->where, item->string);
+    }
+    return check_keys(f, metadata);
+}
+
+static status read_tensors(st_file *f)
+{
+    status s = check_keys(f, f->header);
+    if (s != OK) return s;
+    f->tensors = calloc((size_t)cJSON_GetArraySize(f->header) + 1, sizeof *f->tensors);
+    if (!f->tensors) return fail(ERROR_MEMORY, "no memory for the tensors of %s", f->where);
+    const cJSON *item;
+    cJSON_ArrayForEach(item, f->header)
+    {
+        s = strcmp(item->string, "__metadata__") == 0 ? check_metadata(f, item)
+                                                      : read_tensor(f, item, &f->tensors[f->count++]);
+        if (s != OK) return s;
+    }
+    qsort(f->tensors, f->count, sizeof *f->tensors, compare_places);
+    return check_places(f);
+}
+
+static status check_sum(const st_file *f)
+{
+    const char *written = st_metadata(f, ST_CHECKSUM);
+    if (!written) return OK;
+    char found[ST_CHECKSUM_SIZE];
+    st_format_checksum((uint32_t)crc32_z(0, f->data, f->data_size), found);
+    if (strcmp(written, found) == 0) return OK;
+    return fail(ERROR_INPUT, "%s was altered: its data's checksum is %s, not the recorded one; get the file again",
+                f->where, found);
+}
+
+static bool only_spaces(const char *begin, const char *end)
+{
+    while (begin < end && *begin == ' ')
+        begin++;
+    return begin == end;
+}
+
+static status read_header(st_file *f, const unsigned char *bytes, size_t size)
+{
+    uint64_t length = 0;
+    for (size_t i = 0; i < ST_PREFIX && i < size; i++)
+        length |= (uint64_t)bytes[i] << (8 * i);
+    if (size <= ST_PREFIX || bytes[ST_PREFIX] != '{' || length < 2 || length > ST_HEADER_LIMIT)
+        return fail(ERROR_INPUT, "%s is not a safetensors file", f->where);
+    if (length > size - ST_PREFIX)
+        return fail(ERROR_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
+    const char *header = (const char *)bytes + ST_PREFIX, *end = NULL;
+    f->header = cJSON_ParseWithLengthOpts(header, (size_t)length, &end, false);
+    if (!cJSON_IsObject(f->header) || !only_spaces(end, header + length))
+        return fail(ERROR_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);
+    f->data = bytes + ST_PREFIX + length;
+    f->data_size = size - ST_PREFIX - (size_t)length;
+    status s = read_tensors(f);
+    return s == OK ? check_sum(f) : s;
+}
+
+/* Takes over `owned`. */
+static status parse(const char *where, char *owned, const void *bytes, size_t size, st_file **out)
+{
+    st_file *f = calloc(1, sizeof *f);
+    if (!f) {
+        free(owned);
+        return fail(ERROR_MEMORY, "no memory to read %s", where);
+    }
+    f->owned = owned;
+    f->where = where;
+    status s = read_header(f, bytes, size);
+    f->where = NULL;
+    if (s != OK) {
+        st_close(f);
+        return s;
+    }
+    *out = f;
+    return OK;
+}
+
+status st_parse(const void *bytes, size_t size, st_file **out)
+{
+    return parse("the weights", NULL, bytes, size, out);
+}
+
+status st_open(const char *path, st_file **out)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    status s = file_read(path, FILE_LIMIT, &bytes, &size);
+    return s == OK ? parse(path, bytes, bytes, size, out) : s;
+}
+
+void st_close(st_file *f)
+{
+    if (!f) return;
+    cJSON_Delete(f->header);
+    free(f->tensors);
+    free(f->owned);
+    free(f);
+}
+
+size_t st_count(const st_file *f)
+{
+    return f->count;
+}
+
+const st_tensor *st_at(const st_file *f, size_t i)
+{
+    return &f->tensors[i];
+}
+
+const st_tensor *st_find(const st_file *f, const char *name)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (strcmp(f->tensors[i].name, name) == 0) return &f->tensors[i];
+    return NULL;
+}
+
+const char *st_metadata(const st_file *f, const char *key)
+{
+    const cJSON *metadata = cJSON_GetObjectItemCaseSensitive(f->header, "__metadata__");
+    return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(metadata, key));
+}
+
+status st_to_float(const st_tensor *t, float *out)
+{
+    if (t->type == ST_I64) return fail(ERROR_INPUT, "the tensor \"%s\" holds integers, not weights", t->name);
+    if (t->type == ST_F32) {
+        memcpy(out, t->data, t->count * sizeof *out);
+        return OK;
+    }
+    const unsigned char *from = t->data;
+    for (size_t i = 0; i < t->count; i++) {
+        uint16_t h;
+        memcpy(&h, from + 2 * i, sizeof h);
+        out[i] = t->type == ST_F16 ? half_to_float(h) : bf16_to_float(h);
+    }
+    return OK;
+}

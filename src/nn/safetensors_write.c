@@ -1,0 +1,100 @@
+/* Writing: the whole file is put together in memory and written at once. */
+#include "nn/safetensors.h"
+
+#include <cjson/cJSON.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "base/file.h"
+#include "nn/safetensors_format.h"
+
+static size_t bytes_of(const st_tensor *t)
+{
+    return t->count * st_type_size(t->type);
+}
+
+static bool add_number(cJSON *array, double value)
+{
+    return cJSON_AddItemToArray(array, cJSON_CreateNumber(value));
+}
+
+static bool describe(cJSON *header, const st_tensor *t, size_t begin)
+{
+    cJSON *item = cJSON_AddObjectToObject(header, t->name);
+    if (!item || !cJSON_AddStringToObject(item, "dtype", st_type_name(t->type))) return false;
+    cJSON *shape = cJSON_AddArrayToObject(item, "shape"), *offsets = cJSON_AddArrayToObject(item, "data_offsets");
+    if (!shape || !offsets) return false;
+    for (int i = 0; i < t->rank; i++)
+        if (!add_number(shape, (double)t->shape[i])) return false;
+    return add_number(offsets, (double)begin) && add_number(offsets, (double)(begin + bytes_of(t)));
+}
+
+static bool describe_metadata(cJSON *header, const char *const (*metadata)[2], size_t count, const char *checksum)
+{
+    cJSON *item = cJSON_AddObjectToObject(header, "__metadata__");
+    if (!item) return false;
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(metadata[i][0], ST_CHECKSUM) == 0) continue;
+        if (!cJSON_AddStringToObject(item, metadata[i][0], metadata[i][1])) return false;
+    }
+    return cJSON_AddStringToObject(item, ST_CHECKSUM, checksum);
+}
+
+/* malloc'ed JSON; NULL when memory runs out. */
+static char *header_of(const st_tensor *tensors, size_t count, const char *const (*metadata)[2], size_t metadata_count)
+{
+    uLong sum = crc32_z(0, NULL, 0);
+    cJSON *header = cJSON_CreateObject();
+    bool good = header;
+    size_t at = 0;
+    for (size_t i = 0; good && i < count; i++) {
+        good = describe(header, &tensors[i], at);
+        at += bytes_of(&tensors[i]);
+        sum = crc32_z(sum, tensors[i].data, bytes_of(&tensors[i]));
+    }
+    char checksum[ST_CHECKSUM_SIZE];
+    st_format_checksum((uint32_t)sum, checksum);
+    good = good && describe_metadata(header, metadata, metadata_count, checksum);
+    char *text = good ? cJSON_PrintUnformatted(header) : NULL;
+    cJSON_Delete(header);
+    return text;
+}
+
+static char *assemble(const char *header, const st_tensor *tensors, size_t count, size_t *size)
+{
+    size_t length = strlen(header), padded = (length + 7) / 8 * 8, total = ST_PREFIX + padded;
+    for (size_t i = 0; i < count; i++)
+        total += bytes_of(&tensors[i]);
+    char *file = malloc(total), *p = file;
+    if (!file) return NULL;
+    for (size_t i = 0; i < ST_PREFIX; i++)
+        *p++ = (char)(unsigned char)(padded >> (8 * i));
+    memcpy(p, header, length);
+    memset(p + length, ' ', padded - length);
+    p += padded;
+    for (size_t i = 0; i < count; i++) {
+        if (tensors[i].count > 0) memcpy(p, tensors[i].data, bytes_of(&tensors[i]));
+        p += bytes_of(&tensors[i]);
+    }
+    *size = total;
+    return file;
+}
+
+status st_write(const char *path, const st_tensor *tensors, size_t count, const char *const (*metadata)[2],
+                size_t metadata_count)
+{
+    char *header = header_of(tensors, count, metadata, metadata_count);
+    if (header && strlen(header) > ST_HEADER_LIMIT - 8) {
+        free(header);
+        return fail(ERROR_OUTPUT, "cannot write %s: its header would be over %d bytes", path, ST_HEADER_LIMIT);
+    }
+    size_t size = 0;
+    char *file = header ? assemble(header, tensors, count, &size) : NULL;
+    free(header);
+    if (!file) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    status s = file_write(path, file, size);
+    free(file);
+    return s;
+}
