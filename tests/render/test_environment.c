@@ -1,0 +1,122 @@
+/* Environment maps: sampling, coefficients, and light from all around. */
+#include "optics/sh.h"
+#include "render/render.h"
+#include "shapes.h"
+
+/* last: it claims the word fail */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static environment uniform_environment(uint64_t seed)
+{
+    img map;
+    environment env;
+    rng r = rng_at(seed, 0, 0);
+    assert_int_equal(img_new(&map, 32, 16, 3), OK);
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        map.data[i] = 1;
+    assert_int_equal(environment_from_map(&map, &r, &env), OK);
+    img_free(&map);
+    return env;
+}
+
+static void uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo(void **state)
+{
+    (void)state;
+    environment env = uniform_environment(1);
+    float radiance = env.map.data[0];
+    trace_device *device;
+    trace_scene scene;
+    sample out;
+    scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 64);
+    assert_int_equal(trace_device_new(&device), OK);
+    assert_int_equal(trace_scene_new(device, &sphere, shape_grey, &scene), OK);
+    scene.diffuse_only = true;
+    image_settings settings = {.size = 32, .fov = 60, .strata = 4, .paths = 64};
+    assert_int_equal(render_image(&scene, &settings, 1, 0, &env, &out), OK);
+    double sum = 0, covered = 0;
+    for (int i = 0; i < 32 * 32; i++) {
+        sum += out.env.data[3 * i];
+        covered += out.mask.data[i];
+    }
+    /* 25000 paths of relative deviation below 1: 0.6 %, three times that */
+    assert_true(fabs(sum / covered - 0.5 * radiance) < 0.02 * 0.5 * radiance);
+    /* ∫ L Y00 = L 2√π */
+    assert_true(fabsf(out.sh[0][1] - radiance * 3.5449077f) < 1e-3f * radiance && fabsf(out.sh[2][1]) < 1e-3f);
+    sample_free(&out);
+    trace_scene_free(&scene);
+    trace_device_free(device);
+    shape_free(&sphere);
+    environment_free(&env);
+}
+
+static void sampling_a_map_integrates_what_looking_it_up_does(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        rng r = rng_at(seed, 0, 0);
+        environment env;
+        assert_int_equal(environment_procedural(&r, &env), OK);
+        double sampled = 0, looked_up = 0;
+        enum { SAMPLES = 200000, ROWS = 512 };
+        for (int i = 0; i < SAMPLES; i++) {
+            vec3 d;
+            real pdf, u1 = rng_uniform(&r), u2 = rng_uniform(&r);
+            sampled += environment_sample(&env, u1, u2, &d, &pdf).y / pdf;
+            assert_true(fabsf(vec3_length(d) - 1) < 1e-4f);
+        }
+        for (int y = 0; y < ROWS; y++)
+            for (int x = 0; x < 2 * ROWS; x++) {
+                float v = ((float)y + 0.5f) / ROWS, u = ((float)x + 0.5f) / (2 * ROWS);
+                looked_up += environment_radiance(&env, environment_direction(u, v)).y * sinf(3.14159265f * v);
+            }
+        sampled /= SAMPLES;
+        looked_up *= 3.14159265 * 3.14159265 / ((double)ROWS * ROWS);
+        /* brightness over density varies by less than its mean where the light is: 3/sqrt(200000) */
+        assert_true(fabs(sampled / looked_up - 1) < 0.01);
+        /* band 0 is the whole of it; interpolation at the poles and around a small sun costs a little */
+        assert_true(fabs(env.sh[0][1] / 0.28209479 / looked_up - 1) < 0.01);
+        environment_free(&env);
+    }
+}
+
+static void density_at_a_drawn_direction_is_the_one_it_was_drawn_with(void **state)
+{
+    (void)state;
+    rng r = rng_at(11, 0, 0);
+    environment env;
+    assert_int_equal(environment_procedural(&r, &env), OK);
+    int equal = 0;
+    for (int i = 0; i < 2000; i++) {
+        vec3 d;
+        real pdf, u1 = rng_uniform(&r), u2 = rng_uniform(&r);
+        environment_sample(&env, u1, u2, &d, &pdf);
+        equal += fabsf(environment_pdf(&env, d) - pdf) <= 1e-3f * pdf;
+    }
+    /* directions on a texel's very edge may round to its neighbour */
+    assert_true(equal > 1980);
+    environment_free(&env);
+}
+
+static void middle_of_the_map_is_straight_ahead_and_its_top_is_up(void **state)
+{
+    (void)state;
+    vec3 ahead = environment_direction(0.5f, 0.5f), up = environment_direction(0.3f, 0),
+         right = environment_direction(0.75f, 0.5f);
+    assert_true(ahead.z < -0.9999f && up.y > 0.9999f && right.x > 0.9999f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo),
+        cmocka_unit_test(sampling_a_map_integrates_what_looking_it_up_does),
+        cmocka_unit_test(density_at_a_drawn_direction_is_the_one_it_was_drawn_with),
+        cmocka_unit_test(middle_of_the_map_is_straight_ahead_and_its_top_is_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
