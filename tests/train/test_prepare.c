@@ -1,0 +1,213 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "train/dataset.h"
+#include "train/prepare.h"
+
+/* cmocka names a macro fail, so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "synthetic.h"
+
+enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 25 * PIXELS + 3 };
+
+typedef struct fixture {
+    char folder[256];
+    trn_dataset *data;
+    float *memory;
+    trn_view view;
+} fixture;
+
+static void place(fixture *f)
+{
+    float *at = f->memory;
+    trn_view *v = &f->view;
+    v->size = SIZE;
+    float **const three[] = {&v->albedo, &v->normal,         &v->direct, &v->indirect,
+                             &v->image,  &v->reconstruction, &v->relit};
+    float **const one[] = {&v->roughness, &v->depth, &v->mask, &v->loss_mask};
+    for (int i = 0; i < 7; i++, at += 3 * PIXELS)
+        *three[i] = at;
+    for (int i = 0; i < 4; i++, at += PIXELS)
+        *one[i] = at;
+    v->light = at;
+}
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    assert_non_null(f);
+    scratch_folder(f->folder, sizeof f->folder);
+    for (int i = 0; i < 3; i++)
+        sphere_write(f->folder, SIZE, i);
+    f->memory = malloc(FLOATS * sizeof(float));
+    assert_non_null(f->memory);
+    place(f);
+    if (trn_dataset_open(f->folder, SIZE, 1, &f->data) != OK) fail_msg("%s", status_message());
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    trn_dataset_close(f->data);
+    scratch_remove(f->folder);
+    free(f->memory);
+    free(f);
+    return 0;
+}
+
+/* The flash and the frame look the same in all eight orientations, so the turned maps must render to the turned image.
+ */
+static void turned_maps_render_to_the_turned_image(void **state)
+{
+    fixture *f = *state;
+    float *image = malloc(3 * PIXELS * sizeof(float));
+    assert_non_null(image);
+    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+        assert_int_equal(trn_dataset_get(f->data, 1, orientation, &f->view), OK);
+        trn_render(&f->view, vec3_make(0, 0, 0), image);
+        int inside = 0;
+        for (int i = 0; i < 3 * PIXELS; i++) {
+            /* normals in half floats are off by 5e-4, radiance in half by another 5e-4 of up to 1 */
+            assert_float_equal(image[i], fminf(f->view.direct[i], 1), 4e-3);
+            inside += image[i] > 0.05f;
+        }
+        assert_true(inside > PIXELS / 10);
+    }
+    free(image);
+}
+
+static void the_eight_orientations_differ(void **state)
+{
+    fixture *f = *state;
+    float *all = malloc(TRN_ORIENTATIONS * 3 * PIXELS * sizeof(float));
+    assert_non_null(all);
+    for (int i = 0; i < TRN_ORIENTATIONS; i++) {
+        assert_int_equal(trn_dataset_get(f->data, 1, i, &f->view), OK);
+        memcpy(all + (size_t)i * 3 * PIXELS, f->view.direct, 3 * PIXELS * sizeof(float));
+        for (int k = 0; k < i; k++)
+            assert_memory_not_equal(all + (size_t)i * 3 * PIXELS, all + (size_t)k * 3 * PIXELS,
+                                    3 * PIXELS * sizeof(float));
+    }
+    free(all);
+}
+
+static void sample_from_memory_equals_sample_from_disk(void **state)
+{
+    fixture *f = *state;
+    trn_dataset *forgetful;
+    assert_int_equal(trn_dataset_open(f->folder, SIZE, 0, &forgetful), OK);
+    float *copy = malloc(FLOATS * sizeof(float));
+    assert_non_null(copy);
+    for (int pass = 0; pass < 2; pass++) {
+        memset(f->memory, 0, FLOATS * sizeof(float));
+        assert_int_equal(trn_dataset_get(f->data, 2, 5, &f->view), OK);
+        memcpy(copy, f->memory, FLOATS * sizeof(float));
+        memset(f->memory, 0, FLOATS * sizeof(float));
+        assert_int_equal(trn_dataset_get(forgetful, 2, 5, &f->view), OK);
+        assert_memory_equal(copy, f->memory, FLOATS * sizeof(float));
+    }
+    free(copy);
+    trn_dataset_close(forgetful);
+}
+
+static void sample_of_another_size_is_refused(void **state)
+{
+    fixture *f = *state;
+    trn_dataset *d;
+    trn_view v = f->view;
+    v.size = 32;
+    assert_int_equal(trn_dataset_open(f->folder, 32, 1, &d), OK);
+    assert_int_equal(trn_dataset_get(d, 0, 0, &v), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "64"));
+    trn_dataset_close(d);
+}
+
+static void empty_folder_is_refused(void **state)
+{
+    (void)state;
+    char folder[256];
+    scratch_folder(folder, sizeof folder);
+    trn_dataset *d;
+    assert_int_equal(trn_dataset_open(folder, SIZE, 1, &d), ERROR_INPUT);
+    scratch_remove(folder);
+}
+
+static void perfect_camera_shows_direct_plus_indirect(void **state)
+{
+    fixture *f = *state;
+    for (int global = 0; global < 2; global++) {
+        rng r = rng_at(1, 2, 3);
+        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+        trn_camera lens = trn_camera_perfect();
+        trn_prepare(&f->view, global, &lens, vec3_make(0.5f, 0, -0.5f), &r);
+        const trn_view *v = &f->view;
+        for (int i = 0; i < 3 * PIXELS; i++) {
+            float linear = v->image[i] * v->image[i];
+            if (v->reconstruction[i] < 1 && v->direct[i] < 1) /* where nothing was clipped */
+                assert_float_equal(linear, global ? v->reconstruction[i] : v->direct[i], 1e-5);
+            assert_true(v->mask[i / 3] == 1 || v->image[i] == 0);
+            assert_true(v->mask[i / 3] == 0 || v->mask[i / 3] == 1);
+        }
+    }
+}
+
+static void camera_spoils_the_input_and_not_the_targets(void **state)
+{
+    fixture *f = *state;
+    train_config c = {.exposure_jitter = 0.3, .colour_jitter = 0.1};
+    float *clean = malloc(FLOATS * sizeof(float));
+    assert_non_null(clean);
+    trn_camera perfect = trn_camera_perfect();
+    rng r = rng_at(1, 2, 3);
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    trn_prepare(&f->view, true, &perfect, vec3_make(0, 0, 0), &r);
+    memcpy(clean, f->memory, FLOATS * sizeof(float));
+    const float *image = clean + (f->view.image - f->memory);
+    for (uint64_t i = 0; i < 20; i++) {
+        r = rng_at(1, i, 3);
+        trn_camera lens = trn_camera_draw(&c, &r);
+        for (int k = 0; k < 3; k++)
+            assert_true(fabsf(logf(lens.gain[k])) <= 0.4f + 1e-5f);
+        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+        trn_prepare(&f->view, true, &lens, vec3_make(0, 0, 0), &r);
+        assert_memory_not_equal(f->view.image, image, 3 * PIXELS * sizeof(float));
+        memcpy(f->view.image, image, 3 * PIXELS * sizeof(float));
+        assert_memory_equal(f->memory, clean, FLOATS * sizeof(float));
+    }
+    free(clean);
+}
+
+static void target_lights_lie_on_the_frontal_hemisphere(void **unused)
+{
+    (void)unused;
+    rng r = rng_at(5, 6, 7);
+    for (int i = 0; i < 1000; i++) {
+        vec3 light = trn_draw_light(&r);
+        assert_float_equal(vec3_length(vec3_sub(light, vec3_make(0, 0, -1))), 1, 1e-5);
+        assert_true(light.z >= -1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(turned_maps_render_to_the_turned_image, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_eight_orientations_differ, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sample_from_memory_equals_sample_from_disk, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sample_of_another_size_is_refused, set_up, tear_down),
+        cmocka_unit_test(empty_folder_is_refused),
+        cmocka_unit_test_setup_teardown(perfect_camera_shows_direct_plus_indirect, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(camera_spoils_the_input_and_not_the_targets, set_up, tear_down),
+        cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,243 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "model/model.h"
+#include "nn/safetensors.h"
+#include "train/train.h"
+
+/* cmocka names a macro fail, so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "synthetic.h"
+
+enum { SIZE = 64, SAMPLES = 6 };
+
+typedef struct fixture {
+    char data[256], root[256], config[300];
+} fixture;
+
+/* A model of a few thousand parameters. */
+static void write_config(const fixture *f, int presentations, int batch, int validation, const char *more)
+{
+    char text[2048];
+    int n =
+        snprintf(text, sizeof text,
+                 "{\"model\": {\"name\": \"tiny\", \"input_global\": true, \"material_decoders\": 1, "
+                 "\"feature_sharing\": true, \"gated_attention\": true, \"relight\": \"network\", "
+                 "\"global_illumination\": true, \"lighting\": \"point\", \"widths\": [16, 16, 16, 16, 16], "
+                 "\"gi_widths\": [8, 8, 8, 8, 8]}, \"training\": {\"size\": %d, \"batch\": %d, \"presentations\": %d, "
+                 "\"learning_rate\": 3e-3, \"encoder_rate_scale\": 1, \"halve_every_epochs\": 30, "
+                 "\"warmup_steps\": 2, \"beta1\": 0.9, \"beta2\": 0.99, \"clip_norm\": 5, \"type\": \"f32\", "
+                 "\"seed\": 1, %s, \"memory_gib\": 1, \"validation_count\": %d, "
+                 "\"validation_steps\": 2, \"curve_steps\": 4, \"checkpoint_minutes\": 100}}",
+                 SIZE, batch, presentations, more, validation);
+    if (file_write(f->config, text, (size_t)n) != OK) fail_msg("%s", status_message());
+}
+
+static const char *const jitter = "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05";
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    assert_non_null(f);
+    scratch_folder(f->data, sizeof f->data);
+    scratch_folder(f->root, sizeof f->root);
+    snprintf(f->config, sizeof f->config, "%s/tiny.json", f->root);
+    for (int i = 0; i < SAMPLES; i++)
+        sphere_write(f->data, SIZE, i);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    static const char *const runs[] = {"a", "b", "c"};
+    for (int i = 0; i < 3; i++) {
+        char *path = file_join(f->root, runs[i]);
+        scratch_remove(path);
+        free(path);
+    }
+    scratch_remove(f->data);
+    scratch_remove(f->root);
+    free(f);
+    return 0;
+}
+
+static int steps_left;
+
+static int stop_after_steps(void)
+{
+    return --steps_left <= 0;
+}
+
+static status train(const fixture *f, const char *name, bool resume, int stop_after)
+{
+    char *output = file_join(f->root, name);
+    steps_left = stop_after;
+    trn_options o = {.config = f->config,
+                     .data = f->data,
+                     .output = output,
+                     .resume = resume,
+                     .quiet = true,
+                     .interrupted = stop_after ? stop_after_steps : NULL};
+    status s = trn_train(&o);
+    free(output);
+    return s;
+}
+
+static char *contents(const fixture *f, const char *run, const char *name, size_t *size)
+{
+    char path[600], *data;
+    snprintf(path, sizeof path, "%s/%s/%s", f->root, run, name);
+    if (file_read(path, 1 << 28, &data, size) != OK) fail_msg("%s", status_message());
+    return data;
+}
+
+static void same_file(const fixture *f, const char *a, const char *b, const char *name)
+{
+    size_t size_a, size_b;
+    char *data_a = contents(f, a, name, &size_a), *data_b = contents(f, b, name, &size_b);
+    assert_int_equal(size_a, size_b);
+    assert_memory_equal(data_a, data_b, size_a);
+    free(data_a);
+    free(data_b);
+}
+
+/* Parameters, running statistics and both moments, bit by bit. */
+static void same_tensors(const fixture *f, const char *a, const char *b)
+{
+    char path[600];
+    st_file *x, *y;
+    snprintf(path, sizeof path, "%s/%s/checkpoint.safetensors", f->root, a);
+    assert_int_equal(st_open(path, &x), OK);
+    snprintf(path, sizeof path, "%s/%s/checkpoint.safetensors", f->root, b);
+    assert_int_equal(st_open(path, &y), OK);
+    assert_int_equal(st_count(x), st_count(y));
+    assert_true(st_count(x) > 100);
+    for (size_t i = 0; i < st_count(x); i++) {
+        const st_tensor *t = st_at(x, i), *u = st_find(y, t->name);
+        assert_non_null(u);
+        if (memcmp(t->data, u->data, t->count * sizeof(float)) != 0) fail_msg("%s differs", t->name);
+    }
+    assert_string_equal(st_metadata(x, "counters"), st_metadata(y, "counters"));
+    assert_string_equal(st_metadata(x, "open_losses"), st_metadata(y, "open_losses"));
+    st_close(x);
+    st_close(y);
+}
+
+static void resumed_training_is_bit_identical(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 12, 2, 2, jitter);
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
+    same_tensors(f, "a", "b");
+    same_file(f, "a", "b", "curves.csv");
+    same_file(f, "a", "b", "validation.csv");
+}
+
+/* A run killed outright leaves rows behind its last checkpoint. */
+static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 12, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    char path[600];
+    snprintf(path, sizeof path, "%s/b/validation.csv", f->root);
+    FILE *file = fopen(path, "a");
+    assert_non_null(file);
+    fputs("4,8,1,0,99\n5,10,1", file);
+    fclose(file);
+    assert_int_equal(train(f, "b", true, 0), OK);
+    same_file(f, "a", "b", "validation.csv");
+}
+
+static void losses_fall_on_two_samples(void **state)
+{
+    const fixture *f = *state;
+    for (int i = 2; i < SAMPLES; i++) {
+        char *path = sample_path(f->data, (uint64_t)i);
+        unlink(path);
+        free(path);
+    }
+    write_config(f, 240, 4, 0, "\"exposure_jitter\": 0, \"colour_jitter\": 0");
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    size_t size;
+    char *text = contents(f, "a", "curves.csv", &size), *line = strchr(text, '\n') + 1;
+    double first = 0, last = 0;
+    for (; line && *line; line = strchr(line, '\n') + 1) {
+        assert_int_equal(sscanf(line, "%*d,%*d,%*f,%*d,%lf", &last), 1);
+        if (first == 0) first = last;
+    }
+    print_message("total loss from %.3f to %.3f\n", first, last);
+    assert_true(last < 0.3 * first); /* the first row is the mean of the first four steps */
+    free(text);
+}
+
+static void run_is_not_overwritten_without_resume(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 4, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    assert_int_equal(train(f, "a", false, 0), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "--resume"));
+    assert_int_equal(train(f, "c", true, 0), ERROR_INPUT);
+}
+
+static void checkpoint_of_another_configuration_is_refused(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 12, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    write_config(f, 14, 2, 2, jitter);
+    assert_int_equal(train(f, "a", true, 0), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "training configuration"));
+}
+
+static void more_held_back_than_there_are_is_refused(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 4, 2, SAMPLES, jitter);
+    assert_int_equal(train(f, "a", false, 0), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "validation_count"));
+}
+
+static void exported_weights_load_as_a_model(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 4, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    char path[600];
+    snprintf(path, sizeof path, "%s/a/weights.safetensors", f->root);
+    model_config c;
+    nn_params *params;
+    if (model_load(path, &c, &params) != OK) fail_msg("%s", status_message());
+    assert_string_equal(c.name, "tiny");
+    assert_true(nn_params_count(params) > 50);
+    nn_params_free(params);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(resumed_training_is_bit_identical, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(rows_behind_the_checkpoint_are_dropped_on_resume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,94 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "train/config.h"
+
+/* cmocka names a macro fail, so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static char *shipped(void)
+{
+    char *text;
+    size_t size;
+    if (file_read(MERLIN_SOURCE_DIR "/configs/merlin-point.json", 1 << 20, &text, &size) != OK)
+        fail_msg("%s", status_message());
+    return text;
+}
+
+static void refuses(const char *from, const char *to, const char *word)
+{
+    model_config m;
+    train_config t;
+    char *good = shipped(), text[8192];
+    const char *at = strstr(good, from);
+    assert_non_null(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, to, at + strlen(from));
+    assert_int_equal(train_config_parse(text, strlen(text), "test.json", &m, &t), ERROR_INPUT);
+    if (!strstr(status_message(), word)) fail_msg("\"%s\" does not name %s", status_message(), word);
+    free(good);
+}
+
+static void shipped_configuration_survives_writing_and_reading(void **unused)
+{
+    (void)unused;
+    model_config m, m2;
+    train_config t, t2;
+    char *good = shipped();
+    assert_int_equal(train_config_parse(good, strlen(good), "test.json", &m, &t), OK);
+    assert_int_equal(t.size, 128);
+    assert_int_equal(t.type, NN_BFLOAT16);
+    char *model = model_config_write(&m), *training = train_config_write(&t), again[8192];
+    snprintf(again, sizeof again, "{\"training\": %s, \"model\": %s}", training, model);
+    assert_int_equal(train_config_parse(again, strlen(again), "again.json", &m2, &t2), OK);
+    assert_memory_equal(&m, &m2, sizeof m);
+    assert_memory_equal(&t, &t2, sizeof t);
+    free(model);
+    free(training);
+    free(good);
+}
+
+static void every_shipped_configuration_can_be_trained(void **unused)
+{
+    (void)unused;
+    for (int i = 1; i <= 9; i++) {
+        char path[512];
+        model_config m;
+        train_config t;
+        snprintf(path, sizeof path, "%s/configs/table1-%d.json", MERLIN_SOURCE_DIR, i);
+        if (train_config_read(path, &m, &t) != OK) fail_msg("%s", status_message());
+        assert_int_equal(m.lighting, MODEL_LIGHT_POINT);
+    }
+}
+
+static void wrong_configurations_are_refused_by_key(void **unused)
+{
+    (void)unused;
+    refuses("\"size\": 128", "\"size\": 100", "size");
+    refuses("\"size\": 128", "\"siez\": 128", "size");
+    refuses("\"batch\": 16", "\"batch\": 0", "batch");
+    refuses("\"batch\": 16", "\"batch\": \"16\"", "batch");
+    refuses("\"batch\": 16", "\"batch\": 15", "validation_count");
+    refuses("\"batch\": 16", "\"batch\": 16, \"bacth\": 16", "bacth");
+    refuses("\"presentations\": 300000", "\"presentations\": 1e12", "presentations");
+    refuses("\"bf16\"", "\"f16\"", "type");
+    refuses("\"training\":", "\"trianing\":", "training");
+    refuses("\"model\":", "\"extra\": {}, \"model\":", "extra");
+    refuses("\"seed\": 1,", "", "seed");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shipped_configuration_survives_writing_and_reading),
+        cmocka_unit_test(every_shipped_configuration_can_be_trained),
+        cmocka_unit_test(wrong_configurations_are_refused_by_key),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
