@@ -1,0 +1,146 @@
+/* merlin bench: what the model, the estimate and the renderer cost on this machine. */
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "cli/cli.h"
+#include "cli/photos.h"
+#include "eval/bench.h"
+#include "model/model.h"
+#include "train/checkpoint.h"
+
+static const char help[] =
+    "usage: merlin bench [options]\n\n"
+    "Measures this machine's peak rate of convolutions, and against it the network's inference and training, then\n"
+    "merlin estimate as a whole, and the renderer.\n\n"
+    "      --model W       weights (default: those merlin estimate takes)\n"
+    "      --config C.json random weights of this configuration instead\n"
+    "      --batch N       pictures in a training step (default 16)\n"
+    "      --quick         fewer runs\n"
+    "      --json          report on standard output as JSON\n"
+    "      --quiet         no progress\n"
+    "  -h, --help          this text\n";
+
+static const struct option long_options[] = {
+    {"model", required_argument, NULL, 'm'}, {"config", required_argument, NULL, 'c'},
+    {"batch", required_argument, NULL, 'b'}, {"quick", no_argument, NULL, 'f'},
+    {"json", no_argument, NULL, 'j'},        {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},        {0},
+};
+
+typedef struct bench_request {
+    bench_options options;
+    const char *model, *config;
+    bool json, help;
+} bench_request;
+
+static status parse_option(int option, const char *value, bench_request *r)
+{
+    long batch = 0;
+    status s = OK;
+    switch (option) {
+    case 'm':
+        r->model = value;
+        break;
+    case 'c':
+        r->config = value;
+        break;
+    case 'b':
+        s = cli_int("--batch", value, 1, 256, &batch);
+        r->options.batch = (int)batch;
+        break;
+    case 'f':
+        r->options.quick = true;
+        break;
+    case 'j':
+        r->json = true;
+        break;
+    case 'q':
+        r->options.quiet = true;
+        break;
+    default:
+        r->help = true;
+        break;
+    }
+    return s;
+}
+
+/* Cost does not depend on what the weights are. */
+static status write_random_weights(const char *config_path, const char *path)
+{
+    model_config config;
+    nn_graph *g = NULL;
+    nn_params *params = NULL;
+    char *json = NULL;
+    status s = model_config_read(config_path, &config);
+    if (s == OK) s = model_build(&config, MODEL_WHOLE, &g);
+    if (s == OK) s = nn_params_new(g, 1, &params);
+    if (s == OK && !(json = model_config_write(&config))) s = fail(ERROR_MEMORY, "no memory for a configuration");
+    trn_provenance none = {.config = json, .training = "{}", .note = "random weights of merlin bench"};
+    if (s == OK) s = train_export(path, params, &none);
+    free(json);
+    nn_params_free(params);
+    nn_graph_free(g);
+    return s;
+}
+
+static status run(bench_request *r)
+{
+    bench_report report;
+    status s = bench_run(&r->options, &report);
+    if (s != OK) return s;
+    if (!r->json) {
+        bench_print_table(&report, stdout);
+        return OK;
+    }
+    char *json = bench_report_json(&report);
+    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
+    puts(json);
+    free(json);
+    return OK;
+}
+
+static status run_with_random_weights(bench_request *r)
+{
+    char path[] = "/tmp/merlin-bench-XXXXXX.safetensors";
+    int file = mkstemps(path, (int)strlen(".safetensors"));
+    if (file < 0) return fail(ERROR_OUTPUT, "cannot make a temporary file in /tmp");
+    close(file);
+    status s = write_random_weights(r->config, path);
+    r->options.weights = path;
+    if (s == OK) s = run(r);
+    unlink(path);
+    return s;
+}
+
+static status run_with_model(bench_request *r)
+{
+    char *path;
+    status s = photo_find_model(r->model, &path);
+    if (s != OK) return s;
+    r->options.weights = path;
+    s = run(r);
+    free(path);
+    return s;
+}
+
+int cmd_bench(int argc, char **argv)
+{
+    bench_request r = {.options = {.program = "/proc/self/exe", .stopped = cli_interrupted}};
+    opterr = 0;
+    for (int option; (option = getopt_long(argc, argv, ":h", long_options, NULL)) != -1;) {
+        if (option == ':') return cli_usage("bench", "%s wants a value", argv[optind - 1]);
+        if (option == '?') return cli_usage("bench", "unknown option %s", argv[optind - 1]);
+        status s = parse_option(option, optarg, &r);
+        if (s != OK) return cli_fail("bench", s);
+    }
+    if (r.help) return fputs(help, stdout) < 0;
+    if (optind < argc) return cli_usage("bench", "unexpected argument \"%s\"", argv[optind]);
+    if (r.model && r.config) return cli_usage("bench", "--model and --config exclude each other");
+    cli_catch_interrupts();
+    status s = r.config ? run_with_random_weights(&r) : run_with_model(&r);
+    return s == OK ? 0 : cli_fail("bench", s);
+}

@@ -1,0 +1,167 @@
+/* merlin info: what is in a weights file. */
+#include <cjson/cJSON.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "model/model.h"
+#include "nn/safetensors.h"
+
+static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json]\n\n"
+                           "Says what is in a weights file: the model's configuration, where the weights come from,\n"
+                           "their number, and what one picture of 256x256 costs.\n\n"
+                           "      --tensors  every tensor with its type and shape\n"
+                           "      --json     as JSON\n"
+                           "  -h, --help     this text\n";
+
+static const struct option long_options[] = {
+    {"tensors", no_argument, NULL, 't'},
+    {"json", no_argument, NULL, 'j'},
+    {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},
+    {0},
+};
+
+enum { COST_SIZE = 256 };
+
+typedef struct weights_info {
+    model_config config;
+    size_t parameters, statistics; /* trained numbers, and batch norm's running statistics */
+    double gmac;                   /* at COST_SIZE */
+    st_file *file;
+} weights_info;
+
+/* What merlin train writes beside the configuration. */
+static const char *const provenance[] = {"presentations",    "samples",         "size", "generator_version",
+                                         "training_seconds", "validation_loss", "note", "training"};
+enum { PROVENANCE = sizeof provenance / sizeof provenance[0] };
+
+static status measure_cost(const model_config *config, nn_params *params, double *gmac)
+{
+    nn_graph *g = NULL;
+    nn_program *p = NULL;
+    nn_options options = {.batch = 1, .height = COST_SIZE, .width = COST_SIZE, .purpose = NN_INFER};
+    status s = model_build(config, MODEL_WHOLE, &g);
+    if (s == OK) s = nn_compile(g, params, &options, &p);
+    if (s == OK) *gmac = nn_program_cost(p).forward_flops / 2e9;
+    nn_program_free(p);
+    nn_graph_free(g);
+    return s;
+}
+
+static status read_info(const char *path, weights_info *out)
+{
+    nn_params *params = NULL;
+    status s = model_load(path, &out->config, &params);
+    if (s != OK) return s;
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        *(p->gradient ? &out->parameters : &out->statistics) += p->count;
+    }
+    s = measure_cost(&out->config, params, &out->gmac);
+    if (s == OK) s = st_open(path, &out->file);
+    nn_params_free(params);
+    return s;
+}
+
+static const char *type_name(st_type type)
+{
+    static const char *const names[] = {[ST_F32] = "F32", [ST_F16] = "F16", [ST_BF16] = "BF16", [ST_I64] = "I64"};
+    return names[type];
+}
+
+static void format_shape(const st_tensor *t, char *out, size_t size)
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (int i = 0; i < t->rank && used < size; i++)
+        used += (size_t)snprintf(out + used, size - used, i ? "x%lld" : "%lld", (long long)t->shape[i]);
+}
+
+static void print_text(const weights_info *info, bool tensors)
+{
+    printf("model              %s\n", info->config.name);
+    printf("parameters         %zu (and %zu running statistics)\n", info->parameters, info->statistics);
+    printf("cost at %dx%d    %.2f GMAC\n", COST_SIZE, COST_SIZE, info->gmac);
+    for (int i = 0; i < PROVENANCE; i++) {
+        const char *value = st_metadata(info->file, provenance[i]);
+        if (value && *value) printf("%-18s %s\n", provenance[i], value);
+    }
+    printf("config             %s\n", st_metadata(info->file, "config"));
+    printf("tensors            %zu\n", st_count(info->file));
+    for (size_t i = 0; tensors && i < st_count(info->file); i++) {
+        const st_tensor *t = st_at(info->file, i);
+        char shape[96];
+        format_shape(t, shape, sizeof shape);
+        printf("  %-48s %-5s %s\n", t->name, type_name(t->type), shape);
+    }
+}
+
+/* Numbers and objects as such where the text is JSON of them, else as text. */
+static void add_text(cJSON *o, const char *key, const char *text)
+{
+    cJSON *value = cJSON_Parse(text);
+    if (value && (cJSON_IsNumber(value) || cJSON_IsObject(value))) {
+        cJSON_AddItemToObject(o, key, value);
+        return;
+    }
+    cJSON_Delete(value);
+    cJSON_AddStringToObject(o, key, text);
+}
+
+static void add_tensors(cJSON *o, const st_file *file)
+{
+    cJSON *list = cJSON_AddArrayToObject(o, "tensors");
+    for (size_t i = 0; i < st_count(file); i++) {
+        const st_tensor *t = st_at(file, i);
+        cJSON *entry = cJSON_CreateObject();
+        cJSON_AddStringToObject(entry, "name", t->name);
+        cJSON_AddStringToObject(entry, "type", type_name(t->type));
+        cJSON *shape = cJSON_AddArrayToObject(entry, "shape");
+        for (int k = 0; k < t->rank; k++)
+            cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[k]));
+        cJSON_AddItemToArray(list, entry);
+    }
+}
+
+static status print_json(const weights_info *info, bool tensors)
+{
+    cJSON *o = cJSON_CreateObject();
+    cJSON_AddStringToObject(o, "model", info->config.name);
+    cJSON_AddNumberToObject(o, "parameters", (double)info->parameters);
+    cJSON_AddNumberToObject(o, "statistics", (double)info->statistics);
+    cJSON_AddNumberToObject(o, "gmac_256", info->gmac);
+    add_text(o, "config", st_metadata(info->file, "config"));
+    for (int i = 0; i < PROVENANCE; i++) {
+        const char *value = st_metadata(info->file, provenance[i]);
+        if (value) add_text(o, provenance[i], value);
+    }
+    if (tensors) add_tensors(o, info->file);
+    char *text = cJSON_Print(o);
+    cJSON_Delete(o);
+    if (!text) return fail(ERROR_MEMORY, "no memory for the report");
+    puts(text);
+    free(text);
+    return OK;
+}
+
+int cmd_info(int argc, char **argv)
+{
+    bool tensors = false, json = false;
+    opterr = 0;
+    for (int option; (option = getopt_long(argc, argv, "h", long_options, NULL)) != -1;) {
+        if (option == '?') return cli_usage("info", "unknown option %s", argv[optind - 1]);
+        if (option == 'h') return fputs(help, stdout) < 0;
+        if (option == 't') tensors = true;
+        if (option == 'j') json = true;
+    }
+    if (optind + 1 != argc) return cli_usage("info", "one weights file wanted");
+    weights_info info = {0};
+    status s = read_info(argv[optind], &info);
+    if (s == OK && json) s = print_json(&info, tensors);
+    if (s == OK && !json) print_text(&info, tensors);
+    st_close(info.file);
+    return s == OK ? 0 : cli_fail("info", s);
+}

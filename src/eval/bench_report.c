@@ -1,0 +1,108 @@
+#include <cjson/cJSON.h>
+
+#include "eval/bench.h"
+
+static const char *const type_names[BENCH_TYPES] = {[NN_FLOAT32] = "float32", [NN_BFLOAT16] = "bfloat16"};
+
+/* What docs/evaluation.md asks for. */
+static const double least_inference_share = 0.35, least_training_share = 0.30, most_estimate_seconds = 0.5;
+static const double most_estimate_megabytes = 400;
+
+static double megabytes(size_t bytes)
+{
+    return (double)bytes / 1e6;
+}
+
+static const char *holds(bool yes)
+{
+    return yes ? "yes" : "no";
+}
+
+static void print_network(FILE *stream, const char *what, const char *type, const bench_network *n, double least)
+{
+    fprintf(stream, "%-34s%-10s%9.1f%9.1f%10.0f%8.0f %%%8.0f MB%8.0f MB   >= %.0f %%    %s\n", what, type,
+            n->seconds * 1e3, n->flops * 1e-9, n->flops / n->seconds * 1e-9, n->share * 100, megabytes(n->bytes),
+            megabytes(n->resident_bytes), least * 100, holds(n->share >= least));
+}
+
+static void print_networks(const bench_report *r, FILE *stream)
+{
+    char training[64];
+    snprintf(training, sizeof training, "training step, %d of 128x128", r->batch);
+    fprintf(stream, "\n%-34s%-10s%9s%9s%10s%10s%11s%11s   %-10s %s\n", r->model, "", "ms", "GFLOP", "GFLOP/s",
+            "of peak", "planned", "resident", "goal", "holds");
+    for (int t = 0; t < BENCH_TYPES; t++)
+        if (r->measured[t])
+            print_network(stream, "inference, one of 256x256", type_names[t], &r->inference[t], least_inference_share);
+    for (int t = 0; t < BENCH_TYPES; t++)
+        if (r->measured[t]) print_network(stream, training, type_names[t], &r->training[t], least_training_share);
+}
+
+void bench_print_table(const bench_report *r, FILE *stream)
+{
+    fprintf(stream, "this machine, %d threads: memory copied at %.1f GB/s\n\n", r->threads, r->copy_rate * 1e-9);
+    fprintf(stream, "%-34s%12s%15s%18s%15s\n", "peak of convolutions, GFLOP/s", "forward", "backward data",
+            "backward weights", "training peak");
+    for (int t = 0; t < BENCH_TYPES; t++) {
+        const nn_peak *p = &r->peak[t];
+        if (r->measured[t])
+            fprintf(stream, "%-34s%12.0f%15.0f%18.0f%15.0f\n", type_names[t], p->forward * 1e-9,
+                    p->backward_data * 1e-9, p->backward_weights * 1e-9, bench_training_peak(p) * 1e-9);
+        else
+            fprintf(stream, "%-34s%12s\n", type_names[t], "-");
+    }
+    print_networks(r, stream);
+    fprintf(stream, "\nmerlin estimate, picture of 256x256: %.3f s (at most %.1f: %s), %.0f MB (at most %.0f: %s)\n",
+            r->estimate_seconds, most_estimate_seconds, holds(r->estimate_seconds <= most_estimate_seconds),
+            megabytes(r->estimate_bytes), most_estimate_megabytes,
+            holds(megabytes(r->estimate_bytes) <= most_estimate_megabytes));
+    fprintf(stream, "rendering at 128x128: %.2f samples/s, %.2f million rays/s (%zu samples)\n",
+            (double)r->samples / r->render_seconds, (double)r->rays / r->render_seconds * 1e-6, r->samples);
+}
+
+static void add_network(cJSON *parent, const char *key, const bench_network *n, double least)
+{
+    cJSON *o = cJSON_AddObjectToObject(parent, key);
+    cJSON_AddNumberToObject(o, "seconds", n->seconds);
+    cJSON_AddNumberToObject(o, "gflop", n->flops * 1e-9);
+    cJSON_AddNumberToObject(o, "gflop_per_second", n->flops / n->seconds * 1e-9);
+    cJSON_AddNumberToObject(o, "share_of_peak", n->share);
+    cJSON_AddNumberToObject(o, "planned_bytes", (double)n->bytes);
+    cJSON_AddNumberToObject(o, "resident_bytes", (double)n->resident_bytes);
+    cJSON_AddNumberToObject(o, "goal", least);
+    cJSON_AddBoolToObject(o, "holds", n->share >= least);
+}
+
+static void add_type(cJSON *parent, const bench_report *r, int t)
+{
+    cJSON *o = cJSON_AddObjectToObject(parent, type_names[t]);
+    cJSON_AddNumberToObject(o, "peak_forward", r->peak[t].forward * 1e-9);
+    cJSON_AddNumberToObject(o, "peak_backward_data", r->peak[t].backward_data * 1e-9);
+    cJSON_AddNumberToObject(o, "peak_backward_weights", r->peak[t].backward_weights * 1e-9);
+    cJSON_AddNumberToObject(o, "peak_training", bench_training_peak(&r->peak[t]) * 1e-9);
+    add_network(o, "inference_256", &r->inference[t], least_inference_share);
+    add_network(o, "training_128", &r->training[t], least_training_share);
+}
+
+char *bench_report_json(const bench_report *r)
+{
+    cJSON *o = cJSON_CreateObject();
+    cJSON_AddStringToObject(o, "model", r->model);
+    cJSON_AddNumberToObject(o, "threads", r->threads);
+    cJSON_AddNumberToObject(o, "training_batch", r->batch);
+    cJSON_AddNumberToObject(o, "copy_bytes_per_second", r->copy_rate);
+    for (int t = 0; t < BENCH_TYPES; t++)
+        if (r->measured[t]) add_type(o, r, t);
+    cJSON *estimate = cJSON_AddObjectToObject(o, "estimate_256");
+    cJSON_AddNumberToObject(estimate, "seconds", r->estimate_seconds);
+    cJSON_AddNumberToObject(estimate, "resident_bytes", (double)r->estimate_bytes);
+    cJSON_AddBoolToObject(estimate, "holds",
+                          r->estimate_seconds <= most_estimate_seconds &&
+                              megabytes(r->estimate_bytes) <= most_estimate_megabytes);
+    cJSON *rendering = cJSON_AddObjectToObject(o, "rendering_128");
+    cJSON_AddNumberToObject(rendering, "samples_per_second", (double)r->samples / r->render_seconds);
+    cJSON_AddNumberToObject(rendering, "rays_per_second", (double)r->rays / r->render_seconds);
+    char *text = cJSON_Print(o);
+    cJSON_Delete(o);
+    return text;
+}
