@@ -1,17 +1,12 @@
-/* merlin_maps_write: a folder with everything, or nothing.
- *
- * All files are made in a hidden folder inside the target, then renamed into place, so that a full disk or an interrupt
- * leaves no half result behind. */
-#include <dirent.h>
-#include <errno.h>
+/* merlin_maps_write: a folder with everything, or nothing. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/api.h"
+#include "estimate/staging.h"
 #include "image/figure.h"
 #include "image/write.h"
 
@@ -176,7 +171,7 @@ enum { OUTPUTS = sizeof outputs / sizeof outputs[0], MESSAGE_SIZE = 512 };
 
 typedef struct batch {
     job job;
-    const char *folder;
+    staging *staging;
     int (*stop)(void);
     status results[OUTPUTS];
     char messages[OUTPUTS][MESSAGE_SIZE]; /* words are kept per thread, and these threads go away */
@@ -188,7 +183,7 @@ static void write_one(void *context, size_t i)
     if (b->stop && b->stop()) {
         b->results[i] = fail(ERROR_STOPPED, "stopped");
     } else {
-        char *path = file_join(b->folder, outputs[i].name);
+        char *path = staging_path(b->staging, outputs[i].name);
         b->results[i] = path ? outputs[i].write(&b->job, path) : fail(ERROR_MEMORY, "no memory for a file name");
         free(path);
     }
@@ -203,63 +198,13 @@ static status write_all(batch *b)
     return OK;
 }
 
-static void remove_folder(const char *folder)
-{
-    DIR *d = opendir(folder);
-    for (struct dirent *e; d && (e = readdir(d));)
-        if (strcmp(e->d_name, ".") != 0 && strcmp(e->d_name, "..") != 0) unlinkat(dirfd(d), e->d_name, 0);
-    if (d) closedir(d);
-    rmdir(folder);
-}
-
-/* Renames every file into place; first makes sure that nothing but files is in the way. */
-static status move_all(const char *from, const char *to)
-{
-    status s = OK;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < OUTPUTS && s == OK; i++) {
-            char *source = file_join(from, outputs[i].name), *target = file_join(to, outputs[i].name);
-            if (!source || !target)
-                s = fail(ERROR_MEMORY, "no memory for a file name");
-            else if (pass == 0 && file_is_folder(target))
-                s = fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", target);
-            else if (pass == 1 && rename(source, target) != 0)
-                s = fail(ERROR_OUTPUT, "cannot write %s: %s", target, strerror(errno));
-            free(source);
-            free(target);
-        }
-    }
-    return s;
-}
-
-/* A message about a file in the hidden folder would name a path that nobody can look at. */
-static status hide(status s, const char *hidden, const char *folder)
-{
-    char message[MESSAGE_SIZE], clean[MESSAGE_SIZE];
-    snprintf(message, sizeof message, "%s", status_message());
-    char *at = strstr(message, hidden);
-    if (!at) return s;
-    *at = 0;
-    snprintf(clean, sizeof clean, "%.200s%.200s%.100s", message, folder, at + strlen(hidden));
-    return fail(s, "%s", clean);
-}
-
 static status write_through(batch *b, const char *folder)
 {
-    char *hidden = file_join(folder, ".merlin-XXXXXX");
-    if (!hidden) return fail(ERROR_MEMORY, "no memory for a file name");
-    if (!mkdtemp(hidden)) {
-        free(hidden);
-        return fail(ERROR_OUTPUT, "cannot write into %s: %s", folder, strerror(errno));
-    }
-    b->folder = hidden;
-    status s = write_all(b);
+    status s = staging_begin(folder, &b->staging);
+    if (s != OK) return s;
+    s = write_all(b);
     if (s == OK && b->stop && b->stop()) s = fail(ERROR_STOPPED, "stopped");
-    if (s == OK) s = move_all(hidden, folder);
-    if (s != OK) s = hide(s, hidden, folder);
-    remove_folder(hidden);
-    free(hidden);
-    return s;
+    return s == OK ? staging_commit(b->staging) : staging_abort(b->staging, s);
 }
 
 status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void))
@@ -268,11 +213,8 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const char *fold
     if (!b) return fail(ERROR_MEMORY, "no memory to write %s", folder);
     b->job.maps = maps;
     b->stop = stop;
-    bool existed = file_exists(folder);
     status s = make_overview(model->network, maps, &b->job.overview);
-    if (s == OK) s = file_make_folder(folder);
     if (s == OK) s = write_through(b, folder);
-    if (s != OK && !existed) rmdir(folder);
     overview_free(&b->job.overview);
     free(b);
     return s;

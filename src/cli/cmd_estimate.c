@@ -1,0 +1,174 @@
+/* merlin estimate: photographs to maps. */
+#include <cJSON.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/progress.h"
+#include "cli/cli.h"
+#include "cli/photos.h"
+#include "estimate/api.h"
+
+static const char help[] =
+    "usage: merlin estimate PHOTO... [options]\n"
+    "       merlin estimate FOLDER   [options]\n\n"
+    "Takes the object of a photograph apart: maps.exr with all maps, albedo.png, normal.png (16-bit, (n + 1)/2),\n"
+    "roughness.png, depth.png (near is bright), mask.png, reconstruction.png, overview.png and report.json.\n"
+    "Best with photographs taken by the camera's own flash.\n\n"
+    "      --mask FILE      the object is where this picture of the photograph's size is not black; for several\n"
+    "                       photographs a folder with NAME.mask.png or NAME.png for each. Without it: the\n"
+    "                       photograph's alpha, else NAME.mask.png in a FOLDER, else the object is searched for\n"
+    "  -o, --output DIR     where to (default: the photograph's name without ending + .merlin); for several\n"
+    "                       photographs a folder each inside DIR\n"
+    "      --model FILE     weights (default: $MERLIN_MODEL, else the shipped models/merlin-point.safetensors)\n"
+    "      --size N         side of the square the network sees, a multiple of 32 (default 256)\n"
+    "      --exposure EV    brighten by EV stops before the network; default auto: only if too dark or too bright\n"
+    "      --json           a report as JSON on standard output, one line a photograph\n"
+    "      --quiet          no other output than errors\n"
+    "  -h, --help           this text\n\n"
+    "Several photographs: goes on after one that fails, and then exits with 1.\n";
+
+enum { OPTION_MASK = 256, OPTION_MODEL, OPTION_SIZE, OPTION_EXPOSURE, OPTION_JSON, OPTION_QUIET };
+
+static const struct option long_options[] = {
+    {"mask", required_argument, NULL, OPTION_MASK},
+    {"output", required_argument, NULL, 'o'},
+    {"model", required_argument, NULL, OPTION_MODEL},
+    {"size", required_argument, NULL, OPTION_SIZE},
+    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
+    {"json", no_argument, NULL, OPTION_JSON},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"help", no_argument, NULL, 'h'},
+    {0},
+};
+
+typedef struct request {
+    const char *mask, *output, *weights;
+    merlin_params params;
+    bool json, quiet, help;
+    merlin_model *model;
+} request;
+
+static status take_option(int option, const char *value, request *r)
+{
+    switch (option) {
+    case OPTION_MASK:
+        r->mask = value;
+        return OK;
+    case 'o':
+        r->output = value;
+        return OK;
+    case OPTION_MODEL:
+        r->weights = value;
+        return OK;
+    case OPTION_SIZE:
+        return photo_parse_size(value, &r->params);
+    case OPTION_EXPOSURE:
+        return photo_parse_exposure(value, &r->params);
+    case OPTION_JSON:
+        r->json = true;
+        return OK;
+    case OPTION_QUIET:
+        r->quiet = true;
+        return OK;
+    case 'h':
+        r->help = true;
+        return OK;
+    default:
+        return fail(ERROR_USAGE, "unknown option, or its value is missing");
+    }
+}
+
+static status parse(int argc, char **argv, request *r)
+{
+    int option;
+    opterr = 0;
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
+        status s = take_option(option, optarg, r);
+        if (s != OK || r->help) return s;
+    }
+    return optind < argc ? OK : fail(ERROR_USAGE, "no photograph given");
+}
+
+static void print_json(const photo_job *job, const merlin_maps *maps, double seconds)
+{
+    char *text = maps_report(maps);
+    cJSON *report = text ? cJSON_Parse(text) : NULL;
+    cJSON_AddStringToObject(report, "photo", job->photo);
+    cJSON_AddStringToObject(report, "output", job->output);
+    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    char *line = cJSON_PrintUnformatted(report);
+    if (line) puts(line);
+    cJSON_free(line);
+    cJSON_Delete(report);
+    free(text);
+}
+
+static void announce(const request *r, const photo_job *job, const merlin_maps *maps, double seconds)
+{
+    if (r->json)
+        print_json(job, maps, seconds);
+    else if (!r->quiet)
+        printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, seconds);
+    if (!r->quiet && maps->mask_confidence < 0.5f)
+        fprintf(stderr,
+                "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
+                job->photo, (double)maps->mask_confidence, job->output);
+}
+
+static status estimate_one(const request *r, const photo_job *job)
+{
+    double began = clock_seconds();
+    merlin_image photo = {0}, mask = {0};
+    merlin_maps maps = {0};
+    status s = photo_read(job, &photo, &mask);
+    if (s == OK) {
+        s = (status)merlin_estimate(r->model, &photo, &mask, &r->params, &maps);
+        if (s != OK) s = fail_in(s, "%s", job->photo);
+    }
+    merlin_image_free(&photo);
+    merlin_image_free(&mask);
+    if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
+    if (s == OK) announce(r, job, &maps, clock_seconds() - began);
+    merlin_maps_free(&maps);
+    return s;
+}
+
+static int estimate_all(const request *r, const photo_list *photos)
+{
+    int code = 0;
+    for (size_t i = 0; i < photos->count; i++) {
+        const photo_job *job = &photos->at[i];
+        status s = cli_interrupted() ? ERROR_STOPPED : estimate_one(r, job);
+        if (s == ERROR_STOPPED)
+            return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
+        if (s == OK) continue;
+        cli_fail("estimate", s);
+        code = 1;
+    }
+    return code;
+}
+
+int cmd_estimate(int argc, char **argv)
+{
+    request r = {.params = merlin_params_default()};
+    r.params.stop = cli_interrupted;
+    if (parse(argc, argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
+    if (r.help) {
+        fputs(help, stdout);
+        return 0;
+    }
+    cli_catch_interrupts();
+    photo_list photos;
+    char *weights = NULL;
+    status s = photo_list_make(argv + optind, argc - optind, r.mask, r.output, &photos);
+    if (s != OK) return cli_fail("estimate", s);
+    s = photo_find_model(r.weights, &weights);
+    if (s == OK) s = (status)merlin_model_open(weights, &r.model);
+    int code = s == OK ? estimate_all(&r, &photos) : cli_fail("estimate", s);
+    merlin_model_close(r.model);
+    free(weights);
+    photo_list_free(&photos);
+    return code;
+}

@@ -1,0 +1,239 @@
+#include "cli/photos.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "cli/cli.h"
+
+static const char *const endings[] = {".png",  ".jpg",  ".jpeg", ".tif", ".tiff", ".webp",
+                                      ".heic", ".heif", ".avif", ".exr", ".hdr",  NULL};
+
+/* ---- names ---- */
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Length of path without its last ending. */
+static size_t stem_length(const char *path)
+{
+    const char *name = base_name(path), *dot = strrchr(name, '.');
+    return dot && dot > name ? (size_t)(dot - path) : strlen(path);
+}
+
+static char *format_name(const char *path, size_t length, const char *suffix)
+{
+    char *out = NULL;
+    return asprintf(&out, "%.*s%s", (int)length, path, suffix) < 0 ? NULL : out;
+}
+
+char *photo_default_output(const char *photo)
+{
+    return format_name(photo, stem_length(photo), ".merlin");
+}
+
+static bool is_mask_name(const char *path)
+{
+    size_t stem = stem_length(path);
+    return stem > 5 && strncmp(path + stem - 5, ".mask", 5) == 0;
+}
+
+/* folder/NAME + suffix if that file exists, else NULL; *memory says whether NULL means no memory. */
+static char *companion(const char *folder, const char *photo, const char *suffix, bool *memory)
+{
+    const char *name = base_name(photo);
+    char *stem = format_name(name, stem_length(name), suffix), *path = stem ? file_join(folder, stem) : NULL;
+    free(stem);
+    *memory = path != NULL;
+    if (path && file_exists(path)) return path;
+    free(path);
+    return NULL;
+}
+
+/* ---- the list ---- */
+
+void photo_list_free(photo_list *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        free(list->at[i].photo);
+        free(list->at[i].output);
+        free(list->at[i].mask);
+    }
+    free(list->at);
+    *list = (photo_list){0};
+}
+
+static status no_memory(void)
+{
+    return fail(ERROR_MEMORY, "no memory for file names");
+}
+
+static status add(photo_list *list, const char *photo)
+{
+    photo_job *larger = realloc(list->at, (list->count + 1) * sizeof *larger);
+    if (!larger) return no_memory();
+    list->at = larger;
+    list->at[list->count] = (photo_job){.photo = strdup(photo)};
+    return list->at[list->count++].photo ? OK : no_memory();
+}
+
+static status add_folder(photo_list *list, const char *folder)
+{
+    char **names;
+    size_t count, photos = 0;
+    status s = file_list(folder, endings, &names, &count);
+    if (s != OK) return s;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        if (is_mask_name(names[i])) continue;
+        s = add(list, names[i]);
+        if (s != OK) break;
+        photo_job *job = &list->at[list->count - 1];
+        bool memory;
+        job->mask = companion(folder, job->photo, ".mask.png", &memory);
+        if (!memory) s = no_memory();
+        photos++;
+    }
+    file_list_free(names, count);
+    if (s == OK && photos == 0) return fail(ERROR_INPUT, "no photographs in the folder %s", folder);
+    return s;
+}
+
+static status find_masks(photo_list *list, const char *folder)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        photo_job *job = &list->at[i];
+        bool memory;
+        char *mask = companion(folder, job->photo, ".mask.png", &memory);
+        if (!mask && memory) mask = companion(folder, job->photo, ".png", &memory);
+        if (!memory) return no_memory();
+        if (!mask) return fail(ERROR_INPUT, "no mask for %s in %s", job->photo, folder);
+        free(job->mask);
+        job->mask = mask;
+    }
+    return OK;
+}
+
+static status choose_masks(photo_list *list, const char *mask, bool batch)
+{
+    if (!mask) return OK;
+    if (file_is_folder(mask)) return find_masks(list, mask);
+    if (batch) return fail(ERROR_USAGE, "--mask wants a folder of masks for several photographs, not %s", mask);
+    list->at[0].mask = strdup(mask);
+    return list->at[0].mask ? OK : no_memory();
+}
+
+static bool is_taken(const photo_list *list, size_t before, const char *output)
+{
+    for (size_t i = 0; i < before; i++)
+        if (strcmp(list->at[i].output, output) == 0) return true;
+    return false;
+}
+
+/* A folder name that no earlier photograph of the batch has: cup.png and cup.jpg may stand side by side. */
+static status choose_output(photo_list *list, size_t i, const char *folder)
+{
+    photo_job *job = &list->at[i];
+    for (int number = 1; number < 10000; number++) {
+        char suffix[32] = "", *name = NULL;
+        if (number > 1) snprintf(suffix, sizeof suffix, "-%d", number);
+        if (folder) {
+            const char *photo = base_name(job->photo);
+            char *last = format_name(photo, stem_length(photo), suffix);
+            name = last ? file_join(folder, last) : NULL;
+            free(last);
+        } else {
+            strcat(suffix, ".merlin");
+            name = format_name(job->photo, stem_length(job->photo), suffix);
+        }
+        if (!name) return no_memory();
+        if (!is_taken(list, i, name)) {
+            job->output = name;
+            return OK;
+        }
+        free(name);
+    }
+    return fail(ERROR_USAGE, "too many photographs are called %s", job->photo);
+}
+
+static status fill_list(char *const *arguments, int count, const char *mask, const char *output, photo_list *out)
+{
+    bool batch = count > 1;
+    status s = OK;
+    for (int i = 0; i < count && s == OK; i++) {
+        bool folder = file_is_folder(arguments[i]);
+        batch |= folder;
+        s = folder ? add_folder(out, arguments[i]) : add(out, arguments[i]);
+    }
+    if (s == OK) s = choose_masks(out, mask, batch);
+    if (s != OK) return s;
+    if (!batch && output) {
+        out->at[0].output = strdup(output);
+        return out->at[0].output ? OK : no_memory();
+    }
+    for (size_t i = 0; i < out->count && s == OK; i++)
+        s = choose_output(out, i, output);
+    return s;
+}
+
+status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out)
+{
+    *out = (photo_list){0};
+    status s = fill_list(arguments, count, mask, output, out);
+    if (s != OK) photo_list_free(out);
+    return s;
+}
+
+status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask)
+{
+    *mask = (merlin_image){0};
+    merlin_status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);
+    if (s == MERLIN_OK && job->mask) s = merlin_mask_read(job->mask, mask);
+    if (s != MERLIN_OK) merlin_image_free(photo);
+    return (status)s;
+}
+
+/* ---- options ---- */
+
+status photo_find_model(const char *asked, char **path)
+{
+    static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
+    const char *environment = getenv("MERLIN_MODEL");
+    if (!asked && environment && *environment) asked = environment;
+    if (asked) return (*path = strdup(asked)) ? OK : no_memory();
+    char program[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return fail(ERROR_INPUT, "cannot find the weights: give --model or set MERLIN_MODEL");
+    program[length] = 0;
+    int folder = (int)(base_name(program) - program);
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        if (asprintf(path, "%.*s%s/merlin-point.safetensors", folder, program, places[i]) < 0) return no_memory();
+        if (file_exists(*path)) return OK;
+        free(*path);
+    }
+    return fail(ERROR_INPUT, "no models/merlin-point.safetensors near %.*s: give --model or set MERLIN_MODEL", folder,
+                program);
+}
+
+status photo_parse_size(const char *text, merlin_params *params)
+{
+    long size;
+    status s = cli_int("--size", text, 64, 1024, &size);
+    if (s == OK && size % 32 != 0) s = fail(ERROR_USAGE, "--size must be a multiple of 32, not %ld", size);
+    if (s == OK) params->size = (int)size;
+    return s;
+}
+
+status photo_parse_exposure(const char *text, merlin_params *params)
+{
+    double ev = 0;
+    params->auto_exposure = strcmp(text, "auto") == 0;
+    status s = params->auto_exposure ? OK : cli_float("--exposure", text, -10, 10, &ev);
+    params->exposure = (float)ev;
+    return s;
+}

@@ -1,0 +1,41 @@
+/* What estimate and relight share: which photographs, their masks, where results go, and where the weights are. */
+#ifndef MERLIN_CLI_PHOTOS_H
+#define MERLIN_CLI_PHOTOS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "merlin/merlin.h"
+
+typedef struct photo_job {
+    char *photo, *output;
+    char *mask; /* NULL: alpha, or the object is searched for */
+} photo_job;
+
+typedef struct photo_list {
+    photo_job *at;
+    size_t count;
+} photo_list;
+
+/* One photograph goes to `output`, by default its name without ending + ".merlin". Several, or a folder's, each go to a
+ * folder of their own inside `output`, by default beside them. In a folder NAME.mask.png is the mask of NAME.*; `mask`
+ * is one photograph's, or a folder with NAME.mask.png or NAME.png for several. */
+status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out);
+void photo_list_free(photo_list *list);
+
+/* name without its ending + ".merlin", malloc'ed. */
+char *photo_default_output(const char *photo);
+
+/* Reads photograph and mask (the job's, else alpha; without data if neither). */
+status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask);
+
+/* asked, else $MERLIN_MODEL, else models/merlin-point.safetensors beside the program or above it (a build folder in the
+ * source tree), else share/merlin/models beside its folder; malloc'ed. */
+status photo_find_model(const char *asked, char **path);
+
+/* The values of --size, and of --exposure ("auto" or EV). */
+status photo_parse_size(const char *text, merlin_params *params);
+status photo_parse_exposure(const char *text, merlin_params *params);
+
+#endif

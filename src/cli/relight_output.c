@@ -1,0 +1,173 @@
+#include "cli/relight_output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "estimate/api.h"
+#include "estimate/staging.h"
+#include "image/figure.h"
+#include "image/resize.h"
+#include "image/write.h"
+
+enum { MOST_TILES = 24, TILE_SIZE = 192, COLUMNS = 6, LABEL_SIZE = 48, USUAL_FRAME = 512, ORBIT_MILLISECONDS = 3000 };
+static const real ORBIT_TILT = (real)0.87; /* 50 degrees from the optical axis */
+
+static bool stopped(const relight_job *job)
+{
+    return job->stop && job->stop();
+}
+
+/* Pictures of equal size and their labels, few enough for a sheet. */
+typedef struct sheet {
+    img pictures[MOST_TILES];
+    char labels[MOST_TILES][LABEL_SIZE];
+    int count;
+} sheet;
+
+static void sheet_free(sheet *s)
+{
+    for (int i = 0; i < s->count; i++)
+        img_free(&s->pictures[i]);
+}
+
+static void label_light(vec3 light, char *label)
+{
+    snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", (double)light.x, (double)light.y, (double)light.z);
+}
+
+static status sheet_write(const sheet *s, const staging *t, const char *name)
+{
+    figure_tile tiles[MOST_TILES];
+    for (int i = 0; i < s->count; i++)
+        tiles[i] = (figure_tile){s->labels[i], &s->pictures[i]};
+    char *path = staging_path(t, name);
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    int columns = s->count < COLUMNS ? s->count : COLUMNS;
+    status result = figure_sheet(path, tiles, s->count, columns, TILE_SIZE);
+    free(path);
+    return result;
+}
+
+/* A small copy of the square for the sheet, if there is room. */
+static status sheet_add(sheet *s, const img *picture, vec3 light)
+{
+    if (s->count == MOST_TILES) return OK;
+    status result = img_resize(picture, TILE_SIZE, TILE_SIZE, &s->pictures[s->count]);
+    if (result == OK) label_light(light, s->labels[s->count++]);
+    return result;
+}
+
+static status write_picture(const staging *t, const char *pattern, size_t i, const img *picture)
+{
+    char name[32];
+    snprintf(name, sizeof name, "%s_%03zu.png", pattern, i);
+    char *path = staging_path(t, name);
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = img_write_png(path, picture, IMG_SRGB8);
+    free(path);
+    return s;
+}
+
+/* ---- single lights, in the photograph's frame ---- */
+
+static status write_light(const relight_job *job, const stage *st, const staging *t, size_t i, sheet *all)
+{
+    vec3 light = job->lights.at[i];
+    img square = {0}, whole = {0};
+    status s = stage_relight(job->model->network, st, light, &square);
+    if (s == OK) s = sheet_add(all, &square, light);
+    if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
+    if (s == OK) {
+        crop_put(&square, crop_of(job->maps), &whole);
+        s = write_picture(t, "relit", i, &whole);
+    }
+    img_free(&square);
+    img_free(&whole);
+    return s;
+}
+
+static status write_lights(const relight_job *job, const staging *t)
+{
+    if (job->lights.count == 0) return OK;
+    stage st;
+    status s = stage_new(job->maps, 0, job->how, &st);
+    if (s != OK) return s;
+    sheet all = {.count = 0};
+    for (size_t i = 0; i < job->lights.count && s == OK; i++)
+        s = stopped(job) ? fail(ERROR_STOPPED, "stopped") : write_light(job, &st, t, i, &all);
+    if (s == OK) s = sheet_write(&all, t, "relit.png");
+    sheet_free(&all);
+    stage_free(&st);
+    return s;
+}
+
+/* ---- an orbit, in the square ---- */
+
+static vec3 orbit_light(int i, int count)
+{
+    real phi = (real)6.28318530717958647692 * (real)i / (real)count, sine = sin(ORBIT_TILT);
+    return vec3_make(sine * cos(phi), sine * sin(phi), cos(ORBIT_TILT) - 1);
+}
+
+static status write_animations(const relight_job *job, const staging *t, const img *frames)
+{
+    static const char *const names[] = {"orbit.webp", "orbit.gif"};
+    status s = OK;
+    for (int i = 0; i < 2 && s == OK; i++) {
+        if (stopped(job)) return fail(ERROR_STOPPED, "stopped");
+        char *path = staging_path(t, names[i]);
+        if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+        s = img_write_animation(path, frames, job->orbit, ORBIT_MILLISECONDS / job->orbit);
+        free(path);
+    }
+    return s;
+}
+
+static status write_frames(const relight_job *job, const stage *st, const staging *t, img *frames)
+{
+    sheet some = {.count = 0};
+    int step = (job->orbit + MOST_TILES - 1) / MOST_TILES;
+    status s = OK;
+    for (int i = 0; i < job->orbit && s == OK; i++) {
+        if (stopped(job)) s = fail(ERROR_STOPPED, "stopped");
+        vec3 light = orbit_light(i, job->orbit);
+        if (s == OK) s = stage_relight(job->model->network, st, light, &frames[i]);
+        if (s == OK) s = write_picture(t, "frame", (size_t)i, &frames[i]);
+        if (s == OK && i % step == 0) s = sheet_add(&some, &frames[i], light);
+    }
+    if (s == OK) s = sheet_write(&some, t, "orbit.png");
+    sheet_free(&some);
+    return s;
+}
+
+static status write_orbit(const relight_job *job, const staging *t)
+{
+    if (job->orbit == 0) return OK;
+    int side = job->maps->crop.side < USUAL_FRAME ? job->maps->crop.side : USUAL_FRAME;
+    if (job->frame) side = job->frame;
+    img *frames = calloc((size_t)job->orbit, sizeof *frames);
+    if (!frames) return fail(ERROR_MEMORY, "no memory for %d frames", job->orbit);
+    stage st;
+    status s = stage_new(job->maps, side, job->how, &st);
+    if (s == OK) {
+        s = write_frames(job, &st, t, frames);
+        if (s == OK) s = write_animations(job, t, frames);
+        stage_free(&st);
+    }
+    for (int i = 0; i < job->orbit; i++)
+        img_free(&frames[i]);
+    free(frames);
+    return s;
+}
+
+status relight_output(const relight_job *job)
+{
+    staging *t;
+    status s = staging_begin(job->output, &t);
+    if (s != OK) return s;
+    s = write_lights(job, t);
+    if (s == OK) s = write_orbit(job, t);
+    if (s == OK && stopped(job)) s = fail(ERROR_STOPPED, "stopped");
+    return s == OK ? staging_commit(t) : staging_abort(t, s);
+}

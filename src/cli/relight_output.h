@@ -1,0 +1,25 @@
+/* The files of merlin relight: a picture a light, frames and animations of an orbit, contact sheets. */
+#ifndef MERLIN_CLI_RELIGHT_OUTPUT_H
+#define MERLIN_CLI_RELIGHT_OUTPUT_H
+
+#include "base/status.h"
+#include "estimate/light_list.h"
+#include "merlin/merlin.h"
+
+enum { RELIGHT_MOST_FRAMES = 240 };
+
+typedef struct relight_job {
+    merlin_model *model;
+    const merlin_maps *maps;
+    const char *output; /* folder */
+    light_list lights;  /* relit_000.png …, of the photograph's size */
+    merlin_relighting how;
+    int orbit; /* frames; 0: none */
+    int frame; /* their side; 0: the crop's, at most 512 */
+    int (*stop)(void);
+} relight_job;
+
+/* All files or none; ERROR_STOPPED if stop said so. */
+status relight_output(const relight_job *job);
+
+#endif

@@ -1,0 +1,160 @@
+#include "estimate/staging.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/file.h"
+
+struct staging {
+    char *folder, *hidden;
+    size_t kept; /* length of the part of folder's path that was there before */
+};
+
+static void staging_free(staging *t)
+{
+    free(t->folder);
+    free(t->hidden);
+    free(t);
+}
+
+static size_t existing_length(const char *folder)
+{
+    char path[PATH_MAX];
+    size_t length = strlen(folder);
+    if (length >= sizeof path) return length;
+    memcpy(path, folder, length + 1);
+    while (length > 0 && !file_exists(path)) {
+        while (length > 0 && path[length - 1] != '/')
+            length--;
+        while (length > 0 && path[length - 1] == '/')
+            length--;
+        path[length] = 0;
+    }
+    return length;
+}
+
+/* Removes the folders that were made, innermost first. */
+static void remove_made(const staging *t)
+{
+    char path[PATH_MAX];
+    size_t length = strlen(t->folder);
+    if (length >= sizeof path) return;
+    memcpy(path, t->folder, length + 1);
+    while (length > t->kept && rmdir(path) == 0) {
+        while (length > t->kept && path[length - 1] == '/')
+            length--;
+        while (length > t->kept && path[length - 1] != '/')
+            length--;
+        while (length > t->kept && path[length - 1] == '/')
+            length--;
+        path[length] = 0;
+    }
+}
+
+static status begin(staging *t)
+{
+    t->kept = existing_length(t->folder);
+    status s = file_make_folder(t->folder);
+    if (s == OK && !mkdtemp(t->hidden)) s = fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    if (s != OK) remove_made(t);
+    return s;
+}
+
+status staging_begin(const char *folder, staging **out)
+{
+    *out = NULL;
+    staging *t = calloc(1, sizeof *t);
+    if (!t) return fail(ERROR_MEMORY, "no memory to write %s", folder);
+    t->folder = strdup(folder);
+    t->hidden = file_join(folder, ".merlin-XXXXXX");
+    status s = t->folder && t->hidden ? begin(t) : fail(ERROR_MEMORY, "no memory to write %s", folder);
+    if (s != OK)
+        staging_free(t);
+    else
+        *out = t;
+    return s;
+}
+
+char *staging_path(const staging *t, const char *name)
+{
+    return file_join(t->hidden, name);
+}
+
+static bool is_dots(const char *name)
+{
+    return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+}
+
+static void remove_hidden(const staging *t)
+{
+    DIR *d = opendir(t->hidden);
+    for (struct dirent *e; d && (e = readdir(d));)
+        if (!is_dots(e->d_name)) unlinkat(dirfd(d), e->d_name, 0);
+    if (d) closedir(d);
+    rmdir(t->hidden);
+}
+
+static status move(const staging *t, const char *name, bool check_only)
+{
+    char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
+    status s = OK;
+    if (!from || !to)
+        s = fail(ERROR_MEMORY, "no memory for a file name");
+    else if (file_is_folder(to))
+        s = fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
+    else if (!check_only && rename(from, to) != 0)
+        s = fail(ERROR_OUTPUT, "cannot write %s: %s", to, strerror(errno));
+    free(from);
+    free(to);
+    return s;
+}
+
+/* Looks at all before moving any. */
+static status move_all(const staging *t)
+{
+    status s = OK;
+    for (int pass = 0; pass < 2 && s == OK; pass++) {
+        DIR *d = opendir(t->hidden);
+        if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+        for (struct dirent *e; s == OK && (e = readdir(d));)
+            if (!is_dots(e->d_name)) s = move(t, e->d_name, pass == 0);
+        closedir(d);
+    }
+    return s;
+}
+
+status staging_commit(staging *t)
+{
+    status s = move_all(t);
+    if (s != OK) return staging_abort(t, s);
+    rmdir(t->hidden);
+    staging_free(t);
+    return OK;
+}
+
+/* A message about the hidden folder would name a path that nobody can look at any more. */
+static status name_folder(const staging *t, status s)
+{
+    char message[1024];
+    snprintf(message, sizeof message, "%s", status_message());
+    char *at = strstr(message, t->hidden);
+    if (!at) return s;
+    *at = 0;
+    return fail(s, "%s%s%s", message, t->folder, at + strlen(t->hidden));
+}
+
+status staging_abort(staging *t, status s)
+{
+    s = name_folder(t, s);
+    remove_hidden(t);
+    remove_made(t);
+    staging_free(t);
+    return s;
+}
