@@ -144,7 +144,8 @@ float *nn_input_data(nn_program *p, const char *name);
 const float *nn_output_data(nn_program *p, const char *name);
 
 status nn_forward(nn_program *p);
-/* Gradients of the weighted sum of all losses into the parameters, zeroed first. After nn_forward, NN_TRAIN only. */
+/* Gradients of the weighted sum of all losses into the parameters, zeroed first. Once after each nn_forward,
+ * NN_TRAIN only. */
 status nn_backward(nn_program *p);
 /* After nn_forward: a loss's unweighted value; NAN for an unknown name. */
 float nn_loss(const nn_program *p, const char *name);

@@ -1,0 +1,259 @@
+/* The builder's checks, parameters and what a program promises around a run. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "nn/nn.h"
+
+#include <cmocka.h> /* last: it defines fail as a macro */
+
+static nn_node *compute_input(nn_graph *g, const char *name, int channels, int reduction)
+{
+    return nn_compute(g, nn_input(g, name, channels, reduction));
+}
+
+/* Frees the graph; its error must hold these words. */
+static void assert_refused(nn_graph *g, const char *words)
+{
+    nn_params *params;
+    assert_int_equal(nn_params_new(g, 1, &params), ERROR_USAGE);
+    if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
+    nn_graph_free(g);
+}
+
+static void duplicate_names_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_node *x = compute_input(g, "x", 3, 1);
+    x = nn_conv2d(g, x, "conv", 4, 3, 1, NN_BIAS);
+    assert_null(nn_batch_norm(g, x, "conv"));
+    assert_refused(g, "already taken");
+
+    g = nn_graph_new();
+    nn_input(g, "x", 3, 1);
+    assert_null(nn_input(g, "x", 3, 1));
+    assert_refused(g, "already taken");
+
+    g = nn_graph_new();
+    x = nn_input(g, "x", 3, 1);
+    nn_output(g, x, "y");
+    nn_output(g, x, "y");
+    assert_refused(g, "already taken");
+}
+
+static void inputs_that_differ_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_node *a = nn_input(g, "a", 3, 1), *b = nn_input(g, "b", 3, 2);
+    assert_null(nn_concat(g, (nn_node *[]){a, b}, 2));
+    assert_refused(g, "concat: inputs differ");
+
+    g = nn_graph_new();
+    a = nn_input(g, "a", 3, 1);
+    assert_null(nn_add(g, a, nn_input(g, "b", 4, 1)));
+    assert_refused(g, "add: inputs differ");
+
+    g = nn_graph_new();
+    a = nn_input(g, "a", 3, 1);
+    assert_null(nn_add(g, a, compute_input(g, "b", 3, 1)));
+    assert_refused(g, "compute");
+
+    g = nn_graph_new();
+    a = nn_input(g, "a", 3, 1);
+    assert_null(nn_gate(g, a, nn_input(g, "b", 2, 1)));
+    assert_refused(g, "2 channels");
+}
+
+static void wrong_arguments_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    assert_null(nn_conv2d(g, nn_input(g, "a", 3, 1), "c", 4, 3, 1, NN_BIAS));
+    assert_refused(g, "nn_compute");
+
+    g = nn_graph_new();
+    assert_null(nn_slice(g, nn_input(g, "a", 3, 1), 2, 2));
+    assert_refused(g, "slice");
+
+    g = nn_graph_new();
+    assert_null(nn_upsample_nearest(g, nn_input(g, "a", 3, 1)));
+    assert_refused(g, "cannot be enlarged");
+
+    g = nn_graph_new();
+    assert_null(nn_depth_to_space(g, nn_input(g, "a", 3, 2), 2));
+    assert_refused(g, "depth_to_space");
+
+    g = nn_graph_new();
+    assert_null(nn_linear(g, compute_input(g, "a", 3, 1), "fc", 4));
+    assert_refused(g, "not a vector");
+
+    g = nn_graph_new();
+    assert_null(nn_normalize(g, nn_input(g, "a", 4, 1)));
+    assert_refused(g, "normalize");
+}
+
+static void the_first_error_is_reported_and_null_passes_quietly(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_node *x = nn_slice(g, nn_input(g, "a", 3, 1), 5, 1);
+    x = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, nn_compute(g, x), "c", 4, 3, 1, NN_BIAS), "bn"));
+    assert_null(nn_concat(g, (nn_node *[]){x, x}, 2));
+    nn_output(g, x, "y");
+    assert_refused(g, "slice: channels 5 to 6 of 3");
+}
+
+static nn_graph *small_net(void)
+{
+    nn_graph *g = nn_graph_new();
+    nn_node *x = nn_space_to_depth(g, compute_input(g, "image", 3, 1), 2);
+    x = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, x, "conv1", 8, 3, 1, NN_NO_BIAS), "bn1"));
+    x = nn_depth_to_space(g, nn_conv_transpose2d(g, nn_conv2d(g, x, "conv2", 6, 3, 2, NN_BIAS), "up", 12, NN_BIAS), 2);
+    nn_output(g, x, "out");
+    nn_input(g, "unused", 2, NN_VECTOR);
+    nn_masked_l2(g, nn_float(g, x), nn_input(g, "target", 3, 1), nn_input(g, "mask", 1, 1), "l2", 0.5f);
+    return g;
+}
+
+static void parameters_have_pytorch_shapes(void **state)
+{
+    (void)state;
+    nn_graph *g = small_net();
+    nn_params *params;
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    assert_int_equal(nn_params_count(params), 1 + 4 + 2 + 2);
+    const nn_param *w = nn_params_find(params, "conv1.weight"), *up = nn_params_find(params, "up.weight");
+    assert_memory_equal(w->shape, ((int64_t[]){8, 12, 3, 3}), sizeof w->shape);
+    assert_memory_equal(up->shape, ((int64_t[]){6, 12, 4, 4}), sizeof up->shape);
+    assert_null(nn_params_find(params, "bn1.running_var")->gradient);
+    assert_float_equal(nn_params_find(params, "bn1.running_var")->value[3], 1, 0);
+    assert_float_equal(nn_params_find(params, "bn1.weight")->value[3], 1, 0);
+    assert_null(nn_params_find(params, "conv1.bias"));
+    nn_params_scale_rate(params, "bn1.", 0.5f);
+    assert_float_equal(nn_params_find(params, "bn1.bias")->learning_rate_scale, 0.5f, 0);
+    assert_float_equal(w->learning_rate_scale, 1, 0);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
+static void first_weights_depend_on_seed_and_name_alone(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_node *x = compute_input(g, "x", 64, 1);
+    nn_node *a = nn_conv2d(g, x, "a", 64, 3, 1, NN_BIAS);
+    nn_conv2d(g, a, "b", 64, 3, 1, NN_BIAS);
+    nn_graph *other = nn_graph_new();
+    nn_conv2d(other, compute_input(other, "x", 64, 1), "b", 64, 3, 1, NN_BIAS);
+    nn_params *p, *q;
+    assert_int_equal(nn_params_new(g, 5, &p), OK);
+    assert_int_equal(nn_params_new(other, 5, &q), OK);
+    const nn_param *pb = nn_params_find(p, "b.weight"), *qb = nn_params_find(q, "b.weight");
+    assert_memory_equal(pb->value, qb->value, pb->count * sizeof(float));
+    assert_memory_not_equal(pb->value, nn_params_find(p, "a.weight")->value, pb->count * sizeof(float));
+    double square = 0;
+    for (size_t i = 0; i < pb->count; i++)
+        square += (double)(pb->value[i] * pb->value[i]);
+    /* He: 2 / (64·9); the mean square of 36864 normals strays by √(2/36864) = 0.7 %, five times that is allowed */
+    assert_true(fabs(square / (double)pb->count * 64 * 9 / 2 - 1) < 0.037);
+    nn_params_free(p);
+    nn_params_free(q);
+    nn_graph_free(g);
+    nn_graph_free(other);
+}
+
+static void sizes_that_do_not_divide_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = small_net();
+    nn_params *params;
+    nn_program *p;
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 18, .width = 16}, &p), ERROR_USAGE);
+    assert_null(p);
+    assert_non_null(strstr(status_message(), "multiple"));
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 0, .height = 16, .width = 16}, &p), ERROR_USAGE);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
+static void parameters_of_another_graph_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = small_net(), *other = nn_graph_new();
+    nn_conv2d(other, compute_input(other, "x", 3, 1), "conv1", 8, 3, 1, NN_NO_BIAS);
+    nn_params *params;
+    nn_program *p;
+    assert_int_equal(nn_params_new(other, 7, &params), OK);
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 16, .width = 16}, &p), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "conv1"));
+    nn_params_free(params);
+    nn_graph_free(g);
+    nn_graph_free(other);
+}
+
+static void a_program_outlives_its_graph(void **state)
+{
+    (void)state;
+    nn_graph *g = small_net();
+    nn_params *params;
+    nn_program *p;
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    const nn_options options = {.batch = 2, .height = 16, .width = 8, .purpose = NN_TRAIN};
+    assert_int_equal(nn_compile(g, params, &options, &p), OK);
+    nn_graph_free(g);
+    assert_int_equal(nn_backward(p), ERROR_USAGE);
+    assert_non_null(nn_input_data(p, "unused"));
+    assert_null(nn_input_data(p, "nothing"));
+    assert_null(nn_output_data(p, "nothing"));
+    for (int i = 0; i < 2 * 16 * 8; i++)
+        nn_input_data(p, "mask")[i] = 1;
+    assert_int_equal(nn_forward(p), OK);
+    assert_int_equal(nn_backward(p), OK);
+    assert_true(isnan(nn_loss(p, "nothing")));
+    assert_float_equal(nn_total_loss(p), 0.5f * nn_loss(p, "l2"), 1e-6f * nn_loss(p, "l2"));
+    nn_program_free(p);
+    nn_params_free(params);
+}
+
+static void cost_counts_two_per_multiply_add(void **state)
+{
+    (void)state;
+    nn_graph *g = small_net();
+    nn_params *params;
+    nn_program *p;
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    const nn_options options = {.batch = 2, .height = 16, .width = 8, .purpose = NN_TRAIN};
+    assert_int_equal(nn_compile(g, params, &options, &p), OK);
+    nn_cost cost = nn_program_cost(p);
+    double conv1 = 2.0 * 2 * 8 * 4 * 8 * 12 * 9, conv2 = 2.0 * 2 * 4 * 2 * 6 * 8 * 9,
+           up = 2.0 * 2 * 4 * 2 * 12 * 6 * 16;
+    assert_float_equal(cost.forward_flops, conv1 + conv2 + up, 0.5);
+    assert_float_equal(cost.backward_flops, conv1 + 2 * (conv2 + up), 0.5); /* the image wants no gradient */
+    assert_int_equal(cost.parameter_count, 8 * 12 * 9 + 16 + 6 * 8 * 9 + 6 + 6 * 12 * 16 + 12);
+    nn_program_free(p);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(duplicate_names_are_refused),
+        cmocka_unit_test(inputs_that_differ_are_refused),
+        cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(the_first_error_is_reported_and_null_passes_quietly),
+        cmocka_unit_test(parameters_have_pytorch_shapes),
+        cmocka_unit_test(first_weights_depend_on_seed_and_name_alone),
+        cmocka_unit_test(sizes_that_do_not_divide_are_refused),
+        cmocka_unit_test(parameters_of_another_graph_are_refused),
+        cmocka_unit_test(a_program_outlives_its_graph),
+        cmocka_unit_test(cost_counts_two_per_multiply_add),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
