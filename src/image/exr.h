@@ -57,6 +57,8 @@ void exr_close(exr_file *f);
 int exr_width(const exr_file *f);
 int exr_height(const exr_file *f);
 bool exr_has_channel(const exr_file *f, const char *name);
+/* Channels by number, sorted by name; NULL from the last one on. */
+const char *exr_channel_name(const exr_file *f, int index);
 /* Half, float and uint channels; scan lines or tiles; a missing channel is an error that names it. */
 status exr_read(exr_file *f, const exr_target *targets, size_t count);
 /* Attributes as written by exr_write: false if absent or of another kind. */

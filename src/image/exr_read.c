@@ -108,6 +108,11 @@ bool exr_has_channel(const exr_file *f, const char *name)
     return find_source(f, name, &ignored);
 }
 
+const char *exr_channel_name(const exr_file *f, int index)
+{
+    return index >= 0 && index < f->channels->num_channels ? f->channels->entries[index].name.str : NULL;
+}
+
 static void convert_line(const uint8_t *from, exr_pixel_type_t type, int count, float *to, int stride)
 {
     if (type == EXR_PIXEL_HALF) {

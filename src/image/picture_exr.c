@@ -1,0 +1,69 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "image/exr.h"
+#include "image/picture.h"
+
+enum { NAME_SIZE = 256 };
+
+typedef char channel_name[NAME_SIZE];
+
+/* The first layer that has .R, .G and .B. */
+static int find_layer(const exr_file *f, channel_name names[3])
+{
+    const char *name;
+    for (int i = 0; (name = exr_channel_name(f, i)); i++) {
+        size_t n = strlen(name);
+        if (n < 3 || n >= NAME_SIZE || strcmp(name + n - 2, ".R") != 0) continue;
+        for (int c = 0; c < 3; c++)
+            snprintf(names[c], NAME_SIZE, "%.*s%c", (int)n - 1, name, "RGB"[c]);
+        if (exr_has_channel(f, names[1]) && exr_has_channel(f, names[2])) return 3;
+    }
+    return 0;
+}
+
+/* How many channels make the picture, and what they are called; 0 if there is none. */
+static int choose_channels(const exr_file *f, channel_name names[3])
+{
+    if (exr_has_channel(f, "R") && exr_has_channel(f, "G") && exr_has_channel(f, "B")) {
+        for (int c = 0; c < 3; c++)
+            snprintf(names[c], NAME_SIZE, "%c", "RGB"[c]);
+        return 3;
+    }
+    static const char *const single[] = {"Y", "mask.A", "R", "A"};
+    int layers = exr_has_channel(f, "Y") ? 0 : find_layer(f, names);
+    if (layers) return layers;
+    for (size_t i = 0; i < sizeof single / sizeof *single; i++) {
+        if (!exr_has_channel(f, single[i])) continue;
+        snprintf(names[0], NAME_SIZE, "%s", single[i]);
+        return 1;
+    }
+    return 0;
+}
+
+static status read_open(exr_file *f, const char *path, img *color, img *alpha)
+{
+    channel_name names[3];
+    int channels = choose_channels(f, names);
+    if (!channels)
+        return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    status s = img_new(color, exr_width(f), exr_height(f), channels);
+    if (s == OK && alpha && exr_has_channel(f, "A") && strcmp(names[0], "A") != 0)
+        s = img_new(alpha, exr_width(f), exr_height(f), 1);
+    if (s != OK) return s;
+    exr_target targets[4];
+    for (int c = 0; c < channels; c++)
+        targets[c] = (exr_target){names[c], color->data + c, channels};
+    if (alpha && alpha->data) targets[channels++] = (exr_target){"A", alpha->data, 1};
+    return exr_read(f, targets, (size_t)channels);
+}
+
+status picture_read_exr(const char *path, img *color, img *alpha)
+{
+    exr_file *f = NULL;
+    status s = exr_open(path, &f);
+    if (s != OK) return s;
+    s = read_open(f, path, color, alpha);
+    exr_close(f);
+    return s;
+}
