@@ -71,17 +71,33 @@ static vec3 field_point(const field *f, float i, float j, float k)
 
 enum { BLOCK = 4 };
 
+/* The blobs that can matter within `reach` of p, where the distance is d: no others come within their blending width.
+ */
+static implicit blobs_near(const implicit *shape, vec3 p, float d, float reach)
+{
+    implicit near = {0};
+    for (int i = 0; i < shape->count; i++) {
+        const blob *b = &shape->blob[i];
+        float level = b->carve ? -d : d;
+        if (blob_distance(b, p) < level + 2 * reach + 2 * b->blend) near.blob[near.count++] = *b;
+    }
+    return near;
+}
+
 /* One block of samples: far from the surface its centre's distance stands for all. */
 static void sample_block(field *f, int i0, int j0, int k0)
 {
-    float half = 0.5f * (BLOCK - 1), far = 1.6f * 1.7320508f * (half + 1) * f->step;
-    float centre = implicit_distance(f->shape, field_point(f, (float)i0 + half, (float)j0 + half, (float)k0 + half));
+    float half = 0.5f * (BLOCK - 1), far = 1.4f * 1.7320508f * (half + 1) * f->step;
+    vec3 middle = field_point(f, (float)i0 + half, (float)j0 + half, (float)k0 + half);
+    float centre = implicit_distance(f->shape, middle);
+    bool away = fabsf(centre) > far;
+    implicit near = {0};
+    if (!away) near = blobs_near(f->shape, middle, centre, far);
     for (int i = i0; i < i0 + BLOCK && i < f->n[0]; i++)
         for (int j = j0; j < j0 + BLOCK && j < f->n[1]; j++)
             for (int k = k0; k < k0 + BLOCK && k < f->n[2]; k++)
                 f->value[field_index(f, i, j, k)] =
-                    fabsf(centre) > far ? centre
-                                        : implicit_distance(f->shape, field_point(f, (float)i, (float)j, (float)k));
+                    away ? centre : implicit_distance(&near, field_point(f, (float)i, (float)j, (float)k));
 }
 
 static vec3 onto_surface(const field *f, vec3 p)

@@ -202,9 +202,10 @@ static void add_grain(maker *m)
     float frequency = scale_between(m, 2, kind == PATTERN_FBM ? 24 : 14);
     pattern p = pattern_random(m->r, kind, frequency, m->mesh, m->mirrored);
     if (frequency > 10) p.octaves = 1 + rng_below(m->r, 2);
-    float u = rng_uniform(m->r);
+    float u = rng_uniform(m->r), slope = 0.04f + 0.55f * u * u;
+    if (kind == PATTERN_SCRATCHES) slope *= 0.25f; /* its lines are much steeper than its features are wide */
     uint32_t parts = m->parts > 1 && chance(m, 0.3f) ? rng_u32(m->r) : ALL_PARTS;
-    add_bump(m, &p, frequency, (chance(m, 0.5f) ? -1.0f : 1.0f) * (0.05f + 0.7f * u * u), parts);
+    add_bump(m, &p, frequency, chance(m, 0.5f) ? -slope : slope, parts);
 }
 
 /* The border of a painted region, carved or raised. */
@@ -237,7 +238,7 @@ static void make_material(maker *m)
     }
     if (chance(m, 0.15f)) add_wear(m);
     if (chance(m, 0.2f)) emboss_top_layer(m);
-    if (chance(m, 0.42f)) add_grain(m);
+    if (chance(m, 0.36f)) add_grain(m);
     if (chance(m, 0.12f)) add_grain(m);
     if (chance(m, 0.25f)) {
         m->out->smudged = true;

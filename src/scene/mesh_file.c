@@ -8,16 +8,14 @@
 #include <strings.h>
 
 #include "base/file.h"
+#include "scene/mesh_ply.h"
 
 enum { TRIANGLE_LIMIT = 5000000 };
 
-static bool known_ending(const char *path)
+static bool ends_in(const char *path, const char *ending)
 {
-    static const char *const ENDINGS[] = {".obj", ".ply", ".gltf", ".glb"};
     const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof ENDINGS / sizeof *ENDINGS; i++)
-        if (strcasecmp(dot, ENDINGS[i]) == 0) return true;
-    return false;
+    return dot && strcasecmp(dot, ending) == 0;
 }
 
 static vec3 from_ai(struct aiVector3D v)
@@ -88,14 +86,11 @@ static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts
         s = add_mesh(mesh, scene->mMeshes[i], normal, (uint8_t)(i % 32));
     mesh->normal = normal;
     *parts = scene->mNumMeshes < 32 ? (int)scene->mNumMeshes : 32;
-    if (s == OK) wind_outward(mesh);
     return s;
 }
 
-status mesh_read(const char *path, scn_mesh *mesh, int *parts)
+static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
 {
-    if (!file_exists(path)) return fail(ERROR_INPUT, "no such file");
-    if (!known_ending(path)) return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
     struct aiPropertyStore *settings = aiCreatePropertyStore();
     if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");
     aiSetImportPropertyInteger(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -109,4 +104,20 @@ status mesh_read(const char *path, scn_mesh *mesh, int *parts)
     status s = take_scene(scene, mesh, parts);
     aiReleaseImport(scene);
     return s;
+}
+
+status mesh_read(const char *path, scn_mesh *mesh, int *parts)
+{
+    bool is_ply = ends_in(path, ".ply"), is_gltf = ends_in(path, ".gltf") || ends_in(path, ".glb");
+    if (!file_exists(path)) return fail(ERROR_INPUT, "no such file");
+    if (!is_ply && !is_gltf && !ends_in(path, ".obj"))
+        return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
+    *parts = 1;
+    status s = is_ply ? mesh_read_ply(path, mesh) : read_by_assimp(path, mesh, parts);
+    if (s != OK) return s;
+    if (mesh->triangle_count == 0) return fail(ERROR_INPUT, "no triangles in it");
+    if (mesh->triangle_count > TRIANGLE_LIMIT)
+        return fail(ERROR_INPUT, "%u triangles; at most %d", mesh->triangle_count, TRIANGLE_LIMIT);
+    wind_outward(mesh);
+    return OK;
 }

@@ -1,4 +1,4 @@
-/* Meshes from OBJ, PLY and glTF files, by assimp. */
+/* Meshes from OBJ and glTF files, by assimp, and from PLY files. */
 #ifndef MERLIN_SCENE_MESH_FILE_H
 #define MERLIN_SCENE_MESH_FILE_H
 

@@ -21,7 +21,7 @@ vec3 colour_hsv(float hue, float saturation, float value)
 /* Wood, clay, stone, leaves, leather: oranges to greens of low saturation. */
 static vec3 natural(rng *r)
 {
-    return colour_hsv(rng_range(r, 0.01f, 0.3f), rng_range(r, 0.08f, 0.6f), rng_range(r, 0.15f, 0.85f));
+    return colour_hsv(rng_range(r, 0.01f, 0.3f), rng_range(r, 0.08f, 0.6f), rng_range(r, 0.25f, 0.92f));
 }
 
 static vec3 painted(rng *r)
@@ -55,7 +55,7 @@ void palette_random(rng *r, vec3 colour[PALETTE])
     static const maker THEMES[][4] = {
         {natural, natural, natural, pale},        {painted, painted, painted, pale},
         {pale, painted, dark, painted},           {pale, pale, natural, dark},
-        {anything, anything, anything, anything}, {dark, grey, dark, painted},
+        {anything, anything, anything, anything}, {dark, grey, painted, pale},
         {natural, painted, dark, pale},           {grey, grey, natural, pale},
     };
     const maker *theme = THEMES[rng_below(r, (int)(sizeof THEMES / sizeof *THEMES))];

@@ -97,7 +97,12 @@ static void choose_centres(rng *r, pattern *p, const scn_mesh *mesh)
     p->centres = 1 + rng_below(r, PATTERN_CENTRES);
     p->offset = (vec3){0, 0, 0};
     for (int i = 0; i < p->centres; i++) {
-        vec3 at = mesh->reference[rng_below(r, (int)mesh->vertex_count)];
+        /* half of the time on something that sticks out, such as an eye, if the mesh has such a part */
+        uint32_t triangle = (uint32_t)rng_below(r, (int)mesh->triangle_count);
+        int tries = rng_uniform(r) < 0.5f ? 24 : 0;
+        while (tries-- > 0 && mesh->part[triangle] == 0)
+            triangle = (uint32_t)rng_below(r, (int)mesh->triangle_count);
+        vec3 at = mesh->reference[mesh->triangle[triangle][0]];
         if (p->mirrored) at.x = fabsf(at.x);
         p->centre[i] = mat3_apply(&p->frame, at);
     }

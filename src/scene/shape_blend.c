@@ -4,7 +4,7 @@
 #include "scene/shape.h"
 
 /* Cells along the longest side: the longer and thinner the body, the fewer triangles a cell count makes. */
-enum { CELLS = 62 };
+enum { CELLS = 68 };
 
 static blob make_blob(blob_kind kind, vec3 centre, vec3 radii, vec3 angles, float blend)
 {
@@ -143,7 +143,7 @@ void shape_blend(rng *r, scn_mesh *mesh, shape_traits *traits)
     if (is_figure) {
         figure f = add_figure(r, &shape);
         mesh_add_implicit(mesh, &shape, CELLS, 0);
-        if (rng_uniform(r) < 0.5f) {
+        if (rng_uniform(r) < 0.6f) {
             add_eyes(r, mesh, &shape, &f);
             traits->parts = 2;
         }

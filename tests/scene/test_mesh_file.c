@@ -1,0 +1,224 @@
+/* Meshes from files: OBJ, PLY and glTF load, are posed like generated objects, and broken files are refused in words.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "scene/scene.h"
+
+/* last: it defines a macro named fail */
+#include <cmocka.h>
+
+/* A unit cube of six quads, counter-clockwise from outside. */
+#define CUBE_VERTICES "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+#define CUBE_FACES "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+
+static const char INSIDE_OUT[] = CUBE_VERTICES "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n";
+
+static const char PLY_HEAD[] = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                               "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+
+typedef struct folder {
+    char path[64];
+} folder;
+
+static int set_up(void **state)
+{
+    folder *f = calloc(1, sizeof *f);
+    if (!f) return -1;
+    strcpy(f->path, "/tmp/merlin-mesh-XXXXXX");
+    *state = f;
+    return mkdtemp(f->path) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    folder *f = *state;
+    char **names;
+    size_t count;
+    if (file_list(f->path, NULL, &names, &count) == OK) {
+        for (size_t i = 0; i < count; i++)
+            unlink(names[i]);
+        file_list_free(names, count);
+    }
+    rmdir(f->path);
+    free(f);
+    return 0;
+}
+
+static status load(void **state, const char *name, const void *data, size_t size, scn_object *out)
+{
+    folder *f = *state;
+    char *path = file_join(f->path, name);
+    assert_int_equal(file_write(path, data, size), OK);
+    status s = scn_object_from_mesh(path, 1, 2, 60, out);
+    free(path);
+    return s;
+}
+
+static double signed_volume(const scn_object *o)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < o->triangle_count; t++) {
+        vec3 p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = vec3_sub(o->position[o->triangle[t][k]], o->position[0]);
+        sum += (double)vec3_dot(vec3_cross(p[0], p[1]), p[2]);
+    }
+    return sum;
+}
+
+static void check_cube(const scn_object *o)
+{
+    assert_int_equal(o->triangle_count, 12);
+    assert_int_equal(o->vertex_count, 24); /* every corner split by its three creases */
+    assert_true(signed_volume(o) > 0);
+    for (uint32_t t = 0; t < o->triangle_count; t++) {
+        scn_surface s;
+        scn_surface_eval(o, t, 0.3f, 0.3f, &s);
+        for (int k = 0; k < 3; k++) /* flat faces: float rounding only */
+            assert_true(vec3_dot(o->normal[o->triangle[t][k]], s.geometric_normal) > 0.9999f);
+    }
+}
+
+static void polygons_without_normals_are_triangulated_and_creased(void **state)
+{
+    scn_object o;
+    const char text[] = CUBE_VERTICES CUBE_FACES;
+    assert_int_equal(load(state, "cube.obj", text, sizeof text - 1, &o), OK);
+    check_cube(&o);
+    assert_string_equal(o.shape, "mesh");
+    scn_object_free(&o);
+}
+
+static void inward_surfaces_are_turned_outward(void **state)
+{
+    scn_object o;
+    assert_int_equal(load(state, "cube.obj", INSIDE_OUT, sizeof INSIDE_OUT - 1, &o), OK);
+    check_cube(&o);
+    scn_object_free(&o);
+}
+
+static void ascii_ply_is_read(void **state)
+{
+    char text[600];
+    int size =
+        snprintf(text, sizeof text,
+                 "ply\nformat ascii 1.0\n%s0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", PLY_HEAD);
+    scn_object o;
+    assert_int_equal(load(state, "t.ply", text, (size_t)size, &o), OK);
+    assert_int_equal(o.triangle_count, 4);
+    assert_true(signed_volume(&o) > 0);
+    scn_object_free(&o);
+}
+
+static void binary_ply_is_read(void **state)
+{
+    static const float POINTS[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const int32_t FACES[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    char data[600];
+    size_t size = (size_t)snprintf(data, sizeof data, "ply\nformat binary_little_endian 1.0\n%s", PLY_HEAD);
+    memcpy(data + size, POINTS, sizeof POINTS);
+    size += sizeof POINTS;
+    for (int i = 0; i < 4; i++) {
+        data[size++] = 3;
+        memcpy(data + size, FACES[i], sizeof FACES[i]);
+        size += sizeof FACES[i];
+    }
+    scn_object o;
+    assert_int_equal(load(state, "t.ply", data, size, &o), OK);
+    assert_int_equal(o.triangle_count, 4);
+    assert_true(signed_volume(&o) > 0);
+    scn_object_free(&o);
+    for (size_t left = 0; left < size; left += 7)
+        assert_int_equal(load(state, "cut.ply", data, left, &o), ERROR_INPUT);
+}
+
+static void gltf_is_read(void **state)
+{
+    /* the tetrahedron above: 48 bytes of positions, then 12 indices of 16 bits, in base64 */
+    static const char TEXT[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"buffers\":[{\"byteLength\":72,\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+        "\"min\":[0,0,0],\"max\":[1,1,1]},"
+        "{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
+    scn_object o;
+    assert_int_equal(load(state, "t.gltf", TEXT, sizeof TEXT - 1, &o), OK);
+    assert_int_equal(o.triangle_count, 4);
+    assert_true(signed_volume(&o) > 0);
+    scn_object_free(&o);
+}
+
+static void assert_refused(void **state, const char *name, const char *text)
+{
+    scn_object o;
+    assert_int_equal(load(state, name, text, strlen(text), &o), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), name));
+    assert_null(strchr(status_message(), '\n'));
+}
+
+static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **state)
+{
+    assert_refused(state, "empty.obj", "");
+    assert_refused(state, "points.obj", CUBE_VERTICES);
+    assert_refused(state, "flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    assert_refused(state, "nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_refused(state, "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    assert_refused(state, "junk.ply", "this is not a mesh\n");
+    assert_refused(state, "junk.glb", "glTFnot really");
+    assert_refused(state, "photo.jpg", "anything");
+    scn_object o;
+    assert_int_equal(scn_object_from_mesh("/nowhere/cow.obj", 1, 1, 60, &o), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
+}
+
+/* Meshes with normals and thousands of faces, where a folder of them is at hand. */
+static void meshes_of_the_world_are_posed_before_the_camera(void **state)
+{
+    (void)state;
+    const char *where = getenv("MERLIN_TEST_MESHES");
+    static const char *const ENDINGS[] = {".obj", ".ply", ".gltf", ".glb", NULL};
+    char **names;
+    size_t count;
+    if (!where || !file_is_folder(where)) {
+        print_message("set MERLIN_TEST_MESHES to a folder of meshes to test them\n");
+        skip();
+    }
+    assert_int_equal(file_list(where, ENDINGS, &names, &count), OK);
+    for (size_t i = 0; i < count; i++) {
+        scn_object o;
+        assert_int_equal(scn_object_from_mesh(names[i], 3, i, 60, &o), OK);
+        for (uint32_t v = 0; v < o.vertex_count; v++) {
+            assert_true(-o.position[v].z > 0.4f);
+            assert_float_equal(vec3_length(o.normal[v]), 1, 1e-5f);
+        }
+        scn_object_free(&o);
+    }
+    file_list_free(names, count);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(polygons_without_normals_are_triangulated_and_creased),
+        cmocka_unit_test(inward_surfaces_are_turned_outward),
+        cmocka_unit_test(ascii_ply_is_read),
+        cmocka_unit_test(binary_ply_is_read),
+        cmocka_unit_test(gltf_is_read),
+        cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
+        cmocka_unit_test(meshes_of_the_world_are_posed_before_the_camera),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
