@@ -8,6 +8,7 @@
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "render/paths.h"
+#include "render/smooth.h"
 #include "render/streams.h"
 
 enum { MAX_POINTS = RENDER_MAX_STRATA * RENDER_MAX_STRATA };
@@ -208,6 +209,19 @@ static status make_layers(const image_settings *set, bool env, sample *out)
     return s;
 }
 
+/* The environment casts shadows and is filtered less than what other surfaces send. */
+static status smooth_layers(sample *out)
+{
+    enum { INDIRECT_RADIUS = 3, ENVIRONMENT_RADIUS = 1 };
+    status s = smooth_layer(out, &out->indirect, INDIRECT_RADIUS);
+    if (s == OK && out->bounce2.data) s = smooth_layer(out, &out->bounce2, INDIRECT_RADIUS);
+    if (s == OK && out->bounce3.data) s = smooth_layer(out, &out->bounce3, INDIRECT_RADIUS);
+    if (s == OK && out->env.data) s = smooth_layer(out, &out->env, ENVIRONMENT_RADIUS);
+    for (int t = 0; s == OK && t < out->target_count; t++)
+        s = smooth_layer(out, &out->targets[t].indirect, INDIRECT_RADIUS);
+    return s;
+}
+
 status render_image(trace_scene *scene, const image_settings *settings, uint64_t seed, uint64_t index,
                     const environment *env, sample *out)
 {
@@ -242,5 +256,7 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     for (int y = 0; y < settings->size; y++)
         for (int x = 0; x < settings->size; x++)
             render_pixel(&r, x, y);
-    return OK;
+    s = smooth_layers(out);
+    if (s != OK) sample_free(out);
+    return s;
 }
