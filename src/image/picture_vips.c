@@ -21,7 +21,7 @@ static bool replace(VipsImage **image, VipsImage *made, int failed)
  */
 static bool is_photograph(const char *loader)
 {
-    static const char *const kinds[] = {"Png", "Jpeg", "Tiff", "Webp", "Heif", "Rad", "Gif", "NsgifFile", "Spng"};
+    static const char *const kinds[] = {"Png", "Jpeg", "Tiff", "Webp", "Heif", "Rad", "Spng"};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strstr(loader, kinds[i])) return true;
     return false;

@@ -6,20 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <vips/vips.h>
 
 #include "base/file.h"
+#include "image/codes.h"
 #include "image/color.h"
 #include "image/exr.h"
 #include "image/start.h"
-
-/* Codes in memory, 8 or 16 bits each, beside what libvips must know of them. */
-typedef struct pixels {
-    void *codes;
-    int width, height, channels;
-    VipsBandFormat format;
-    VipsInterpretation interpretation;
-} pixels;
 
 static float unit(float x)
 {
@@ -50,7 +42,7 @@ static VipsInterpretation interpretation(int channels, img_encoding encoding)
 }
 
 /* A libvips image over the codes, which must outlive it; NULL if that fails. */
-static VipsImage *wrap(const pixels *p)
+static VipsImage *wrap(const pixel_codes *p)
 {
     size_t size =
         (size_t)p->width * (size_t)p->height * (size_t)p->channels * (p->format == VIPS_FORMAT_USHORT ? 2 : 1);
@@ -63,7 +55,7 @@ static VipsImage *wrap(const pixels *p)
 }
 
 /* One fixed filter and light compression: a tenth of the default's time for files a few percent larger. */
-static status save_png(const char *path, const pixels *p)
+status codes_write_png(const char *path, const pixel_codes *p)
 {
     VipsImage *image = wrap(p);
     if (!image) return vips_refusal(ERROR_OUTPUT, "write", path);
@@ -84,16 +76,16 @@ status img_write_png(const char *path, const img *image, img_encoding encoding)
         return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
     status s = vips_begin();
     if (s != OK) return s;
-    pixels p = {.width = image->width,
-                .height = image->height,
-                .channels = image->channels,
-                .format = encoding == IMG_LINEAR16 ? VIPS_FORMAT_USHORT : VIPS_FORMAT_UCHAR,
-                .interpretation = interpretation(image->channels, encoding)};
+    pixel_codes p = {.width = image->width,
+                     .height = image->height,
+                     .channels = image->channels,
+                     .format = encoding == IMG_LINEAR16 ? VIPS_FORMAT_USHORT : VIPS_FORMAT_UCHAR,
+                     .interpretation = interpretation(image->channels, encoding)};
     size_t count = (size_t)p.width * (size_t)p.height * (size_t)p.channels;
     p.codes = malloc(count * (encoding == IMG_LINEAR16 ? 2 : 1));
     if (!p.codes) return fail(ERROR_MEMORY, "no memory to write %s", path);
     encode(image, encoding, p.codes);
-    s = save_png(path, &p);
+    s = codes_write_png(path, &p);
     free(p.codes);
     return s;
 }
@@ -121,7 +113,7 @@ static status check_frames(const char *path, const img *frames, int count)
 }
 
 /* Frames one under the other, with the page height and the delays that libvips's writers look for. */
-static int save_frames(const char *path, const pixels *p, int count, int milliseconds, void **data, size_t *size)
+static int save_frames(const char *path, const pixel_codes *p, int count, int milliseconds, void **data, size_t *size)
 {
     int *delays = calloc((size_t)count, sizeof *delays);
     VipsImage *image = delays ? wrap(p) : NULL;
@@ -151,7 +143,7 @@ status img_write_animation(const char *path, const img *frames, int count, int m
     if (!codes) return fail(ERROR_MEMORY, "no memory for the %d frames of %s", count, path);
     for (int i = 0; i < count; i++)
         encode(&frames[i], IMG_SRGB8, codes + each * (size_t)i);
-    pixels p = {codes, frames[0].width, frames[0].height * count, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
+    pixel_codes p = {codes, frames[0].width, frames[0].height * count, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
     void *data = NULL;
     size_t size = 0;
     if (save_frames(path, &p, count, milliseconds, &data, &size))

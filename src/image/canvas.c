@@ -1,0 +1,109 @@
+#include "image/canvas.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <vips/vips.h>
+
+#include "image/codes.h"
+#include "image/color.h"
+#include "image/start.h"
+
+status canvas_new(canvas *out, int width, int height)
+{
+    static const uint8_t ground[3] = {CANVAS_GROUND};
+    *out = (canvas){0};
+    if (width < 1 || height < 1) return fail(ERROR_USAGE, "a figure of %d x %d pixels cannot be", width, height);
+    size_t count = 3 * (size_t)width * (size_t)height;
+    uint8_t *rgb = malloc(count);
+    if (!rgb) return fail(ERROR_MEMORY, "no memory for a figure of %d x %d pixels", width, height);
+    for (size_t i = 0; i < count; i++)
+        rgb[i] = ground[i % 3];
+    *out = (canvas){width, height, rgb};
+    return OK;
+}
+
+void canvas_free(canvas *c)
+{
+    free(c->rgb);
+    *c = (canvas){0};
+}
+
+void canvas_paste(canvas *c, const img *image, int x, int y)
+{
+    for (int row = 0; row < image->height; row++) {
+        uint8_t *to = c->rgb + 3 * ((size_t)(y + row) * (size_t)c->width + (size_t)x);
+        const float *from = img_at(image, 0, row);
+        for (int i = 0; i < 3 * image->width; i++)
+            to[i] = srgb_code8(from[image->channels == 3 ? i : i / 3]);
+    }
+}
+
+status canvas_draw_begin(const canvas *c, canvas_drawing *d)
+{
+    *d = (canvas_drawing){0};
+    d->out = open_memstream(&d->text, &d->size);
+    if (!d->out) return fail(ERROR_MEMORY, "no memory for a drawing");
+    fprintf(d->out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"" CANVAS_FONT
+            "\" fill=\"" CANVAS_INK "\">\n",
+            c->width, c->height);
+    return OK;
+}
+
+void canvas_print_escaped(canvas_drawing *d, const char *words)
+{
+    char *valid = g_utf8_make_valid(words, -1);
+    char *escaped = g_markup_escape_text(valid, -1);
+    fputs(escaped, d->out);
+    g_free(escaped);
+    g_free(valid);
+}
+
+/* rgba: the drawing's pixels, alpha not multiplied in. */
+static void lay_over(canvas *c, const uint8_t *rgba)
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height;
+    for (size_t i = 0; i < pixels; i++) {
+        int alpha = rgba[4 * i + 3];
+        if (!alpha) continue;
+        for (size_t k = 0; k < 3; k++) {
+            int below = c->rgb[3 * i + k], above = rgba[4 * i + k];
+            c->rgb[3 * i + k] = (uint8_t)((below * (255 - alpha) + above * alpha + 127) / 255);
+        }
+    }
+}
+
+static status draw(canvas *c, const canvas_drawing *d)
+{
+    VipsImage *image = NULL;
+    if (vips_svgload_buffer(d->text, d->size, &image, NULL)) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
+    size_t size = 0;
+    uint8_t *rgba = vips_image_write_to_memory(image, &size);
+    g_object_unref(image);
+    if (!rgba) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
+    status s = OK;
+    if (size == 4 * (size_t)c->width * (size_t)c->height)
+        lay_over(c, rgba);
+    else
+        s = fail(ERROR_DEVICE, "cannot draw a figure: the drawing has another size than its canvas");
+    g_free(rgba);
+    return s;
+}
+
+status canvas_draw_end(canvas *c, canvas_drawing *d)
+{
+    fputs("</svg>\n", d->out);
+    int failed = fclose(d->out);
+    status s = failed ? fail(ERROR_MEMORY, "no memory for a drawing") : vips_begin();
+    if (s == OK) s = draw(c, d);
+    free(d->text);
+    *d = (canvas_drawing){0};
+    return s;
+}
+
+status canvas_write(const canvas *c, const char *path)
+{
+    pixel_codes p = {c->rgb, c->width, c->height, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
+    status s = vips_begin();
+    return s == OK ? codes_write_png(path, &p) : s;
+}

@@ -1,0 +1,42 @@
+/* A canvas of 8-bit sRGB pixels that takes pictures and SVG drawings (text, lines) and ends as a PNG; what figures are
+ * made of. */
+#ifndef MERLIN_IMAGE_CANVAS_H
+#define MERLIN_IMAGE_CANVAS_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#include "image/image.h"
+
+#define CANVAS_GROUND 0x20, 0x21, 0x24 /* dark and neutral, so that colours are judged rightly */
+#define CANVAS_GROUND_CSS "#202124"
+#define CANVAS_INK "#e8eaed"
+#define CANVAS_FONT "DejaVu Sans, sans-serif"
+
+typedef struct canvas {
+    int width, height;
+    uint8_t *rgb;
+} canvas;
+
+/* Filled with the ground colour. */
+status canvas_new(canvas *out, int width, int height);
+void canvas_free(canvas *c);
+
+/* A linear image of 1 or 3 channels, shown as sRGB, wholly inside the canvas with its top left pixel at (x, y). */
+void canvas_paste(canvas *c, const img *image, int x, int y);
+
+/* An SVG drawing is begun and printed to; canvas_draw_end lays it over the canvas. */
+typedef struct canvas_drawing {
+    FILE *out;
+    char *text;
+    size_t size;
+} canvas_drawing;
+
+status canvas_draw_begin(const canvas *c, canvas_drawing *d);
+status canvas_draw_end(canvas *c, canvas_drawing *d);
+/* Words as an SVG needs them: valid, escaped. */
+void canvas_print_escaped(canvas_drawing *d, const char *words);
+
+status canvas_write(const canvas *c, const char *path);
+
+#endif

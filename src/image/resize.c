@@ -1,0 +1,131 @@
+#include "image/resize.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One axis of a separable resampling: output i is the sum of weights[i × taps + k] × input[first[i] + k]. */
+typedef struct kernel {
+    int taps;
+    int *first;
+    float *weights;
+} kernel;
+
+static double lanczos3(double x)
+{
+    const double pi = 3.14159265358979323846;
+    if (fabs(x) < 1e-9) return 1;
+    if (fabs(x) >= 3) return 0;
+    return 3 * sin(pi * x) * sin(pi * x / 3) / (pi * pi * x * x);
+}
+
+/* The share of input pixel k that lies in [low, high]. */
+static double overlap(int k, double low, double high)
+{
+    double share = fmin(k + 1, high) - fmax(k, low);
+    return share > 0 ? share : 0;
+}
+
+static void fill_weights(kernel *k, int from, int to)
+{
+    double scale = (double)from / to;
+    for (int i = 0; i < to; i++) {
+        double low = i * scale, high = (i + 1) * scale, center = 0.5 * (low + high) - 0.5, sum = 0;
+        int start = to > from ? (int)floor(center) - 2 : (int)floor(low);
+        float *w = k->weights + (size_t)i * (size_t)k->taps;
+        /* taps beyond the edge count for the edge pixel */
+        k->first[i] = start < 0 ? 0 : start > from - k->taps ? from - k->taps : start;
+        for (int t = start; t < start + 6 || (to <= from && t < high); t++) {
+            int inside = t < 0 ? 0 : t >= from ? from - 1 : t;
+            double weight = to > from ? lanczos3(t - center) : overlap(t, low, high);
+            if (weight == 0) continue;
+            w[inside - k->first[i]] += (float)weight;
+            sum += weight;
+        }
+        for (int t = 0; t < k->taps; t++)
+            w[t] /= (float)sum;
+    }
+}
+
+static status kernel_new(kernel *k, int from, int to)
+{
+    int wanted = to > from ? 6 : (int)ceil((double)from / to) + 1;
+    k->taps = wanted < from ? wanted : from;
+    k->first = malloc((size_t)to * sizeof *k->first);
+    k->weights = calloc((size_t)to * (size_t)k->taps, sizeof *k->weights);
+    if (!k->first || !k->weights) return fail(ERROR_MEMORY, "no memory to resize an image");
+    fill_weights(k, from, to);
+    return OK;
+}
+
+static void kernel_free(kernel *k)
+{
+    free(k->first);
+    free(k->weights);
+}
+
+static void resize_rows(const img *from, const kernel *k, img *to)
+{
+    int channels = from->channels;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < to->height; y++) {
+        float *out = img_at(to, 0, y);
+        for (int x = 0; x < to->width; x++, out += channels) {
+            const float *in = img_at(from, k->first[x], y), *w = k->weights + (size_t)x * (size_t)k->taps;
+            for (int t = 0; t < k->taps; t++)
+                for (int c = 0; c < channels; c++)
+                    out[c] += w[t] * in[t * channels + c];
+        }
+    }
+}
+
+static void resize_columns(const img *from, const kernel *k, img *to)
+{
+    int line = from->width * from->channels;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < to->height; y++) {
+        float *out = img_at(to, 0, y);
+        for (int t = 0; t < k->taps; t++) {
+            const float *in = img_at(from, 0, k->first[y] + t);
+            float w = k->weights[(size_t)y * (size_t)k->taps + (size_t)t];
+            for (int i = 0; i < line; i++)
+                out[i] += w * in[i];
+        }
+    }
+}
+
+status img_resize(const img *from, int width, int height, img *out)
+{
+    *out = (img){0};
+    if (from->data && width == from->width && height == from->height) return img_copy(out, from);
+    if (!from->data || width < 1 || height < 1)
+        return fail(ERROR_USAGE, "an image of %d x %d pixels cannot become %d x %d", from->width, from->height, width,
+                    height);
+    img wide = {0};
+    kernel across = {0}, down = {0};
+    status s = kernel_new(&across, from->width, width);
+    if (s == OK) s = kernel_new(&down, from->height, height);
+    if (s == OK) s = img_new(&wide, width, from->height, from->channels);
+    if (s == OK) s = img_new(out, width, height, from->channels);
+    if (s == OK) {
+        resize_rows(from, &across, &wide);
+        resize_columns(&wide, &down, out);
+    }
+    kernel_free(&across);
+    kernel_free(&down);
+    img_free(&wide);
+    return s;
+}
+
+status img_crop(const img *from, int x, int y, int width, int height, img *out)
+{
+    status s = img_new(out, width, height, from->channels);
+    if (s != OK) return s;
+    int left = x < 0 ? 0 : x, right = from->width - x < width ? from->width : x + width;
+    int top = y < 0 ? 0 : y, bottom = from->height - y < height ? from->height : y + height;
+    if (left >= right) return OK;
+    size_t bytes = (size_t)(right - left) * (size_t)from->channels * sizeof(float);
+    for (int row = top; row < bottom; row++)
+        memcpy(img_at(out, left - x, row - y), img_at(from, left, row), bytes);
+    return OK;
+}
