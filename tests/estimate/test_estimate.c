@@ -1,0 +1,372 @@
+/* The whole way from photograph to folder with a model of random weights: everything but the answer's quality. */
+#include "base/file.h"
+#include "base/rng.h"
+#include "image/read.h"
+#include "merlin/merlin.h"
+#include "weights.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 150, HEIGHT = 110 };
+
+typedef struct fixture {
+    char folder[64], weights[96], output[96];
+    merlin_model *model;
+    merlin_image photo, mask;
+} fixture;
+
+static merlin_image image_new(int width, int height, int channels)
+{
+    return (merlin_image){width, height, channels, calloc((size_t)(width * height * channels), sizeof(float))};
+}
+
+/* A noisy disc off the centre, its background not black. */
+static void draw(fixture *f)
+{
+    f->photo = image_new(WIDTH, HEIGHT, 3);
+    f->mask = image_new(WIDTH, HEIGHT, 1);
+    rng r = rng_at(1, 2, 3);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        float x = ((float)(i % WIDTH) - 90) / 40, y = ((float)(i / WIDTH) - 50) / 40, d = x * x + y * y;
+        f->mask.data[i] = d < 1;
+        for (int c = 0; c < 3; c++)
+            f->photo.data[3 * i + c] = d < 1 ? (0.3f + 0.2f * (float)c) * sqrtf(1 - d) + 0.1f * rng_uniform(&r) : 0.02f;
+    }
+}
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
+    if (!mkdtemp(f->folder)) return -1;
+    snprintf(f->weights, sizeof f->weights, "%s/random.safetensors", f->folder);
+    snprintf(f->output, sizeof f->output, "%s/out", f->folder);
+    draw(f);
+    if (write_random_weights(f->weights) != OK) return -1;
+    return merlin_model_open(f->weights, &f->model) == MERLIN_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    merlin_model_close(f->model);
+    merlin_image_free(&f->photo);
+    merlin_image_free(&f->mask);
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", f->folder);
+    int code = system(command);
+    free(f);
+    return code;
+}
+
+static merlin_params small(void)
+{
+    merlin_params p = merlin_params_default();
+    p.size = 64;
+    return p;
+}
+
+static void estimate(const fixture *f, merlin_maps *maps)
+{
+    merlin_params p = small();
+    if (merlin_estimate(f->model, &f->photo, &f->mask, &p, maps) != MERLIN_OK) fail_msg("%s", merlin_error());
+}
+
+static void assert_size(const merlin_image *image, int channels)
+{
+    assert_int_equal(image->width, WIDTH);
+    assert_int_equal(image->height, HEIGHT);
+    assert_int_equal(image->channels, channels);
+}
+
+static void assert_finite_and_zero_outside(const merlin_image *image, const merlin_image *mask)
+{
+    for (int i = 0; i < WIDTH * HEIGHT * image->channels; i++) {
+        float x = image->data[i];
+        assert_true(isfinite(x));
+        if (mask->data[i / image->channels] == 0) assert_true(x == 0);
+    }
+}
+
+static void maps_are_finite_have_the_photographs_size_and_are_zero_outside_the_mask(void **state)
+{
+    merlin_maps maps;
+    estimate(*state, &maps);
+    const merlin_image *images[] = {&maps.albedo, &maps.normal, &maps.roughness,     &maps.depth,
+                                    &maps.mask,   &maps.photo,  &maps.reconstruction};
+    const int channels[] = {3, 3, 1, 1, 1, 3, 3};
+    for (int i = 0; i < 7; i++) {
+        assert_size(images[i], channels[i]);
+        assert_finite_and_zero_outside(images[i], &maps.mask);
+    }
+    merlin_maps_free(&maps);
+}
+
+static void normals_are_unit_and_face_the_camera(void **state)
+{
+    merlin_maps maps;
+    estimate(*state, &maps);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const float *n = maps.normal.data + 3 * i;
+        if (!(maps.mask.data[i] > 0)) continue;
+        /* a few roundings of float32 */
+        assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-5);
+        assert_true(n[2] > 0);
+    }
+    merlin_maps_free(&maps);
+}
+
+static void albedo_and_roughness_are_in_their_ranges(void **state)
+{
+    merlin_maps maps;
+    estimate(*state, &maps);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        for (int c = 0; c < 3; c++)
+            assert_in_range((uint64_t)(maps.albedo.data[3 * i + c] * 1000), 0, 1000);
+        if (maps.mask.data[i] > 0) assert_true(maps.roughness.data[i] >= 0.03f && maps.roughness.data[i] <= 1);
+    }
+    merlin_maps_free(&maps);
+}
+
+static void the_object_is_found_without_a_mask(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_params p = small();
+    assert_int_equal(merlin_estimate(f->model, &f->photo, NULL, &p, &maps), MERLIN_OK);
+    assert_int_equal(maps.mask_source, MERLIN_MASK_FOUND);
+    assert_true(maps.mask_confidence > 0.5f);
+    double both = 0, either = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        both += maps.mask.data[i] > 0.5f && f->mask.data[i] > 0.5f;
+        either += maps.mask.data[i] > 0.5f || f->mask.data[i] > 0.5f;
+    }
+    /* a pixel of error all round a disc of radius 40 costs 5 %; its dark rim costs some more */
+    assert_true(both / either > 0.85);
+    merlin_maps_free(&maps);
+}
+
+static void masks_of_another_size_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_image mask = image_new(WIDTH, HEIGHT - 1, 1);
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &mask, NULL, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "150×109"));
+    assert_null(maps.albedo.data);
+    merlin_image_free(&mask);
+}
+
+static void empty_masks_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_image mask = image_new(WIDTH, HEIGHT, 1);
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &mask, NULL, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "mask selects nothing"));
+    merlin_image_free(&mask);
+}
+
+static void photographs_without_an_object_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_image grey = image_new(64, 64, 3);
+    for (int i = 0; i < 64 * 64 * 3; i++)
+        grey.data[i] = 0.2f;
+    assert_int_equal(merlin_estimate(f->model, &grey, NULL, NULL, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "give a mask"));
+    merlin_image_free(&grey);
+}
+
+static void tiny_photographs_and_odd_sizes_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_image tiny = image_new(1, 1, 3);
+    assert_int_equal(merlin_estimate(f->model, &tiny, NULL, NULL, &maps), MERLIN_BAD_INPUT);
+    merlin_image_free(&tiny);
+    merlin_params p = small();
+    p.size = 100;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "multiple of 32"));
+}
+
+static int stop_now(void)
+{
+    return 1;
+}
+
+static void work_stops_when_told_to(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_params p = small();
+    p.stop = stop_now;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_STOPPED);
+    assert_null(maps.albedo.data);
+}
+
+static void darker_photographs_are_brightened_to_the_same_maps(void **state)
+{
+    fixture *f = *state;
+    merlin_params p = small();
+    merlin_maps bright, dark;
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        f->photo.data[i] *= 0.1f; /* dark enough to be brightened */
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &bright), MERLIN_OK);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        f->photo.data[i] *= 0.25f;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &dark), MERLIN_OK);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        f->photo.data[i] *= 40;
+    /* the percentile is known to a bin of 1/32 stop */
+    assert_float_equal(dark.gain / bright.gain, 4, 4 * 0.023);
+    merlin_maps_free(&bright);
+    merlin_maps_free(&dark);
+}
+
+static void written_maps_are_read_back(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps, again;
+    estimate(f, &maps);
+    if (merlin_maps_write(f->model, &maps, f->output) != MERLIN_OK) fail_msg("%s", merlin_error());
+    if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_int_equal(maps.crop.x, again.crop.x);
+    assert_int_equal(maps.crop.side, again.crop.side);
+    assert_int_equal(maps.size, again.size);
+    assert_string_equal(maps.model, again.model);
+    /* half floats keep 11 bits */
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        assert_float_equal(maps.albedo.data[i], again.albedo.data[i], 5e-4);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        assert_float_equal(maps.depth.data[i], again.depth.data[i], 5e-4 * (1 + maps.depth.data[i]));
+    merlin_maps_free(&maps);
+    merlin_maps_free(&again);
+}
+
+static void a_folder_has_every_file_and_no_other(void **state)
+{
+    static const char *const names[] = {"albedo.png",         "depth.png",   "mask.png",
+                                        "maps.exr",           "normal.png",  "overview.png",
+                                        "reconstruction.png", "report.json", "roughness.png"};
+    const fixture *f = *state;
+    merlin_maps maps;
+    estimate(f, &maps);
+    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char path[160];
+        snprintf(path, sizeof path, "%s/%s", f->output, names[i]);
+        if (!file_exists(path)) fail_msg("%s is missing", path);
+        assert_int_equal(unlink(path), 0);
+    }
+    assert_int_equal(rmdir(f->output), 0); /* empty now, hidden files included */
+    merlin_maps_free(&maps);
+}
+
+static void an_output_that_cannot_be_written_leaves_nothing(void **state)
+{
+    const fixture *f = *state;
+    char inside[160];
+    merlin_maps maps;
+    estimate(f, &maps);
+    assert_int_equal(merlin_maps_write(f->model, &maps, "/proc/merlin"), MERLIN_CANNOT_WRITE);
+    snprintf(inside, sizeof inside, "%s/mask.png", f->output);
+    assert_int_equal(file_make_folder(inside), OK); /* a folder where a file should go */
+    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_CANNOT_WRITE);
+    assert_non_null(strstr(merlin_error(), "mask.png"));
+    assert_int_equal(rmdir(inside), 0);
+    assert_int_equal(rmdir(f->output), 0);
+    merlin_maps_free(&maps);
+}
+
+static void folders_without_maps_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    assert_int_equal(merlin_maps_read(f->folder, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "merlin estimate first"));
+}
+
+static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
+{
+    const fixture *f = *state;
+    const float left[3] = {-0.7f, 0.3f, -0.4f}, right[3] = {0.7f, 0.3f, -0.4f};
+    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_NETWORK; how++) {
+        merlin_maps maps;
+        merlin_image a, b;
+        estimate(f, &maps);
+        assert_int_equal(merlin_relight(f->model, &maps, left, (merlin_relighting)how, &a), MERLIN_OK);
+        assert_int_equal(merlin_relight(f->model, &maps, right, (merlin_relighting)how, &b), MERLIN_OK);
+        assert_size(&a, 3);
+        assert_finite_and_zero_outside(&a, &maps.mask);
+        assert_true(memcmp(a.data, b.data, WIDTH * HEIGHT * 3 * sizeof(float)) != 0);
+        merlin_image_free(&a);
+        merlin_image_free(&b);
+        merlin_maps_free(&maps);
+    }
+}
+
+static void lights_that_are_nowhere_are_refused(void **state)
+{
+    const fixture *f = *state;
+    const float nowhere[3] = {0, NAN, 0};
+    merlin_maps maps;
+    merlin_image image;
+    estimate(f, &maps);
+    assert_int_equal(merlin_relight(f->model, &maps, nowhere, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    merlin_maps_free(&maps);
+}
+
+static void damaged_weights_are_refused(void **state)
+{
+    const fixture *f = *state;
+    char *data, path[128];
+    size_t size;
+    merlin_model *model;
+    assert_int_equal(file_read(f->weights, 1 << 28, &data, &size), OK);
+    snprintf(path, sizeof path, "%s/damaged.safetensors", f->folder);
+    assert_int_equal(file_write(path, data, size / 2), OK);
+    assert_int_equal(merlin_model_open(path, &model), MERLIN_BAD_INPUT);
+    data[size / 2] ^= 1;
+    assert_int_equal(file_write(path, data, size), OK);
+    assert_int_equal(merlin_model_open(path, &model), MERLIN_BAD_INPUT);
+    assert_null(model);
+    free(data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps_are_finite_have_the_photographs_size_and_are_zero_outside_the_mask),
+        cmocka_unit_test(normals_are_unit_and_face_the_camera),
+        cmocka_unit_test(albedo_and_roughness_are_in_their_ranges),
+        cmocka_unit_test(the_object_is_found_without_a_mask),
+        cmocka_unit_test(masks_of_another_size_are_refused),
+        cmocka_unit_test(empty_masks_are_refused),
+        cmocka_unit_test(photographs_without_an_object_are_refused),
+        cmocka_unit_test(tiny_photographs_and_odd_sizes_are_refused),
+        cmocka_unit_test(work_stops_when_told_to),
+        cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
+        cmocka_unit_test(written_maps_are_read_back),
+        cmocka_unit_test(a_folder_has_every_file_and_no_other),
+        cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing),
+        cmocka_unit_test(folders_without_maps_are_refused),
+        cmocka_unit_test(relighting_moves_the_light_and_keeps_the_outside_black),
+        cmocka_unit_test(lights_that_are_nowhere_are_refused),
+        cmocka_unit_test(damaged_weights_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,144 @@
+#include "estimate/light_list.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static status parse(const char *text, light_list *out)
+{
+    return light_list_parse(text, strlen(text), "lights.txt", out);
+}
+
+static void assert_refused(const char *text, const char *words)
+{
+    light_list lights;
+    assert_int_equal(parse(text, &lights), ERROR_INPUT);
+    assert_null(lights.at);
+    if (!strstr(status_message(), words)) fail_msg("\"%s\" does not say \"%s\"", status_message(), words);
+    assert_null(strchr(status_message(), '\n'));
+}
+
+static void plain_lists_are_positions(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("# from the left\n-0.5 0.25 -0.5\n\n 1,2, 3 # the far one\r\n0\t0\t0", &lights), OK);
+    assert_int_equal(lights.count, 3);
+    assert_float_equal(lights.at[0].x, -0.5, 0);
+    assert_float_equal(lights.at[1].z, 3, 0);
+    assert_float_equal(lights.at[2].y, 0, 0);
+    light_list_free(&lights);
+}
+
+static void lp_directions_become_positions_around_the_object(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("2\na.jpg 0 0 2\nb.jpg 3 0 4\n", &lights), OK);
+    assert_int_equal(lights.count, 2);
+    /* straight above the object is the camera; unit lengths to float's precision */
+    assert_float_equal(lights.at[0].z, 0, 1e-6);
+    assert_float_equal(lights.at[1].x, 0.6, 1e-6);
+    assert_float_equal(lights.at[1].z, -0.2, 1e-6);
+    light_list_free(&lights);
+}
+
+static void a_list_may_have_one_light(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("1\nonly.png 0 1 0", &lights), OK);
+    assert_int_equal(lights.count, 1);
+    light_list_free(&lights);
+}
+
+static void values_that_are_no_finite_numbers_are_refused(void **state)
+{
+    (void)state;
+    assert_refused("0 0 0\n0 nan 0\n", "lights.txt:2");
+    assert_refused("0 0 inf\n", "lights.txt:1");
+    assert_refused("0 0 1e99\n", "finite");
+    assert_refused("0 0 left\n", "left");
+    assert_refused("0 0 1x\n", "1x");
+    assert_refused("0 0 5000\n", "range");
+}
+
+static void lines_of_another_shape_are_refused(void **state)
+{
+    (void)state;
+    assert_refused("0 0\n", "lights.txt:1");
+    assert_refused("0 0 0\n1 2 3 4\n", "lights.txt:2");
+    assert_refused("1\n0 0 1\n", "a name and x y z");
+    assert_refused("1\na 0 0 0\n", "no length");
+    assert_refused("lights\n", "lights");
+}
+
+static void counts_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    assert_refused("3\na 0 0 1\n", "3 lights");
+    assert_refused("1\na 0 0 1\nb 0 0 1\n", "1 lights");
+    assert_refused("0\n", "lights.txt:1");
+    assert_refused("-2\n", "lights.txt:1");
+    assert_refused("1000000\n", "more than 4096");
+}
+
+static void empty_lists_are_refused(void **state)
+{
+    (void)state;
+    assert_refused("", "no lights");
+    assert_refused("\n  \n# nothing\n", "no lights");
+}
+
+static void binary_files_are_refused(void **state)
+{
+    (void)state;
+    light_list lights;
+    static const char bytes[] = "0 0\0 0\n";
+    assert_int_equal(light_list_parse(bytes, sizeof bytes - 1, "lights.txt", &lights), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "not a text file"));
+}
+
+static void overlong_lines_and_lists_are_refused(void **state)
+{
+    (void)state;
+    size_t size = 6 * (LIGHT_LIST_MAX + 1);
+    char *text = malloc(size + 1);
+    for (size_t i = 0; i <= LIGHT_LIST_MAX; i++)
+        strcpy(text + 6 * i, "0 0 1\n");
+    assert_refused(text, "more than 4096");
+    memset(text, '1', size);
+    assert_refused(text, "too long");
+    free(text);
+}
+
+static void missing_files_are_named(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(light_list_read("no-such-list.lp", &lights), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "no-such-list.lp"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plain_lists_are_positions),
+        cmocka_unit_test(lp_directions_become_positions_around_the_object),
+        cmocka_unit_test(a_list_may_have_one_light),
+        cmocka_unit_test(values_that_are_no_finite_numbers_are_refused),
+        cmocka_unit_test(lines_of_another_shape_are_refused),
+        cmocka_unit_test(counts_that_do_not_fit_are_refused),
+        cmocka_unit_test(empty_lists_are_refused),
+        cmocka_unit_test(binary_files_are_refused),
+        cmocka_unit_test(overlong_lines_and_lists_are_refused),
+        cmocka_unit_test(missing_files_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

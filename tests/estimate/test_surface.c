@@ -1,0 +1,252 @@
+#include "estimate/crop.h"
+#include "estimate/exposure.h"
+#include "estimate/fill.h"
+#include "estimate/surface.h"
+#include "optics/light.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void box(img *mask, int left, int top, int width, int height)
+{
+    for (int y = top; y < top + height; y++)
+        for (int x = left; x < left + width; x++)
+            *img_at(mask, x, y) = 1;
+}
+
+static void the_object_fills_four_fifths_of_the_crop(void **state)
+{
+    (void)state;
+    img mask;
+    crop_square c;
+    assert_int_equal(img_new(&mask, 400, 300, 1), OK);
+    box(&mask, 100, 50, 80, 40);
+    assert_int_equal(crop_around(&mask, &c), OK);
+    assert_int_equal(c.side, 100);
+    assert_int_equal(c.x, 90);
+    assert_int_equal(c.y, 20);
+    img_free(&mask);
+}
+
+static void square_photographs_framed_like_the_training_data_are_taken_whole(void **state)
+{
+    (void)state;
+    img mask;
+    crop_square c;
+    assert_int_equal(img_new(&mask, 100, 100, 1), OK);
+    box(&mask, 10, 10, 70, 70);
+    assert_int_equal(crop_around(&mask, &c), OK);
+    assert_int_equal(c.x, 0);
+    assert_int_equal(c.side, 100);
+    img_free(&mask);
+}
+
+static void a_crop_put_back_lands_where_it_came_from(void **state)
+{
+    (void)state;
+    img from, part, to;
+    assert_int_equal(img_new(&from, 30, 20, 2), OK);
+    assert_int_equal(img_new(&to, 30, 20, 2), OK);
+    for (int i = 0; i < 30 * 20 * 2; i++)
+        from.data[i] = (float)i;
+    crop_square c = {-5, -3, 40}; /* hangs over every edge */
+    assert_int_equal(crop_take(&from, c, &part), OK);
+    crop_put(&part, c, &to);
+    assert_memory_equal(from.data, to.data, 30 * 20 * 2 * sizeof(float));
+    img_free(&from);
+    img_free(&part);
+    img_free(&to);
+}
+
+static void filling_keeps_the_inside_and_continues_it(void **state)
+{
+    (void)state;
+    img image, mask;
+    assert_int_equal(img_new(&image, 37, 23, 1), OK);
+    assert_int_equal(img_new(&mask, 37, 23, 1), OK);
+    box(&mask, 5, 6, 7, 8);
+    for (int i = 0; i < 37 * 23; i++)
+        image.data[i] = mask.data[i] > 0 ? 3 : NAN;
+    assert_int_equal(fill_outside(&image, &mask), OK);
+    /* means of equal numbers: a few roundings */
+    for (int i = 0; i < 37 * 23; i++)
+        assert_float_equal(image.data[i], 3, 1e-5);
+    img_free(&image);
+    img_free(&mask);
+}
+
+static void filling_without_any_inside_gives_zeros(void **state)
+{
+    (void)state;
+    img image, mask;
+    assert_int_equal(img_new(&image, 5, 4, 3), OK);
+    assert_int_equal(img_new(&mask, 5, 4, 1), OK);
+    for (int i = 0; i < 60; i++)
+        image.data[i] = NAN;
+    assert_int_equal(fill_outside(&image, &mask), OK);
+    for (int i = 0; i < 60; i++)
+        assert_true(image.data[i] == 0);
+    img_free(&image);
+    img_free(&mask);
+}
+
+static void tidy_surfaces_keep_their_promises_whatever_came_in(void **state)
+{
+    (void)state;
+    static const float bad[] = {NAN, INFINITY, -INFINITY, -3, 7, 0};
+    surface s;
+    assert_int_equal(surface_new(6, 2, &s), OK);
+    for (int i = 0; i < 12; i++) {
+        for (int c = 0; c < 3; c++)
+            s.albedo.data[3 * i + c] = s.normal.data[3 * i + c] = bad[(i + c) % 6];
+        s.roughness.data[i] = s.depth.data[i] = bad[i % 6];
+        s.mask.data[i] = i < 6;
+    }
+    surface_tidy(&s);
+    for (int i = 0; i < 12; i++) {
+        const float *n = s.normal.data + 3 * i, *a = s.albedo.data + 3 * i;
+        float length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        /* a few roundings of float32 */
+        assert_float_equal(length, i < 6 ? 1 : 0, 1e-5);
+        assert_true(i >= 6 || n[2] > 0);
+        for (int c = 0; c < 3; c++)
+            assert_true(a[c] >= 0 && a[c] <= 1);
+        assert_true(isfinite(s.roughness.data[i]) && isfinite(s.depth.data[i]));
+        assert_true(i < 6 || (a[0] == 0 && s.depth.data[i] == 0));
+    }
+    surface_free(&s);
+}
+
+static surface plate(int size)
+{
+    surface s;
+    assert_int_equal(surface_new(size, size, &s), OK);
+    for (int i = 0; i < size * size; i++) {
+        s.albedo.data[3 * i] = 0.5f;
+        s.normal.data[3 * i + 2] = 1;
+        s.roughness.data[i] = 1;
+        s.depth.data[i] = 1;
+        s.mask.data[i] = 1;
+    }
+    return s;
+}
+
+static void the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance(void **state)
+{
+    (void)state;
+    surface s = plate(63);
+    img out;
+    assert_int_equal(surface_shade(&s, vec3_make(0, 0, 0), &out), OK);
+    /* l = v = n at distance 1: diffuse A/π, specular D F G / 4 with D = 1/π, G = 1, F = 0.05 + 0.95·2^-12.53777 */
+    double fresnel = 0.05 + 0.95 * pow(2, -5.55473 - 6.98316), specular = fresnel / (4 * M_PI);
+    const float *centre = img_at(&out, 31, 31);
+    /* relative error of the fast exponential and float32 */
+    assert_float_equal(centre[0], 5.95 * (0.5 / M_PI + specular), 1e-4);
+    assert_float_equal(centre[1], 5.95 * specular, 1e-4);
+    img_free(&out);
+    surface_free(&s);
+}
+
+static void a_light_on_the_left_brightens_the_left(void **state)
+{
+    (void)state;
+    surface s = plate(32);
+    img out;
+    assert_int_equal(surface_shade(&s, vec3_make(-1, 0, -0.5f), &out), OK);
+    assert_true(img_at(&out, 2, 16)[0] > 1.5f * img_at(&out, 29, 16)[0]);
+    /* and neither above nor below */
+    assert_float_equal(img_at(&out, 5, 10)[0], img_at(&out, 5, 21)[0], 1e-5);
+    img_free(&out);
+    surface_free(&s);
+}
+
+static void a_surface_survives_resizing(void **state)
+{
+    (void)state;
+    surface s = plate(64), half;
+    img mask;
+    assert_int_equal(img_new(&mask, 24, 24, 1), OK);
+    box(&mask, 2, 2, 20, 20);
+    assert_int_equal(surface_resize(&s, &mask, &half), OK);
+    const float *inside = img_at(&half.albedo, 10, 10);
+    /* averages of equal numbers */
+    assert_float_equal(inside[0], 0.5f, 1e-4);
+    assert_float_equal(*img_at(&half.depth, 10, 10), 1, 1e-4);
+    assert_float_equal(*img_at(&half.depth, 0, 0), 0, 0);
+    img_free(&mask);
+    surface_free(&s);
+    surface_free(&half);
+}
+
+static void refined_albedo_follows_the_photographs_edge(void **state)
+{
+    (void)state;
+    enum { LOW = 16, FULL = 64, EDGE = 29 }; /* between two low pixels' centres */
+    surface s = plate(LOW), full;
+    img guide, mask;
+    assert_int_equal(img_new(&guide, FULL, FULL, 3), OK);
+    assert_int_equal(img_new(&mask, FULL, FULL, 1), OK);
+    box(&mask, 0, 0, FULL, FULL);
+    for (int i = 0; i < FULL * FULL * 3; i++)
+        guide.data[i] = i / 3 % FULL < EDGE ? 0.1f : 0.6f;
+    for (int i = 0; i < LOW * LOW; i++) {
+        float low = (float)(i % LOW) * 4, share = fminf(fmaxf((EDGE - low) / 4, 0), 1);
+        for (int c = 0; c < 3; c++)
+            s.albedo.data[3 * i + c] = share * 0.2f + (1 - share) * 0.8f;
+    }
+    assert_int_equal(surface_refine(&s, &guide, &mask, &full), OK);
+    float left = img_at(&full.albedo, EDGE - 1, 32)[0], right = img_at(&full.albedo, EDGE, 32)[0];
+    /* bilinear enlargement would change by 0.15 a pixel here */
+    assert_true(right - left > 0.4f);
+    img_free(&guide);
+    img_free(&mask);
+    surface_free(&s);
+    surface_free(&full);
+}
+
+static void usual_exposures_are_left_alone_and_others_brought_near(void **state)
+{
+    (void)state;
+    img photo, mask;
+    assert_int_equal(img_new(&photo, 20, 20, 3), OK);
+    assert_int_equal(img_new(&mask, 20, 20, 1), OK);
+    box(&mask, 0, 0, 20, 20);
+    assert_true(exposure_gain(&photo, &mask) == 1); /* black */
+    for (int i = 0; i < 1200; i++)
+        photo.data[i] = 0.5f;
+    assert_true(exposure_gain(&photo, &mask) == 1);
+    for (int i = 0; i < 1200; i++)
+        photo.data[i] = 0.01f;
+    float gain = exposure_gain(&photo, &mask);
+    assert_true(gain > 10 && gain < 64);
+    for (int i = 0; i < 1200; i++)
+        photo.data[i] = 8;
+    assert_true(exposure_gain(&photo, &mask) < 0.2f);
+    assert_true(exposure_from_ev(2) == 4);
+    img_free(&photo);
+    img_free(&mask);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_object_fills_four_fifths_of_the_crop),
+        cmocka_unit_test(square_photographs_framed_like_the_training_data_are_taken_whole),
+        cmocka_unit_test(a_crop_put_back_lands_where_it_came_from),
+        cmocka_unit_test(filling_keeps_the_inside_and_continues_it),
+        cmocka_unit_test(filling_without_any_inside_gives_zeros),
+        cmocka_unit_test(tidy_surfaces_keep_their_promises_whatever_came_in),
+        cmocka_unit_test(the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance),
+        cmocka_unit_test(a_light_on_the_left_brightens_the_left),
+        cmocka_unit_test(a_surface_survives_resizing),
+        cmocka_unit_test(refined_albedo_follows_the_photographs_edge),
+        cmocka_unit_test(usual_exposures_are_left_alone_and_others_brought_near),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,45 @@
+/* A weights file of a small model with random parameters, for tests that care about everything but the answer. */
+#ifndef MERLIN_TESTS_ESTIMATE_WEIGHTS_H
+#define MERLIN_TESTS_ESTIMATE_WEIGHTS_H
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/model.h"
+#include "nn/safetensors.h"
+
+static inline status write_params(const char *path, nn_params *params, const char *config)
+{
+    size_t count = nn_params_count(params);
+    st_tensor *tensors = calloc(count, sizeof *tensors);
+    for (size_t i = 0; i < count; i++) {
+        const nn_param *p = nn_params_at(params, i);
+        tensors[i] = (st_tensor){.name = p->name, .type = ST_F32, .rank = p->rank, .count = p->count, .data = p->value};
+        memcpy(tensors[i].shape, p->shape, sizeof p->shape);
+    }
+    const char *const metadata[][2] = {{"config", config}};
+    status s = st_write(path, tensors, count, metadata, 1);
+    free(tensors);
+    return s;
+}
+
+/* The shipped model's configuration, a few channels wide. */
+static inline status write_random_weights(const char *path)
+{
+    model_config config;
+    nn_graph *g = NULL;
+    nn_params *params = NULL;
+    status s = model_config_read(MERLIN_SOURCE_DIR "/configs/merlin-point.json", &config);
+    for (int i = 0; i < MODEL_LEVELS; i++)
+        config.widths[i] = config.gi_widths[i] = 16;
+    char *json = s == OK ? model_config_write(&config) : NULL;
+    if (s == OK) s = model_build(&config, MODEL_WHOLE, &g);
+    if (s == OK) s = nn_params_new(g, 1, &params);
+    if (s == OK) s = write_params(path, params, json);
+    free(json);
+    nn_params_free(params);
+    nn_graph_free(g);
+    return s;
+}
+
+#endif
