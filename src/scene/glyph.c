@@ -1,6 +1,7 @@
 #include "scene/glyph.h"
 
 #include "scene/noise.h"
+#include "scene/number.h"
 
 enum { ALPHABET = 24, STROKES = 4 };
 
@@ -8,7 +9,7 @@ static float segment_distance(float x, float y, const float a[2], const float b[
 {
     float dx = b[0] - a[0], dy = b[1] - a[1], length = dx * dx + dy * dy;
     float t = length > 0 ? ((x - a[0]) * dx + (y - a[1]) * dy) / length : 0;
-    t = fminf(1, fmaxf(0, t));
+    t = min_of(1, max_of(0, t));
     return hypotf(x - a[0] - t * dx, y - a[1] - t * dy);
 }
 
@@ -34,12 +35,12 @@ float glyph_ink(float x, float y, float weight, uint32_t seed)
         lattice_point(bits >> 8, to);
         float d;
         if (bits % 4 == 0) { /* a ring around the middle of the stroke */
-            float radius = 0.5f * fminf(0.4f, hypotf(to[0] - from[0], to[1] - from[1]));
+            float radius = 0.5f * min_of(0.4f, hypotf(to[0] - from[0], to[1] - from[1]));
             d = fabsf(hypotf(x - 0.5f * (from[0] + to[0]), y - 0.5f * (from[1] + to[1])) - radius);
         } else {
             d = segment_distance(x, y, from, to);
         }
-        distance = fminf(distance, d);
+        distance = min_of(distance, d);
         if (bits % 7 > 1) { /* most strokes go on where the last one ended */
             from[0] = to[0];
             from[1] = to[1];

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/number.h"
+
 void implicit_add(implicit *shape, blob b)
 {
     if (shape->count < BLOBS) shape->blob[shape->count++] = b;
@@ -15,17 +17,17 @@ static float blob_distance(const blob *b, vec3 p)
     case BLOB_ELLIPSOID: { /* first order in the distance: |q/s| (|q/s| - 1) / |q/s²| */
         vec3 a = vec3_make(q.x / s.x, q.y / s.y, q.z / s.z), c = vec3_make(a.x / s.x, a.y / s.y, a.z / s.z);
         float k = vec3_length(a);
-        return k * (k - 1) / fmaxf(vec3_length(c), 1e-6f);
+        return k * (k - 1) / max_of(vec3_length(c), 1e-6f);
     }
     case BLOB_CAPSULE: {
-        float t = fminf(1, fmaxf(-1, q.y / s.y)), radius = s.x + (s.z - s.x) * 0.5f * (t + 1);
+        float t = min_of(1, max_of(-1, q.y / s.y)), radius = s.x + (s.z - s.x) * 0.5f * (t + 1);
         return vec3_length(vec3_make(q.x, q.y - t * s.y, q.z)) - radius;
     }
     default: {
-        float round = 0.3f * fminf(s.x, fminf(s.y, s.z));
+        float round = 0.3f * min_of(s.x, min_of(s.y, s.z));
         vec3 d = vec3_make(fabsf(q.x) - s.x + round, fabsf(q.y) - s.y + round, fabsf(q.z) - s.z + round);
-        float inside = fminf(0, fmaxf(d.x, fmaxf(d.y, d.z)));
-        vec3 out = vec3_make(fmaxf(d.x, 0), fmaxf(d.y, 0), fmaxf(d.z, 0));
+        float inside = min_of(0, max_of(d.x, max_of(d.y, d.z)));
+        vec3 out = vec3_make(max_of(d.x, 0), max_of(d.y, 0), max_of(d.z, 0));
         return vec3_length(out) + inside - round;
     }
     }
@@ -34,8 +36,8 @@ static float blob_distance(const blob *b, vec3 p)
 /* The quadratic smooth minimum: min(a, b), rounded where they are within k. */
 static float smooth_minimum(float a, float b, float k)
 {
-    float h = fmaxf(k - fabsf(a - b), 0) / fmaxf(k, 1e-6f);
-    return fminf(a, b) - 0.25f * h * h * k;
+    float h = max_of(k - fabsf(a - b), 0) / max_of(k, 1e-6f);
+    return min_of(a, b) - 0.25f * h * h * k;
 }
 
 float implicit_distance(const implicit *shape, vec3 p)
@@ -106,8 +108,8 @@ static vec3 onto_surface(const field *f, vec3 p)
     vec3 g = vec3_make(implicit_distance(f->shape, vec3_make(p.x + h, p.y, p.z)) - d,
                        implicit_distance(f->shape, vec3_make(p.x, p.y + h, p.z)) - d,
                        implicit_distance(f->shape, vec3_make(p.x, p.y, p.z + h)) - d);
-    float move = -d * h / fmaxf(vec3_dot(g, g), 1e-4f * h * h), far = 0.5f * f->step / fmaxf(vec3_length(g), 1e-9f);
-    return vec3_fma(p, fminf(far, fmaxf(-far, move)), g);
+    float move = -d * h / max_of(vec3_dot(g, g), 1e-4f * h * h), far = 0.5f * f->step / max_of(vec3_length(g), 1e-9f);
+    return vec3_fma(p, min_of(far, max_of(-far, move)), g);
 }
 
 /* The vertex of a cell: the mean of the places where its edges cross the surface, then moved onto it. */
@@ -164,16 +166,16 @@ static void field_bounds(field *f, int cells)
         const blob *b = &f->shape->blob[i];
         if (b->carve) continue;
         vec3 s = b->radii;
-        if (b->kind == BLOB_CAPSULE) s = vec3_make(fmaxf(s.x, s.z), s.y + fmaxf(s.x, s.z), fmaxf(s.x, s.z));
+        if (b->kind == BLOB_CAPSULE) s = vec3_make(max_of(s.x, s.z), s.y + max_of(s.x, s.z), max_of(s.x, s.z));
         real centre[3] = {b->centre.x, b->centre.y, b->centre.z};
         for (int a = 0; a < 3; a++) {
             vec3 row = b->rotation.row[a];
             float reach = fabsf(row.x) * s.x + fabsf(row.y) * s.y + fabsf(row.z) * s.z + 0.25f * b->blend;
-            low[a] = fminf(low[a], centre[a] - reach);
-            high[a] = fmaxf(high[a], centre[a] + reach);
+            low[a] = min_of(low[a], centre[a] - reach);
+            high[a] = max_of(high[a], centre[a] + reach);
         }
     }
-    float longest = fmaxf(high[0] - low[0], fmaxf(high[1] - low[1], high[2] - low[2]));
+    float longest = max_of(high[0] - low[0], max_of(high[1] - low[1], high[2] - low[2]));
     f->step = longest / (float)cells;
     for (int a = 0; a < 3; a++)
         f->n[a] = (int)ceilf((high[a] - low[a]) / f->step) + 4;

@@ -1,6 +1,7 @@
 #include "scene/material.h"
 
 #include "scene/noise.h"
+#include "scene/number.h"
 
 static vec3 mixed_colour(const paint *p, float t)
 {
@@ -28,8 +29,8 @@ void material_eval(const scn_material *material, vec3 reference, vec3 facing, ui
     }
     if (material->smudged)
         rough += material->smudge_amount * (pattern_value(&material->smudge, reference, facing) - 0.5f);
-    *albedo = vec3_make(fminf(1, fmaxf(0, a.x)), fminf(1, fmaxf(0, a.y)), fminf(1, fmaxf(0, a.z)));
-    *roughness = fminf(1, fmaxf(0.1f, rough));
+    *albedo = vec3_make(min_of(1, max_of(0, a.x)), min_of(1, max_of(0, a.y)), min_of(1, max_of(0, a.z)));
+    *roughness = min_of(1, max_of(0.1f, rough));
 }
 
 void material_slope(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, const vec3 tangent[2],

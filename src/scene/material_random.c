@@ -3,6 +3,7 @@
 
 #include "scene/material.h"
 #include "scene/noise.h"
+#include "scene/number.h"
 #include "scene/palette.h"
 
 static const uint32_t ALL_PARTS = 0xffffffffu;
@@ -53,8 +54,8 @@ static vec3 shade_of(maker *m, vec3 colour, float strength)
     vec3 c =
         vec3_make(colour.x * light * (1 + tint * rng_normal(m->r)), colour.y * light * (1 + tint * rng_normal(m->r)),
                   colour.z * light * (1 + tint * rng_normal(m->r)));
-    return vec3_make(fminf(0.95f, fmaxf(0.008f, c.x)), fminf(0.95f, fmaxf(0.008f, c.y)),
-                     fminf(0.95f, fmaxf(0.008f, c.z)));
+    return vec3_make(min_of(0.95f, max_of(0.008f, c.x)), min_of(0.95f, max_of(0.008f, c.y)),
+                     min_of(0.95f, max_of(0.008f, c.z)));
 }
 
 static pattern pattern_between(maker *m, pattern_kind kind, float low, float high)
@@ -110,7 +111,7 @@ static void add_layer(maker *m, uint32_t parts, const pattern *mask, float opaci
 {
     scn_material *out = m->out;
     if (out->layers == LAYERS) return;
-    p.roughness = fminf(1, fmaxf(0.1f, p.roughness));
+    p.roughness = min_of(1, max_of(0.1f, p.roughness));
     layer *l = &out->layer[out->layers++];
     *l = (layer){.parts = parts, .everywhere = mask == NULL, .opacity = opacity, .paint = p};
     if (mask) l->mask = *mask;
@@ -189,7 +190,7 @@ static void add_bump(maker *m, const pattern *p, float frequency, float slope, u
     scn_material *out = m->out;
     if (out->bumps == BUMPS) return;
     out->bump[out->bumps++] =
-        (bump){.parts = parts, .pattern = *p, .height = slope / frequency, .step = fminf(0.01f, 0.08f / frequency)};
+        (bump){.parts = parts, .pattern = *p, .height = slope / frequency, .step = min_of(0.01f, 0.08f / frequency)};
 }
 
 /* Grain, dents, scales, hammer marks, cloth: slopes from faint to strong. */

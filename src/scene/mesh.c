@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/noise.h"
+#include "scene/number.h"
 
 void mesh_free(scn_mesh *mesh)
 {
@@ -100,13 +101,13 @@ void mesh_normalize(scn_mesh *mesh)
     vec3 low = vec3_make(1e30f, 1e30f, 1e30f), high = vec3_scale(low, -1);
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         vec3 p = mesh->position[i];
-        low = vec3_make(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
-        high = vec3_make(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+        low = vec3_make(min_of(low.x, p.x), min_of(low.y, p.y), min_of(low.z, p.z));
+        high = vec3_make(max_of(high.x, p.x), max_of(high.y, p.y), max_of(high.z, p.z));
     }
     vec3 centre = vec3_scale(vec3_add(low, high), 0.5f);
     float radius = 1e-12f;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        radius = fmaxf(radius, vec3_length(vec3_sub(mesh->position[i], centre)));
+        radius = max_of(radius, vec3_length(vec3_sub(mesh->position[i], centre)));
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         mesh->position[i] = vec3_scale(vec3_sub(mesh->position[i], centre), 1 / radius);
         mesh->reference[i] = vec3_scale(vec3_sub(mesh->reference[i], centre), 1 / radius);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "scene/mesh.h"
+#include "scene/number.h"
 
 /* Everything one pass over the vertices needs; faces around vertex v are face[start[v]] .. face[start[v + 1] - 1]. */
 typedef struct finisher {
@@ -24,7 +25,7 @@ static bool drop_degenerate(finisher *f)
         vec3 n = vec3_cross(a, b);
         float area = vec3_length(n);
         /* negated, so that a NaN is dropped too; slivers thinner than 1e-5 of their length have no usable normal */
-        if (!(area > 1e-5f * fmaxf(vec3_dot(a, a), vec3_dot(b, b)) && area > 1e-13f && area < 1e30f)) continue;
+        if (!(area > 1e-5f * max_of(vec3_dot(a, a), vec3_dot(b, b)) && area > 1e-13f && area < 1e30f)) continue;
         f->unit[kept] = vec3_scale(n, 1 / area);
         f->area[kept] = area;
         memmove(m->triangle[kept], t, sizeof *m->triangle);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "scene/mesh.h"
+#include "scene/number.h"
 
 typedef struct lattice {
     scn_mesh *mesh;
@@ -62,7 +63,7 @@ void mesh_add_cube_grid(scn_mesh *mesh, int n, uint8_t part, vec3 (*map)(const v
 void profile_add(profile *p, float radius, float height)
 {
     if (p->count == PROFILE_POINTS) return;
-    p->radius[p->count] = fmaxf(radius, 0);
+    p->radius[p->count] = max_of(radius, 0);
     p->height[p->count++] = height;
 }
 
@@ -70,7 +71,7 @@ void profile_add_corner(profile *p, const float from[2], const float corner[2], 
                         int steps)
 {
     float a = hypotf(from[0] - corner[0], from[1] - corner[1]), b = hypotf(to[0] - corner[0], to[1] - corner[1]);
-    float ta = fminf(0.5f, round / fmaxf(a, 1e-6f)), tb = fminf(0.5f, round / fmaxf(b, 1e-6f));
+    float ta = min_of(0.5f, round / max_of(a, 1e-6f)), tb = min_of(0.5f, round / max_of(b, 1e-6f));
     for (int i = 0; i <= steps; i++) {
         float t = (float)i / (float)steps, wa = (1 - t) * (1 - t) * ta, wb = t * t * tb, wc = 1 - wa - wb;
         profile_add(p, wa * from[0] + wc * corner[0] + wb * to[0], wa * from[1] + wc * corner[1] + wb * to[1]);

@@ -24,13 +24,6 @@ static inline float noise_unit(uint32_t hash)
     return (float)(hash >> 8) * 0x1p-24f;
 }
 
-/* Smooth 0 to 1 between the edges a < b (Hermite). */
-static inline float smooth_step(float a, float b, float x)
-{
-    float t = fminf(1, fmaxf(0, (x - a) / (b - a)));
-    return t * t * (3 - 2 * t);
-}
-
 /* Gradient noise (Perlin 2002) in about [-1, 1], one feature a unit. */
 float noise_gradient(vec3 p, uint32_t seed);
 

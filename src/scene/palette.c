@@ -1,5 +1,7 @@
 #include "scene/palette.h"
 
+#include "scene/number.h"
+
 static float decode(float x)
 {
     return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
@@ -7,8 +9,8 @@ static float decode(float x)
 
 static float channel(float hue, float saturation, float value, float offset)
 {
-    float k = fmodf(offset + 6 * hue, 6), ramp = fminf(1, fmaxf(0, fminf(k, 4 - k)));
-    return fminf(0.95f, fmaxf(0.01f, decode(value * (1 - saturation * ramp))));
+    float k = fmodf(offset + 6 * hue, 6), ramp = min_of(1, max_of(0, min_of(k, 4 - k)));
+    return min_of(0.95f, max_of(0.01f, decode(value * (1 - saturation * ramp))));
 }
 
 vec3 colour_hsv(float hue, float saturation, float value)
@@ -26,7 +28,9 @@ static vec3 natural(rng *r)
 
 static vec3 painted(rng *r)
 {
-    return colour_hsv(rng_uniform(r), rng_range(r, 0.6f, 1), rng_range(r, 0.35f, 1));
+    /* reds to yellows are the commonest paints */
+    float hue = rng_uniform(r) < 0.4f ? rng_range(r, -0.04f, 0.17f) : rng_uniform(r);
+    return colour_hsv(hue, rng_range(r, 0.6f, 1), rng_range(r, 0.35f, 1));
 }
 
 static vec3 pale(rng *r)
@@ -64,7 +68,7 @@ void palette_random(rng *r, vec3 colour[PALETTE])
     for (int i = 0; i < PALETTE; i++) {
         colour[i] = i == 0 ? theme[0](r) : theme[rng_below(r, 4)](r);
         if (one_hue)
-            colour[i] = colour_hsv(hue + rng_normal(r) * 0.03f, fminf(1, saturation * rng_range(r, 0.6f, 1.2f)),
+            colour[i] = colour_hsv(hue + rng_normal(r) * 0.03f, min_of(1, saturation * rng_range(r, 0.6f, 1.2f)),
                                    rng_range(r, 0.1f, 0.97f));
     }
 }

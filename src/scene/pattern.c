@@ -2,6 +2,7 @@
 
 #include "scene/glyph.h"
 #include "scene/noise.h"
+#include "scene/number.h"
 #include "scene/shape.h"
 
 static float wave(float x)
@@ -25,12 +26,12 @@ static float patches(const pattern *p, vec3 q)
         vec3 d = vec3_sub(q, p->centre[i]);
         float e;
         if (p->sharpness > 2.5f)
-            e = fmaxf(fabsf(d.x), fmaxf(fabsf(d.y), fabsf(d.z)));
+            e = max_of(fabsf(d.x), max_of(fabsf(d.y), fabsf(d.z)));
         else
             e = vec3_length(d);
-        nearest = fminf(nearest, e);
+        nearest = min_of(nearest, e);
     }
-    return fmaxf(0, 1 - 0.5f * nearest);
+    return max_of(0, 1 - 0.5f * nearest);
 }
 
 /* Thin lines in three families of directions. */
@@ -40,7 +41,7 @@ static float scratches(const pattern *p, vec3 q)
     for (int i = 0; i < 3; i++) {
         vec3 s = vec3_make(0.25f * q.x + 0.1f * q.z, 6 * q.y + 1.5f * q.x, 0.25f * q.z);
         float line = noise_gradient(s, p->seed + (uint32_t)i), where = noise_gradient(q, p->seed + 7 + (uint32_t)i);
-        best = fmaxf(best, (1 - fminf(1, fabsf(line) * 6)) * smooth_step(0, 0.3f, where));
+        best = max_of(best, (1 - min_of(1, fabsf(line) * 6)) * smooth_step(0, 0.3f, where));
         q = vec3_make(q.y, q.z + 0.7f * q.x, q.x);
     }
     return best;
@@ -66,7 +67,7 @@ static float raw_value(const pattern *p, vec3 q, vec3 facing)
     case PATTERN_RINGS:
         return wave(hypotf(q.x, q.z) + 0.15f * q.y);
     case PATTERN_MARBLE:
-        return 1 - fminf(1, 2.5f * fabsf(noise_fbm(q, p->octaves, p->seed)));
+        return 1 - min_of(1, 2.5f * fabsf(noise_fbm(q, p->octaves, p->seed)));
     case PATTERN_SPOTS:
         return 1 - noise_cellular(q, p->seed).first;
     case PATTERN_CHECKS:

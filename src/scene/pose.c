@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/number.h"
+
 enum { RASTER = 64, ATTEMPTS = 4, STEPS = 9 };
 
 static const float NEAREST = 0.42f, FRAME = 1.9f; /* least depth; largest side, of a frame that is 2 wide */
@@ -26,11 +28,11 @@ static vec3 pose_apply(const pose *at, vec3 p)
 /* Marks the pixels whose centres lie in the triangle, whichever way it winds. */
 static void mark_triangle(uint8_t *mask, const float a[2], const float b[2], const float c[2])
 {
-    float low_x = fminf(a[0], fminf(b[0], c[0])), high_x = fmaxf(a[0], fmaxf(b[0], c[0]));
-    float low_y = fminf(a[1], fminf(b[1], c[1])), high_y = fmaxf(a[1], fmaxf(b[1], c[1]));
+    float low_x = min_of(a[0], min_of(b[0], c[0])), high_x = max_of(a[0], max_of(b[0], c[0]));
+    float low_y = min_of(a[1], min_of(b[1], c[1])), high_y = max_of(a[1], max_of(b[1], c[1]));
     if (!(low_x < RASTER && high_x > 0 && low_y < RASTER && high_y > 0)) return;
-    int x0 = (int)fmaxf(0, ceilf(low_x - 0.5f)), x1 = (int)fminf(RASTER - 1, floorf(high_x - 0.5f));
-    int y0 = (int)fmaxf(0, ceilf(low_y - 0.5f)), y1 = (int)fminf(RASTER - 1, floorf(high_y - 0.5f));
+    int x0 = (int)max_of(0, ceilf(low_x - 0.5f)), x1 = (int)min_of(RASTER - 1, floorf(high_x - 0.5f));
+    int y0 = (int)max_of(0, ceilf(low_y - 0.5f)), y1 = (int)min_of(RASTER - 1, floorf(high_y - 0.5f));
     for (int y = y0; y <= y1; y++) {
         for (int x = x0; x <= x1; x++) {
             float px = (float)x + 0.5f, py = (float)y + 0.5f;
@@ -48,12 +50,12 @@ static silhouette measure(const scn_mesh *mesh, const pose *at, float tangent, f
     silhouette s = {0, 1e9f, -1e9f, 1e9f, -1e9f, 1e9f};
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         vec3 p = pose_apply(at, mesh->position[i]);
-        float depth = fmaxf(0.05f, -p.z), x = p.x / (depth * tangent), y = p.y / (depth * tangent);
-        s.nearest = fminf(s.nearest, -p.z);
-        s.low_x = fminf(s.low_x, x);
-        s.high_x = fmaxf(s.high_x, x);
-        s.low_y = fminf(s.low_y, y);
-        s.high_y = fmaxf(s.high_y, y);
+        float depth = max_of(0.05f, -p.z), x = p.x / (depth * tangent), y = p.y / (depth * tangent);
+        s.nearest = min_of(s.nearest, -p.z);
+        s.low_x = min_of(s.low_x, x);
+        s.high_x = max_of(s.high_x, x);
+        s.low_y = min_of(s.low_y, y);
+        s.high_y = max_of(s.high_y, y);
         screen[i][0] = (x + 1) * (0.5f * RASTER);
         screen[i][1] = (y + 1) * (0.5f * RASTER);
     }
@@ -86,23 +88,24 @@ static mat3 choose_rotation(rng *r, const shape_traits *traits)
 static void improve(pose *at, const silhouette *s, float target, float tangent, const float aim[2])
 {
     float width = s->high_x - s->low_x, height = s->high_y - s->low_y;
-    float grow = sqrtf(target / fmaxf(s->coverage, 0.01f)), limit = FRAME / fmaxf(width, height);
+    float grow = sqrtf(target / max_of(s->coverage, 0.01f)), limit = FRAME / max_of(width, height);
     if (grow > limit) {
         float reached = s->coverage * limit * limit;
         grow = limit;
         if (reached < 0.28f) { /* too thin for any size: widen its narrow side */
-            float widen = fminf(1.4f, fminf(0.3f / fmaxf(reached, 0.02f), fmaxf(width, height) / fminf(width, height)));
+            float widen =
+                min_of(1.4f, min_of(0.3f / max_of(reached, 0.02f), max_of(width, height) / min_of(width, height)));
             if (width < height)
                 at->stretch.x *= widen;
             else
                 at->stretch.y *= widen;
         }
     }
-    grow = fminf(3, fmaxf(0.3f, grow));
+    grow = min_of(3, max_of(0.3f, grow));
     at->stretch = vec3_scale(at->stretch, grow);
     float depth = (1 - s->nearest) * grow;
     if (depth > 1 - NEAREST) at->stretch.z *= 0.97f * (1 - NEAREST) / depth;
-    float room_x = fmaxf(0, 0.5f * (FRAME - width * grow)), room_y = fmaxf(0, 0.5f * (FRAME - height * grow));
+    float room_x = max_of(0, 0.5f * (FRAME - width * grow)), room_y = max_of(0, 0.5f * (FRAME - height * grow));
     /* growing is about the object's own middle, so the box moves with its distance from there */
     float mean_x = 0.5f * (s->low_x + s->high_x), mean_y = 0.5f * (s->low_y + s->high_y);
     at->offset.x += (aim[0] * room_x - mean_x) * tangent;

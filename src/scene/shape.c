@@ -1,6 +1,8 @@
 /* What several classes of shapes share: rotations, ellipsoids, bending. */
 #include "scene/shape.h"
 
+#include "scene/number.h"
+
 mat3 random_rotation(rng *r)
 {
     float u = rng_uniform(r), a = 6.2831853f * rng_uniform(r), b = 6.2831853f * rng_uniform(r);
@@ -12,7 +14,7 @@ mat3 random_rotation(rng *r)
 
 vec3 random_direction(rng *r)
 {
-    float z = rng_range(r, -1, 1), a = 6.2831853f * rng_uniform(r), s = sqrtf(fmaxf(0, 1 - z * z));
+    float z = rng_range(r, -1, 1), a = 6.2831853f * rng_uniform(r), s = sqrtf(max_of(0, 1 - z * z));
     return vec3_make(s * cosf(a), s * sinf(a), z);
 }
 
@@ -53,11 +55,11 @@ void bend_and_twist(rng *r, scn_mesh *mesh, uint32_t first)
     float taper = rng_uniform(r) < 0.4f ? rng_range(r, -0.35f, 0.35f) : 0;
     for (uint32_t i = first; i < mesh->vertex_count; i++) {
         vec3 p = mesh->position[i];
-        float scale = fmaxf(0.3f, 1 - taper * p.y), a = twist * p.y;
+        float scale = max_of(0.3f, 1 - taper * p.y), a = twist * p.y;
         p = vec3_make(scale * (p.x * cosf(a) - p.z * sinf(a)), p.y, scale * (p.x * sinf(a) + p.z * cosf(a)));
         if (fabsf(bend) > 1e-3f) {
             /* the y axis becomes an arc of this curvature; beyond 0.8 it would fold onto itself */
-            float k = fminf(0.8f, fmaxf(-0.8f, bend)), angle = k * p.y, radius = 1 / k - p.x;
+            float k = min_of(0.8f, max_of(-0.8f, bend)), angle = k * p.y, radius = 1 / k - p.x;
             p = vec3_make(1 / k - radius * cosf(angle), radius * sinf(angle), p.z);
         }
         mesh->position[i] = p;

@@ -1,6 +1,7 @@
 /* Smooth implicit bodies: heaps of melted solids, and figures with body, head, limbs, ears and eyes, alike on both
  * sides, as toys and figurines are. */
 #include "scene/implicit.h"
+#include "scene/number.h"
 #include "scene/shape.h"
 
 /* Cells along the longest side: the longer and thinner the body, the fewer triangles a cell count makes. */
@@ -84,7 +85,7 @@ static void add_face(rng *r, implicit *shape, const figure *f)
         float out = rng_range(r, 0.3f, 0.9f);
         vec3 at = {s.x * out, h.y + s.y * sqrtf(1 - out * out) + 0.5f * ear.y, h.z};
         blob_kind kind = rng_uniform(r) < 0.5f ? BLOB_CAPSULE : BLOB_ELLIPSOID;
-        if (kind == BLOB_ELLIPSOID) ear.z = fmaxf(ear.z, 0.06f);
+        if (kind == BLOB_ELLIPSOID) ear.z = max_of(ear.z, 0.06f);
         add_pair(shape, make_blob(kind, at, ear, (vec3){0, 0, -out * rng_range(r, 0.1f, 1)}, 0.4f * f->blend));
     }
     if (rng_uniform(r) < 0.75f) { /* beak, snout or trunk */
@@ -111,7 +112,7 @@ static figure add_figure(rng *r, implicit *shape)
     add_face(r, shape, &f);
     if (rng_uniform(r) < 0.85f) add_limbs(r, shape, body, f.blend);
     if (rng_uniform(r) < 0.25f) { /* a stand */
-        vec3 base = {body.x * rng_range(r, 0.8f, 1.4f), 0.07f, fmaxf(body.x, body.z) * rng_range(r, 0.8f, 1.3f)};
+        vec3 base = {body.x * rng_range(r, 0.8f, 1.4f), 0.07f, max_of(body.x, body.z) * rng_range(r, 0.8f, 1.3f)};
         blob b = make_blob(BLOB_BOX, vec3_make(0, -body.y * 1.05f, 0), base, none, 0.05f);
         implicit_add(shape, b);
     }
@@ -126,7 +127,7 @@ static void add_eyes(rng *r, scn_mesh *mesh, const implicit *shape, const figure
     for (int side = -1; side <= 1; side += 2) {
         vec3 d = vec3_normalize(vec3_make((float)side * out, up, 0.8f)), p = f->head;
         for (int i = 0; i < 24; i++)
-            p = vec3_fma(p, fmaxf(0, -implicit_distance(shape, p)), d);
+            p = vec3_fma(p, max_of(0, -implicit_distance(shape, p)), d);
         uint32_t first = mesh->vertex_count;
         add_ellipsoid(mesh, 10, vec3_make(size, size, size), 1);
         mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

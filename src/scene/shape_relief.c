@@ -1,6 +1,7 @@
 /* Nearly flat things with fine relief on their front: coins, plaques, tablets, tiles, cushions, folded sheets. */
 #include "scene/glyph.h"
 #include "scene/noise.h"
+#include "scene/number.h"
 #include "scene/shape.h"
 
 enum { GRID = 116 };
@@ -18,7 +19,7 @@ typedef struct relief {
 /* Maps the square [-1, 1]² to the superellipse, keeping rays from the middle. */
 static void to_outline(const relief *f, float u, float v, float *x, float *y)
 {
-    float reach = fmaxf(fabsf(u), fabsf(v)), length = 1;
+    float reach = max_of(fabsf(u), fabsf(v)), length = 1;
     if (reach > 1e-6f)
         length = powf(powf(fabsf(u / reach), f->square) + powf(fabsf(v / reach), f->square), -1 / f->square);
     *x = u * length * f->width;
@@ -46,10 +47,10 @@ static float relief_height(const relief *f, float x, float y)
 /* The front surface above the grid point at (u, v) in [-1, 1]². */
 static vec3 front_point(const relief *f, float u, float v)
 {
-    float x, y, edge = 1 - fmaxf(fabsf(u), fabsf(v));
+    float x, y, edge = 1 - max_of(fabsf(u), fabsf(v));
     to_outline(f, u, v, &x, &y);
     float inner = f->rim > 0 ? smooth_step(f->rim, f->rim + 0.04f, edge) : 1;
-    float rise = sqrtf(fmaxf(0, 1 - (1 - fminf(1, edge / f->bevel)) * (1 - fminf(1, edge / f->bevel))));
+    float rise = sqrtf(max_of(0, 1 - (1 - min_of(1, edge / f->bevel)) * (1 - min_of(1, edge / f->bevel))));
     float h = relief_height(f, x, y) * smooth_step(0, 0.12f, edge) * inner + (f->rim > 0 ? 0.05f * (1 - inner) : 0);
     return vec3_make(x, y, rise * f->bevel * 0.4f + f->bulge * (1 - (1 - edge) * (1 - edge)) + h);
 }
@@ -118,7 +119,7 @@ void shape_relief(rng *r, scn_mesh *mesh, shape_traits *traits)
             mesh_add_quad(mesh, at[0], at[1], at[GRID + 2], at[GRID + 1], 0);
         }
     close_back(mesh, &f, grid);
-    float k = fminf(1, fmaxf(-1, f.curl));
+    float k = min_of(1, max_of(-1, f.curl));
     for (uint32_t i = 0; i < mesh->vertex_count && fabsf(k) > 0.02f; i++) { /* bent over an upright cylinder */
         vec3 p = mesh->position[i];
         float angle = k * p.x, radius = 1 / k + p.z;

@@ -1,4 +1,5 @@
 /* Surfaces of revolution: open vessels with a wall, lathed solids, fruit, rings; some fluted, some with a handle. */
+#include "scene/number.h"
 #include "scene/shape.h"
 
 enum { KNOTS = 8 };
@@ -22,7 +23,7 @@ typedef struct outline {
 
 static float outline_radius(const outline *o, float t)
 {
-    return fmaxf(0.07f, spline(o->knot, o->knots, t));
+    return max_of(0.07f, spline(o->knot, o->knots, t));
 }
 
 static outline random_outline(rng *r)
@@ -31,7 +32,7 @@ static outline random_outline(rng *r)
     float radius = rng_range(r, 0.3f, 0.7f);
     for (int i = 0; i < o.knots; i++) {
         o.knot[i] = radius;
-        radius = fminf(0.95f, fmaxf(0.12f, radius + rng_normal(r) * 0.22f));
+        radius = min_of(0.95f, max_of(0.12f, radius + rng_normal(r) * 0.22f));
     }
     return o;
 }
@@ -57,7 +58,7 @@ static void vessel(rng *r, profile *p, outline *o)
 {
     float wall = rng_range(r, 0.025f, 0.09f), floor = rng_range(r, 0.03f, 0.12f);
     int steps = 56;
-    if (rng_uniform(r) < 0.35f) o->knot[o->knots - 1] = fminf(1.1f, o->knot[o->knots - 1] + rng_range(r, 0, 0.4f));
+    if (rng_uniform(r) < 0.35f) o->knot[o->knots - 1] = min_of(1.1f, o->knot[o->knots - 1] + rng_range(r, 0, 0.4f));
     add_bottom(p, o);
     add_side(p, o, steps);
     float rim = outline_radius(o, 1), h = o->half_height;
@@ -67,7 +68,7 @@ static void vessel(rng *r, profile *p, outline *o)
     }
     for (int i = steps; i >= 0; i--) {
         float t = (float)i / (float)steps, y = h * (2 * t - 1);
-        if (y > -h + floor) profile_add(p, fmaxf(0.02f, outline_radius(o, t) - wall), y);
+        if (y > -h + floor) profile_add(p, max_of(0.02f, outline_radius(o, t) - wall), y);
     }
     profile_add(p, 0.5f * p->radius[p->count - 1], -h + floor);
     profile_add(p, 0, -h + floor);
@@ -129,7 +130,7 @@ static void handle(rng *r, scn_mesh *mesh, const outline *o, uint8_t part)
     float out = rng_range(r, 0.2f, 0.5f), thick = rng_range(r, 0.035f, 0.08f);
     for (int i = 0; i < COUNT; i++) {
         float t = (float)i / (COUNT - 1), u = low + (high - low) * t;
-        float bow = powf(sinf(3.1415927f * t), 0.6f) * out;
+        float bow = powf(max_of(0, sinf(3.1415927f * t)), 0.6f) * out;
         path[i] = vec3_make(outline_radius(o, u) - 0.02f + bow, h * (2 * u - 1), 0);
         radius[i] = thick;
     }

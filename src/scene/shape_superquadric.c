@@ -1,4 +1,5 @@
 /* Superellipsoids (Barr 1981) and rounded convex polyhedra, bent, twisted and dented. */
+#include "scene/number.h"
 #include "scene/shape.h"
 
 enum { PLANES = 24 };
@@ -23,7 +24,7 @@ static float polyhedron_radius(const radial *s, vec3 d)
 {
     float sum = 0;
     for (int i = 0; i < s->planes; i++)
-        sum += powf(fmaxf(0, vec3_dot(s->plane[i], d)), s->sharpness);
+        sum += powf(max_of(0, vec3_dot(s->plane[i], d)), s->sharpness);
     return powf(sum, -1 / s->sharpness);
 }
 
