@@ -4,18 +4,6 @@
 
 #include "cli/cli.h"
 
-#pragma weak cmd_estimate
-#pragma weak cmd_relight
-#pragma weak cmd_render
-#pragma weak cmd_train
-#pragma weak cmd_eval
-#pragma weak cmd_bench
-#pragma weak cmd_info
-
-#ifndef MERLIN_VERSION
-#define MERLIN_VERSION "0.1.0"
-#endif
-
 static const cli_command commands[] = {
     {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
     {"relight", "show the object of a photograph under other light", cmd_relight},
@@ -30,7 +18,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static const cli_command *find_command(const char *name)
 {
     for (size_t i = 0; i < COMMAND_COUNT; i++)
-        if (commands[i].run && strcmp(name, commands[i].name) == 0) return &commands[i];
+        if (strcmp(name, commands[i].name) == 0) return &commands[i];
     return NULL;
 }
 
@@ -41,7 +29,7 @@ static void print_help(FILE *stream)
           "commands:\n",
           stream);
     for (size_t i = 0; i < COMMAND_COUNT; i++)
-        if (commands[i].run) fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
+        fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
     fputs("\nmerlin COMMAND --help explains a command; merlin --version prints the version.\n", stream);
 }
 

@@ -88,13 +88,25 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
     return remove(path);
 }
 
-/* Runs the program with its output thrown away. */
-static status run_once(char *const *arguments, double *seconds, size_t *bytes)
+/* What the program said when it failed, in one line. */
+static status explain(const char *errors, int code)
+{
+    char *text = NULL;
+    size_t size;
+    if (file_read(errors, 1 << 16, &text, &size) != OK) return fail(ERROR_INPUT, "merlin estimate failed");
+    text[strcspn(text, "\n")] = 0;
+    status s = *text ? fail(ERROR_INPUT, "%s", text) : fail(ERROR_INPUT, "merlin estimate ended with status %d", code);
+    free(text);
+    return s;
+}
+
+/* Runs the program, its standard output thrown away and its errors kept in a file. */
+static status run_once(char *const *arguments, const char *errors, double *seconds, size_t *bytes)
 {
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions)) return fail(ERROR_MEMORY, "no memory to start %s", arguments[0]);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t child;
     double started = clock_seconds();
     int refused = posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ);
@@ -105,9 +117,7 @@ static status run_once(char *const *arguments, double *seconds, size_t *bytes)
     if (wait4(child, &code, 0, &usage) != child) return fail(ERROR_INPUT, "lost sight of %s", arguments[0]);
     *seconds = clock_seconds() - started;
     *bytes = (size_t)usage.ru_maxrss * 1024;
-    if (WIFEXITED(code) && WEXITSTATUS(code) == 0) return OK;
-    return fail(ERROR_INPUT, "merlin estimate --model %s failed with code %d; run it by hand to see why", arguments[3],
-                WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code));
+    return WIFEXITED(code) && WEXITSTATUS(code) == 0 ? OK : explain(errors, code);
 }
 
 static int compare_seconds(const void *a, const void *b)
@@ -120,15 +130,16 @@ static status run_in(const char *folder, const char *program, const char *weight
                      size_t *bytes)
 {
     char *picture = file_join(folder, "ball.png"), *output = file_join(folder, "ball");
+    char *errors = file_join(folder, "errors.txt");
     double times[MAX_RUNS];
-    status s = picture && output ? write_picture(picture) : fail(ERROR_MEMORY, "no memory for a path");
+    status s = picture && output && errors ? write_picture(picture) : fail(ERROR_MEMORY, "no memory for a path");
     char *const arguments[] = {(char *)program, "estimate", "--model", (char *)weights, picture, "-o",
                                output,          "--quiet",  NULL};
     *bytes = 0;
     if (runs > MAX_RUNS) runs = MAX_RUNS;
     for (int i = 0; s == OK && i < runs; i++) {
         size_t held = 0;
-        s = run_once(arguments, &times[i], &held);
+        s = run_once(arguments, errors, &times[i], &held);
         if (held > *bytes) *bytes = held;
     }
     if (s == OK) {
@@ -137,6 +148,7 @@ static status run_in(const char *folder, const char *program, const char *weight
     }
     free(picture);
     free(output);
+    free(errors);
     return s;
 }
 

@@ -155,7 +155,7 @@ static void a_model_without_extras_leaves_its_rows_empty(void **state)
     const fixture *f = *state;
     model_config plain = tiny;
     plain.relight = MODEL_RELIGHT_BRDF;
-    plain.global_illumination = false;
+    plain.feature_sharing = plain.global_illumination = false;
     char *weights = file_join(f->folder, "plain.safetensors");
     write_weights(weights, &plain);
     eval_options options = {.data = f->data, .weights = weights, .count = 1, .quiet = true};
