@@ -12,6 +12,13 @@ static vec3 grey(float value)
     return vec3_make(value, value, value);
 }
 
+/* 0 at x = from, 1 at x = to, smooth between (Hermite); from may be the larger. */
+static float ramp(float from, float to, float x)
+{
+    float t = fminf(1, fmaxf(0, (x - from) / (to - from)));
+    return t * t * (3 - 2 * t);
+}
+
 /* A colour of this brightness, tinted between warm (-1) and cool (1). */
 static vec3 tinted(float value, float coolness)
 {
@@ -62,11 +69,11 @@ static vec3 outdoors_at(const outdoors *o, vec3 d)
     }
     vec3 sky = vec3_lerp(o->horizon, o->zenith, sqrtf(d.y));
     vec3 p = vec3_scale(d, o->cloud_scale / (d.y + 0.2f));
-    float cloud = smooth_step(-0.2f, 0.5f, noise_fbm(p, 4, o->seed) + o->cover - 0.5f);
+    float cloud = ramp(-0.2f, 0.5f, noise_fbm(p, 4, o->seed) + o->cover - 0.5f);
     sky = vec3_lerp(sky, o->cloud, 0.8f * cloud);
     float toward = vec3_dot(d, o->sun_direction);
     sky = vec3_add(sky, grey(o->glow * expf(12 * (toward - 1))));
-    return vec3_fma(sky, smooth_step(o->sun_edge, o->sun_core, toward) * (1 - 0.9f * cloud), o->sun);
+    return vec3_fma(sky, ramp(o->sun_edge, o->sun_core, toward) * (1 - 0.9f * cloud), o->sun);
 }
 
 /* ---- a room ---------------------------------------------------------------------------------------------------- */
@@ -176,8 +183,7 @@ static vec3 studio_at(const studio *o, vec3 d)
         float toward = vec3_dot(d, o->direction[i]);
         if (toward <= 0.1f) continue;
         float x = fabsf(vec3_dot(d, o->right[i])) / toward, y = fabsf(vec3_dot(d, o->above[i])) / toward;
-        float inside =
-            smooth_step(o->width[i], 0.85f * o->width[i], x) * smooth_step(o->height[i], 0.85f * o->height[i], y);
+        float inside = ramp(o->width[i], 0.85f * o->width[i], x) * ramp(o->height[i], 0.85f * o->height[i], y);
         sum = vec3_fma(sum, inside, o->radiance[i]);
     }
     return sum;
