@@ -8,8 +8,9 @@
 status img_resize(const img *from, int width, int height, img *out);
 /* The rectangle at (x, y), which may hang over the edges: what lies outside is zero. */
 status img_crop(const img *from, int x, int y, int width, int height, img *out);
-/* Guided filter upsampling (He et al. 2013; fast form, He & Sun 2015): low-resolution maps brought to the guide's size so
- * that their edges follow it. mask (1 channel, guide's size, or NULL) keeps what is outside from leaking in. radius in
+/* Guided filter upsampling (He et al. 2013; fast form, He & Sun 2015): low-resolution maps brought to the guide's size
+ * so that their edges follow it. guide: 1 or 3 channels. low_mask (1 channel, low's size, or NULL) and mask (1 channel,
+ * guide's size, or NULL) keep what is outside from leaking in; what lies outside mask becomes zero. radius in
  * low-resolution pixels; epsilon in squared guide units. */
 status img_guided_upsample(const img *low, const img *low_mask, const img *guide, const img *mask, int radius,
                            float epsilon, img *out);
