@@ -1,0 +1,243 @@
+/* Data sets: the same whatever the threads, continued where they stopped, never mixed; and what the samples promise. */
+#include "render/generate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+/* last: it claims the word fail */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { COUNT = 4 };
+
+static render_options small(const char *folder)
+{
+    render_options o = render_options_default();
+    o.folder = folder;
+    o.count = COUNT;
+    o.seed = 77;
+    o.quiet = true;
+    o.image.size = 48;
+    o.image.targets = 1;
+    return o;
+}
+
+static char *read_member(const char *folder, uint64_t index, size_t *size)
+{
+    char *path = sample_path(folder, index), *data;
+    assert_int_equal(file_read(path, 1 << 26, &data, size), OK);
+    free(path);
+    return data;
+}
+
+static void assert_same_sets(const char *a, const char *b)
+{
+    for (uint64_t i = 0; i < COUNT; i++) {
+        size_t size_a, size_b;
+        char *data_a = read_member(a, i, &size_a), *data_b = read_member(b, i, &size_b);
+        assert_int_equal(size_a, size_b);
+        assert_memory_equal(data_a, data_b, size_a);
+        free(data_a);
+        free(data_b);
+    }
+}
+
+static char *new_folder(void)
+{
+    char *name = strdup("/tmp/merlin-test-generate-XXXXXX");
+    assert_non_null(mkdtemp(name));
+    return name;
+}
+
+static void remove_folder(char *folder)
+{
+    char **names;
+    size_t count;
+    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
+    for (size_t i = 0; i < count; i++)
+        unlink(names[i]);
+    file_list_free(names, count);
+    assert_int_equal(rmdir(folder), 0);
+    free(folder);
+}
+
+static void set_is_the_same_from_one_thread_and_from_two(void **state)
+{
+    (void)state;
+    char *one = new_folder(), *two = new_folder();
+    render_stats stats;
+    render_options o = small(one);
+    parallel_set_threads(1);
+    assert_int_equal(render_samples(&o, &stats), OK);
+    assert_int_equal(stats.rendered, COUNT);
+    assert_true(stats.rays > 0);
+    o = small(two);
+    parallel_set_threads(2);
+    assert_int_equal(render_samples(&o, &stats), OK);
+    assert_same_sets(one, two);
+    remove_folder(one);
+    remove_folder(two);
+}
+
+static int polls;
+static int stop_after_two(void)
+{
+    return ++polls > 2;
+}
+
+static void interrupted_set_is_continued_to_the_same_files(void **state)
+{
+    (void)state;
+    char *whole = new_folder(), *parts = new_folder();
+    render_stats stats;
+    render_options o = small(whole);
+    assert_int_equal(render_samples(&o, &stats), OK);
+    o = small(parts);
+    o.interrupted = stop_after_two;
+    polls = 0;
+    assert_int_equal(render_samples(&o, &stats), ERROR_STOPPED);
+    assert_true(stats.rendered <= 2);
+    size_t before = stats.rendered;
+    o.interrupted = NULL;
+    assert_int_equal(render_samples(&o, &stats), OK);
+    assert_int_equal(stats.kept, before);
+    assert_int_equal(stats.rendered, COUNT - before);
+    assert_same_sets(whole, parts);
+    remove_folder(whole);
+    remove_folder(parts);
+}
+
+static void samples_of_other_options_are_not_mixed_in(void **state)
+{
+    (void)state;
+    char *folder = new_folder();
+    render_stats stats;
+    render_options o = small(folder);
+    o.count = 1;
+    assert_int_equal(render_samples(&o, &stats), OK);
+    o.seed++;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "other options"));
+    remove_folder(folder);
+}
+
+static void impossible_options_are_refused(void **state)
+{
+    (void)state;
+    render_stats stats;
+    render_options o = small(NULL);
+    o.image.strata = 3;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    o = small(NULL);
+    o.image.targets = SAMPLE_MAX_TARGETS + 1;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    o = small(NULL);
+    o.mesh = "/nonexistent/mesh.obj";
+    assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
+}
+
+static void maps_are_zero_outside_the_mask_and_within_their_ranges_inside(void **state)
+{
+    (void)state;
+    render_options o = small(NULL);
+    for (uint64_t index = 0; index < 6; index++) {
+        sample s;
+        size_t inside = 0;
+        assert_int_equal(render_sample(&o, index, &s), OK);
+        for (size_t i = 0; i < (size_t)48 * 48; i++) {
+            const float *n = s.normal.data + 3 * i, *a = s.albedo.data + 3 * i;
+            float length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+            if (s.mask.data[i] > 0) {
+                inside++;
+                assert_true(fabsf(length - 1) < 1e-4f && n[2] > 0);
+                assert_true(s.depth.data[i] > 0.2f && s.depth.data[i] < 3);
+                assert_true(s.roughness.data[i] >= 0.09f && s.roughness.data[i] <= 1);
+                for (int c = 0; c < 3; c++)
+                    assert_true(a[c] >= 0 && a[c] <= 1 && s.env.data[3 * i] >= 0);
+            } else {
+                assert_true(length == 0 && s.depth.data[i] == 0 && s.roughness.data[i] == 0);
+                assert_true(s.direct.data[3 * i] == 0 && s.indirect.data[3 * i] == 0 && s.env.data[3 * i] == 0);
+            }
+        }
+        assert_true(inside > 200);
+        assert_true(s.sh[0][0] > 0 && s.light_power > 5.9f);
+        sample_free(&s);
+    }
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Relative differences of the direct image and the BRDF on the stored maps, where a pixel and its neighbours are whole;
+ * returns how many. */
+static size_t compare_direct(const sample *s, float *error)
+{
+    size_t count = 0;
+    int size = s->mask.width;
+    camera eye = {size, size, s->fov};
+    for (int y = 1; y < size - 1; y++)
+        for (int x = 1; x < size - 1; x++) {
+            float whole = fminf(fminf(*img_at(&s->mask, x - 1, y), *img_at(&s->mask, x + 1, y)),
+                                fminf(*img_at(&s->mask, x, y - 1), *img_at(&s->mask, x, y + 1)));
+            if (whole < 1 || *img_at(&s->mask, x, y) < 1) continue;
+            const float *a = img_at(&s->albedo, x, y), *n = img_at(&s->normal, x, y);
+            shade_input in = {{a[0], a[1], a[2]},
+                              *img_at(&s->roughness, x, y),
+                              {n[0], n[1], n[2]},
+                              *img_at(&s->depth, x, y),
+                              camera_point(&eye, (float)x + 0.5f, (float)y + 0.5f, 1),
+                              {0, 0, 0},
+                              s->light_power};
+            float expected = shade_point(&in).y;
+            error[count++] = fabsf(img_at(&s->direct, x, y)[1] - expected) / fmaxf(expected, 1e-3f);
+        }
+    return count;
+}
+
+static void direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps(void **state)
+{
+    (void)state;
+    enum { SIZE = 128, OBJECTS = 8 };
+    float *error = malloc(sizeof *error * SIZE * SIZE * OBJECTS);
+    size_t count = 0;
+    render_options o = small(NULL);
+    o.image = render_options_default().image;
+    o.environment = false;
+    for (uint64_t index = 0; index < OBJECTS; index++) {
+        sample s;
+        assert_int_equal(render_sample(&o, index, &s), OK);
+        count += compare_direct(&s, error + count);
+        sample_free(&s);
+    }
+    qsort(error, count, sizeof *error, by_value);
+    assert_true(error[count / 2] < 0.01f);
+    free(error);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(set_is_the_same_from_one_thread_and_from_two),
+        cmocka_unit_test(interrupted_set_is_continued_to_the_same_files),
+        cmocka_unit_test(samples_of_other_options_are_not_mixed_in),
+        cmocka_unit_test(impossible_options_are_refused),
+        cmocka_unit_test(maps_are_zero_outside_the_mask_and_within_their_ranges_inside),
+        cmocka_unit_test(direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
