@@ -137,6 +137,8 @@ typedef struct nn_options {
 
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out);
 void nn_program_free(nn_program *p);
+/* The type it computes in: float32 where bfloat16 was asked for and the processor lacks AVX-512. */
+nn_type nn_program_type(const nn_program *p);
 
 /* Host buffers of the whole batch, N×H×W×C float32; NULL for an unknown name. An input that feeds nothing that is
  * wanted still has a buffer. */
@@ -152,13 +154,13 @@ float nn_loss(const nn_program *p, const char *name);
 float nn_total_loss(const nn_program *p);
 
 typedef struct nn_cost {
-    double forward_flops,
-        backward_flops; /* of convolutions and fully connected layers, 2 per multiply-add, whole batch */
+    /* of convolutions and fully connected layers, 2 per multiply-add, whole batch */
+    double forward_flops, backward_flops;
     size_t activation_bytes, workspace_bytes, parameter_bytes;
     size_t parameter_count;
 } nn_cost;
 nn_cost nn_program_cost(const nn_program *p);
-/* One line per step with its seconds over `runs` runs, to stream; for finding what is slow. */
+/* One line per step with the best of its times over `runs` runs, to a FILE; for finding what is slow. */
 status nn_profile(nn_program *p, int runs, void *file);
 
 /* Peak rate in FLOP/s of this machine's convolutions, measured now: 64→64, 3×3, 128×128, batch 8. */

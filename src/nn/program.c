@@ -31,6 +31,11 @@ void nn_program_free(nn_program *p)
     free(p);
 }
 
+nn_type nn_program_type(const nn_program *p)
+{
+    return p->options.type;
+}
+
 static program_port *find_port(program_port *ports, int count, const char *name)
 {
     for (int i = 0; i < count; i++)
