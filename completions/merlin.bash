@@ -1,0 +1,33 @@
+# Bash completion for merlin: source it, or install it as share/bash-completion/completions/merlin.
+
+_merlin() {
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+    local -A options=(
+        [estimate]="--mask --output --model --size --exposure --json --quiet --help"
+        [relight]="--light --lights --orbit --by --frame --mask --output --model --size --exposure --json --quiet --help"
+        [render]="--count --output --seed --first --size --fov --mesh --env-dir --no-env --targets --bounces --spp --paths
+            --threads --json --quiet --help"
+        [train]="--data --output --resume --init --note --threads --quiet --help"
+        [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
+            --help"
+        [bench]="--model --config --batch --quick --json --quiet --help"
+        [info]="--tensors --json --help"
+    )
+    if ((COMP_CWORD == 1)); then
+        mapfile -t COMPREPLY < <(compgen -W "${!options[*]} --help --version" -- "$current")
+        return
+    fi
+    case $previous in
+    --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
+    --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
+    --data | --means | --env-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
+    *)
+        if [[ $current == -* ]]; then
+            mapfile -t COMPREPLY < <(compgen -W "${options[$command]}" -- "$current")
+        else
+            mapfile -t COMPREPLY < <(compgen -f -- "$current")
+        fi
+        ;;
+    esac
+}
+complete -o filenames -F _merlin merlin
