@@ -24,7 +24,7 @@ static void concat_backward(nn_step *step)
 static void slice_backward(nn_step *step)
 {
     if (!step->accumulate[0]) cpu_zero(&step->in_gradient[0]); /* the channels beside the slice */
-    cpu_insert_channels(&step->out_gradient, &step->in_gradient[0], step->at.first, true);
+    cpu_insert_channels(&step->out_gradient, &step->in_gradient[0], step->at.first, step->accumulate[0]);
 }
 
 static void add_backward(nn_step *step)

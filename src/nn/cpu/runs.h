@@ -16,9 +16,36 @@ static inline void copy_bytes(const char *from, size_t from_stride, char *to, si
         memcpy(to + i * to_stride, from + i * from_stride, bytes);
 }
 
+/* The same, adding; inlined so that a constant run becomes a few additions. */
+static inline __attribute__((always_inline)) void add_floats(const float *from, float *to, const run_copy *copy,
+                                                             size_t run)
+{
+    for (size_t i = 0; i < copy->count; i++)
+        for (size_t c = 0; c < run; c++)
+            to[i * copy->to_stride + c] += from[i * copy->from_stride + c];
+}
+
+static inline void add_float_runs(const float *from, float *to, const run_copy *copy)
+{
+    switch (copy->run) {
+    case 1:
+        add_floats(from, to, copy, 1);
+        break;
+    case 3:
+        add_floats(from, to, copy, 3);
+        break;
+    default:
+        add_floats(from, to, copy, copy->run);
+    }
+}
+
 /* Runs of `copy` from element `from_at` of x to element `to_at` of y. */
 static inline void copy_runs(const cpu_tensor *x, size_t from_at, cpu_tensor *y, size_t to_at, const run_copy *copy)
 {
+    if (copy->accumulate && x->type == NN_FLOAT32 && y->type == NN_FLOAT32) {
+        add_float_runs((const float *)x->data + from_at, (float *)y->data + to_at, copy);
+        return;
+    }
     if (copy->accumulate) {
         float room[CPU_CHUNK];
         for (size_t i = 0; i < copy->count; i++)
