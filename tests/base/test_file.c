@@ -1,0 +1,202 @@
+#include "base/file.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[] = "/tmp/merlin-file-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+/* Everything a test left is left behind by mistake: rmdir then fails. */
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+static char *in_folder(const char *name)
+{
+    char *path = file_join(folder, name);
+    assert_non_null(path);
+    return path;
+}
+
+static size_t entries(void)
+{
+    char **names;
+    size_t count;
+    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
+    file_list_free(names, count);
+    return count;
+}
+
+static void what_was_written_is_read(void **state)
+{
+    (void)state;
+    char *path = in_folder("a"), *data = NULL;
+    size_t size = 0;
+    assert_int_equal(file_write(path, "one\0two", 7), OK);
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_int_equal(size, 7);
+    assert_memory_equal(data, "one\0two", 8); /* and a zero behind */
+    free(data);
+    assert_int_equal(file_write(path, "", 0), OK);
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_int_equal(size, 0);
+    free(data);
+    unlink(path);
+    free(path);
+}
+
+static void larger_files_than_wanted_are_refused(void **state)
+{
+    (void)state;
+    char *path = in_folder("a"), *data = NULL;
+    size_t size = 0;
+    assert_int_equal(file_write(path, "12345", 5), OK);
+    assert_int_equal(file_read(path, 4, &data, &size), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), path));
+    assert_int_equal(file_read(folder, 100, &data, &size), ERROR_INPUT);
+    assert_int_equal(file_read("/nowhere/a", 100, &data, &size), ERROR_INPUT);
+    unlink(path);
+    free(path);
+}
+
+/* A disk that fills up, by a limit on the size of files. */
+static void a_write_that_fails_leaves_the_old_file_and_no_other(void **state)
+{
+    (void)state;
+    char *path = in_folder("a"), *data = NULL;
+    size_t size = 0;
+    char *large = calloc(1, 1 << 20);
+    assert_non_null(large);
+    assert_int_equal(file_write(path, "old", 3), OK);
+    struct rlimit before, tight;
+    getrlimit(RLIMIT_FSIZE, &before);
+    tight = before;
+    tight.rlim_cur = 4096;
+    signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &tight);
+    status s = file_write(path, large, 1 << 20);
+    setrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(s, ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), path));
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_string_equal(data, "old");
+    assert_int_equal(entries(), 1);
+    unlink(path);
+    free(large), free(data), free(path);
+}
+
+static void an_interrupted_write_leaves_the_old_file(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.png"), *temporary = NULL, *data = NULL;
+    size_t size = 0;
+    assert_int_equal(file_write(path, "old", 3), OK);
+    assert_int_equal(file_temporary(path, &temporary), OK);
+    assert_string_equal(strrchr(temporary, '.'), ".png");
+    FILE *f = fopen(temporary, "wb");
+    assert_non_null(f);
+    fputs("ne", f);
+    fclose(f);
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_string_equal(data, "old");
+    free(data);
+    assert_int_equal(entries(), 1); /* half-written files are not listed */
+    file_discard(temporary);
+    file_discard(NULL);
+    unlink(path);
+    free(path);
+}
+
+static void committing_replaces_the_file(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.png"), *temporary = NULL, *data = NULL;
+    size_t size = 0;
+    assert_int_equal(file_write(path, "old", 3), OK);
+    assert_int_equal(file_temporary(path, &temporary), OK);
+    FILE *f = fopen(temporary, "wb");
+    assert_non_null(f);
+    fputs("new", f);
+    fclose(f);
+    assert_int_equal(file_commit(temporary, path), OK);
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_string_equal(data, "new");
+    free(data);
+    assert_int_equal(file_temporary(path, &temporary), OK);
+    assert_int_equal(file_commit(temporary, path), ERROR_OUTPUT); /* nobody wrote it */
+    unlink(path);
+    free(path);
+}
+
+static void folders_are_made_with_those_above(void **state)
+{
+    (void)state;
+    char *deep = in_folder("x/y/z"), *file = in_folder("f"), *below = in_folder("f/z");
+    assert_int_equal(file_make_folder(deep), OK);
+    assert_int_equal(file_make_folder(deep), OK);
+    assert_true(file_is_folder(deep) && file_exists(deep));
+    assert_int_equal(file_write(file, "", 0), OK);
+    assert_true(file_exists(file) && !file_is_folder(file));
+    assert_int_equal(file_make_folder(below), ERROR_OUTPUT);
+    unlink(file);
+    for (int i = 0; i < 3; i++, *strrchr(deep, '/') = 0)
+        rmdir(deep);
+    free(deep), free(file), free(below);
+}
+
+static void lists_are_sorted_and_of_the_wanted_endings(void **state)
+{
+    (void)state;
+    static const char *const made[] = {"b.png", "a.PNG", "c.jpg", ".hidden.png", "png"};
+    static const char *const endings[] = {".png", NULL};
+    for (int i = 0; i < 5; i++) {
+        char *path = in_folder(made[i]);
+        assert_int_equal(file_write(path, "", 0), OK);
+        free(path);
+    }
+    char **names;
+    size_t count;
+    assert_int_equal(file_list(folder, endings, &names, &count), OK);
+    assert_int_equal(count, 2);
+    assert_string_equal(strrchr(names[0], '/'), "/a.PNG");
+    assert_string_equal(strrchr(names[1], '/'), "/b.png");
+    file_list_free(names, count);
+    assert_int_equal(file_list("/nowhere", endings, &names, &count), ERROR_INPUT);
+    for (int i = 0; i < 5; i++) {
+        char *path = in_folder(made[i]);
+        unlink(path);
+        free(path);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_written_is_read),
+        cmocka_unit_test(larger_files_than_wanted_are_refused),
+        cmocka_unit_test(a_write_that_fails_leaves_the_old_file_and_no_other),
+        cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
+        cmocka_unit_test(committing_replaces_the_file),
+        cmocka_unit_test(folders_are_made_with_those_above),
+        cmocka_unit_test(lists_are_sorted_and_of_the_wanted_endings),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
