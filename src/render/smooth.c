@@ -29,8 +29,10 @@ static float likeness(const guides *g, size_t i, size_t j, float distance2)
 {
     const float *n = g->s->normal.data + 3 * i, *m = g->s->normal.data + 3 * j;
     float cosine = fmaxf(0, n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), c2 = cosine * cosine, c4 = c2 * c2;
+    float reach = (float)((g->radius + 1) * (g->radius + 1)), near = fmaxf(0, 1 - distance2 / reach);
     float step = (g->s->depth.data[i] - g->s->depth.data[j]) * g->depth_scale / g->s->depth.data[i];
-    return g->s->mask.data[j] * c4 * c4 / ((1 + step * step / (1 + distance2)) * (1 + 0.1f * distance2));
+    float apart = 1 + step * step / (1 + distance2);
+    return g->s->mask.data[j] * c4 * c4 * near / (apart * apart);
 }
 
 static void filter_pixel(const guides *g, int x, int y, img *layer)

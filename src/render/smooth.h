@@ -8,7 +8,7 @@
 
 #include "render/sample.h"
 
-/* Filters a 3-channel layer of s in place over (2 radius + 1)² pixels; the maps of s are its guides. The filter is
+/* Filters a 3-channel layer of s in place over a disc of radius + 1 pixels; the maps of s are its guides. The filter is
  * linear in the layer, keeps zero zero and a constant times the albedo as it is. */
 status smooth_layer(const sample *s, img *layer, int radius);
 
