@@ -27,7 +27,7 @@ static void make_maps(sample *s)
     assert_int_equal(img_new(&s->indirect, SIZE, SIZE, 3), OK);
     for (int i = 0; i < SIZE * SIZE; i++) {
         s->mask.data[i] = i % SIZE > 3 ? 1 : i % SIZE == 3 ? 0.5f : 0;
-        s->depth.data[i] = i % SIZE < 16 ? 1.2f : 0.8f;
+        s->depth.data[i] = i % SIZE < 16 ? 1.8f : 0.6f; /* a jump of some ten pixels */
         s->normal.data[3 * i + 2] = 1;
         for (int c = 0; c < 3; c++)
             s->albedo.data[3 * i + c] = 0.1f + 0.8f * (float)((i * 7 + c) % 11) / 10;
