@@ -51,11 +51,10 @@ static vec3 any_colour(maker *m)
 static vec3 shade_of(maker *m, vec3 colour, float strength)
 {
     float light = expf(strength * rng_normal(m->r)), tint = 0.25f * strength;
-    vec3 c =
-        vec3_make(colour.x * light * (1 + tint * rng_normal(m->r)), colour.y * light * (1 + tint * rng_normal(m->r)),
-                  colour.z * light * (1 + tint * rng_normal(m->r)));
-    return vec3_make(min_of(0.95f, max_of(0.008f, c.x)), min_of(0.95f, max_of(0.008f, c.y)),
-                     min_of(0.95f, max_of(0.008f, c.z)));
+    real *channel[] = {&colour.x, &colour.y, &colour.z};
+    for (int k = 0; k < 3; k++)
+        *channel[k] = clamp_to(0.008f, 0.95f, *channel[k] * light * (1 + tint * rng_normal(m->r)));
+    return colour;
 }
 
 static pattern pattern_between(maker *m, pattern_kind kind, float low, float high)
@@ -177,9 +176,10 @@ static void add_wear(maker *m)
 {
     bool scratched = chance(m, 0.3f);
     pattern where = scratched ? pattern_between(m, PATTERN_SCRATCHES, 2, 6) : pattern_between(m, PATTERN_FBM, 1, 6);
-    pattern_threshold(&where, rng_range(m->r, 0.2f, 0.6f), scratched ? 0.2f : rng_range(m->r, 0.2f, 0.6f));
-    vec3 colour =
-        chance(m, 0.5f) ? colour_hsv(rng_range(m->r, 0.05f, 0.12f), rng_range(m->r, 0.1f, 0.5f), 0.35f) : any_colour(m);
+    float share = rng_range(m->r, 0.2f, 0.6f), width = rng_range(m->r, 0.2f, 0.6f);
+    pattern_threshold(&where, share, scratched ? 0.2f : width);
+    float hue = rng_range(m->r, 0.05f, 0.12f), saturation = rng_range(m->r, 0.1f, 0.5f);
+    vec3 colour = chance(m, 0.5f) ? colour_hsv(hue, saturation, 0.35f) : any_colour(m);
     paint p = plain_paint(m, colour);
     p.roughness = scratched ? any_gloss(m) : rng_range(m->r, 0.6f, 1);
     add_layer(m, ALL_PARTS, &where, rng_range(m->r, 0.2f, 0.7f), p);

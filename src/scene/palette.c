@@ -1,5 +1,7 @@
 #include "scene/palette.h"
 
+#include <stdbool.h>
+
 #include "scene/number.h"
 
 static float decode(float x)
@@ -20,37 +22,45 @@ vec3 colour_hsv(float hue, float saturation, float value)
                      channel(hue, saturation, value, 1));
 }
 
+/* A colour between two, given as hue, saturation and value. */
+static vec3 between(rng *r, vec3 low, vec3 high)
+{
+    float hue = rng_range(r, low.x, high.x), saturation = rng_range(r, low.y, high.y),
+          value = rng_range(r, low.z, high.z);
+    return colour_hsv(hue, saturation, value);
+}
+
 /* Wood, clay, stone, leaves, leather: oranges to greens of low saturation. */
 static vec3 natural(rng *r)
 {
-    return colour_hsv(rng_range(r, 0.01f, 0.3f), rng_range(r, 0.08f, 0.6f), rng_range(r, 0.25f, 0.92f));
+    return between(r, (vec3){0.01f, 0.08f, 0.25f}, (vec3){0.3f, 0.6f, 0.92f});
 }
 
+/* Reds to yellows are the commonest paints. */
 static vec3 painted(rng *r)
 {
-    /* reds to yellows are the commonest paints */
-    float hue = rng_uniform(r) < 0.4f ? rng_range(r, -0.04f, 0.17f) : rng_uniform(r);
-    return colour_hsv(hue, rng_range(r, 0.6f, 1), rng_range(r, 0.35f, 1));
+    bool warm = rng_uniform(r) < 0.4f;
+    return between(r, (vec3){warm ? -0.04f : 0, 0.6f, 0.35f}, (vec3){warm ? 0.17f : 1, 1, 1});
 }
 
 static vec3 pale(rng *r)
 {
-    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.12f), rng_range(r, 0.75f, 0.98f));
+    return between(r, (vec3){0, 0, 0.75f}, (vec3){1, 0.12f, 0.98f});
 }
 
 static vec3 dark(rng *r)
 {
-    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.6f), rng_range(r, 0.05f, 0.25f));
+    return between(r, (vec3){0, 0, 0.05f}, (vec3){1, 0.6f, 0.25f});
 }
 
 static vec3 grey(rng *r)
 {
-    return colour_hsv(rng_uniform(r), rng_range(r, 0, 0.15f), rng_range(r, 0.2f, 0.8f));
+    return between(r, (vec3){0, 0, 0.2f}, (vec3){1, 0.15f, 0.8f});
 }
 
 static vec3 anything(rng *r)
 {
-    return colour_hsv(rng_uniform(r), rng_uniform(r), rng_range(r, 0.1f, 1));
+    return between(r, (vec3){0, 0, 0.1f}, (vec3){1, 1, 1});
 }
 
 void palette_random(rng *r, vec3 colour[PALETTE])
@@ -64,11 +74,12 @@ void palette_random(rng *r, vec3 colour[PALETTE])
     };
     const maker *theme = THEMES[rng_below(r, (int)(sizeof THEMES / sizeof *THEMES))];
     float hue = rng_uniform(r), saturation = rng_uniform(r);
-    int one_hue = rng_uniform(r) < 0.18f;
+    bool one_hue = rng_uniform(r) < 0.18f;
     for (int i = 0; i < PALETTE; i++) {
         colour[i] = i == 0 ? theme[0](r) : theme[rng_below(r, 4)](r);
-        if (one_hue)
-            colour[i] = colour_hsv(hue + rng_normal(r) * 0.03f, min_of(1, saturation * rng_range(r, 0.6f, 1.2f)),
-                                   rng_range(r, 0.1f, 0.97f));
+        if (one_hue) {
+            float low = min_of(1, 0.6f * saturation), high = min_of(1, 1.2f * saturation);
+            colour[i] = between(r, (vec3){hue - 0.04f, low, 0.1f}, (vec3){hue + 0.04f, high, 0.97f});
+        }
     }
 }

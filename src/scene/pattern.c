@@ -122,9 +122,9 @@ pattern pattern_random(rng *r, pattern_kind kind, float frequency, const scn_mes
         float stretch = stretched ? powf(3, rng_range(r, -1, 1)) : 1;
         p.frame.row[k] = vec3_scale(p.frame.row[k], frequency * stretch);
     }
-    p.offset = vec3_make(rng_range(r, -50, 50), rng_range(r, -50, 50), rng_range(r, -50, 50));
+    p.offset = random_between(r, -50, 50);
     if (kind == PATTERN_GRADIENT) p.offset = vec3_make(0, rng_normal(r) * 0.3f, 0);
-    if (kind == PATTERN_RINGS) p.offset = vec3_scale(random_direction(r), frequency * rng_range(r, 0, 2));
+    if (kind == PATTERN_RINGS) p.offset = random_between(r, -frequency, frequency);
     bool regular = kind == PATTERN_LETTERS || kind == PATTERN_CHECKS;
     float warped = rng_uniform(r);
     if (!regular && warped < 0.4f) p.warp = 0.6f * rng_uniform(r);

@@ -73,11 +73,14 @@ static silhouette measure(const scn_mesh *mesh, const pose *at, float tangent, f
 
 static mat3 choose_rotation(rng *r, const shape_traits *traits)
 {
-    if (traits->frontal && rng_uniform(r) < 0.9f)
-        return rotation_xyz(rng_normal(r) * 0.4f, rng_normal(r) * 0.4f, 6.2831853f * rng_uniform(r));
+    if (traits->frontal && rng_uniform(r) < 0.9f) {
+        float x = rng_normal(r) * 0.4f, y = rng_normal(r) * 0.4f;
+        return rotation_xyz(x, y, 6.2831853f * rng_uniform(r));
+    }
     if (traits->upright && rng_uniform(r) < 0.75f) {
         float yaw = traits->mirrored ? rng_normal(r) * 0.9f : 6.2831853f * rng_uniform(r);
-        mat3 turn = rotation_xyz(0, yaw, 0), tilt = rotation_xyz(rng_range(r, -0.2f, 0.8f), 0, rng_normal(r) * 0.12f);
+        float pitch = rng_range(r, -0.2f, 0.8f), roll = rng_normal(r) * 0.12f;
+        mat3 turn = rotation_xyz(0, yaw, 0), tilt = rotation_xyz(pitch, 0, roll);
         return mat3_product(&tilt, &turn);
     }
     return random_rotation(r);

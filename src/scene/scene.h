@@ -2,7 +2,7 @@
  * file.
  *
  *     scn_object object;
- *     status s = scn_object_generate(seed, index, &object);
+ *     status s = scn_object_generate(seed, index, 60, &object);
  *     scn_surface at;
  *     scn_surface_eval(&object, triangle, u, v, &at);
  *     scn_object_free(&object);

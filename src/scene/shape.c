@@ -18,6 +18,19 @@ vec3 random_direction(rng *r)
     return vec3_make(s * cosf(a), s * sinf(a), z);
 }
 
+vec3 random_between(rng *r, float low, float high)
+{
+    float x = rng_range(r, low, high), y = rng_range(r, low, high), z = rng_range(r, low, high);
+    return vec3_make(x, y, z);
+}
+
+void random_dents(rng *r, scn_mesh *mesh, uint32_t first, float amount, float low, float high)
+{
+    float frequency = rng_range(r, low, high);
+    int octaves = 1 + rng_below(r, 3);
+    mesh_displace(mesh, first, amount, frequency, octaves, rng_u32(r));
+}
+
 mat3 mat3_product(const mat3 *a, const mat3 *b)
 {
     mat3 m;

@@ -25,6 +25,8 @@ void shape_relief(rng *r, scn_mesh *mesh, shape_traits *traits);       /* plaque
 mat3 random_rotation(rng *r);
 /* A uniformly random direction. */
 vec3 random_direction(rng *r);
+/* Three draws, x first: as arguments of one call their order would be the compiler's choice. */
+vec3 random_between(rng *r, float low, float high);
 /* Rotation about the axis x, y, z in this order. */
 mat3 rotation_xyz(float x, float y, float z);
 /* a b */
@@ -32,6 +34,9 @@ mat3 mat3_product(const mat3 *a, const mat3 *b);
 
 /* An ellipsoid with these radii about the origin, n x n squares a side. */
 void add_ellipsoid(scn_mesh *mesh, int n, vec3 radii, uint8_t part);
+
+/* Displaces by `amount` at a frequency drawn from [low, high). */
+void random_dents(rng *r, scn_mesh *mesh, uint32_t first, float amount, float low, float high);
 
 /* Bends, twists and tapers positions from vertex `first` on, along y, by random small or large amounts. */
 void bend_and_twist(rng *r, scn_mesh *mesh, uint32_t first);

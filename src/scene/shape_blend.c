@@ -32,18 +32,18 @@ static void heap(rng *r, implicit *shape)
         blob b = {.kind = (blob_kind)rng_below(r, 3), .rotation = random_rotation(r), .blend = blend};
         if (i) {
             vec3 from = shape->blob[rng_below(r, i)].centre;
-            b.centre = vec3_fma(from, rng_range(r, 0.25f, 0.6f), random_direction(r));
+            float away = rng_range(r, 0.2f, 0.42f);
+            b.centre = vec3_fma(from, away, random_direction(r));
         }
         float size = i ? rng_range(r, 0.5f, 1) : 1;
-        b.radii = vec3_make(size * rng_range(r, 0.15f, 0.5f), size * rng_range(r, 0.15f, 0.5f),
-                            size * rng_range(r, 0.15f, 0.5f));
+        b.radii = vec3_scale(random_between(r, 0.15f, 0.5f), size);
         if (b.kind == BLOB_CAPSULE) b.radii.z = b.radii.x * rng_range(r, 0.4f, 1.2f);
         implicit_add(shape, b);
     }
     if (rng_uniform(r) < 0.3f) {
         blob b =
             make_blob(BLOB_ELLIPSOID, vec3_scale(random_direction(r), 0.5f), (vec3){0, 0, 0}, (vec3){0, 0, 0}, 0.05f);
-        b.radii = vec3_make(rng_range(r, 0.1f, 0.35f), rng_range(r, 0.1f, 0.35f), rng_range(r, 0.1f, 0.35f));
+        b.radii = random_between(r, 0.1f, 0.35f);
         b.carve = true;
         implicit_add(shape, b);
     }
@@ -101,12 +101,15 @@ static figure add_figure(rng *r, implicit *shape)
 {
     figure f = {.blend = rng_range(r, 0.04f, 0.25f)};
     vec3 body = {rng_range(r, 0.28f, 0.5f), rng_range(r, 0.3f, 0.65f), rng_range(r, 0.28f, 0.7f)};
-    implicit_add(shape,
-                 make_blob(BLOB_ELLIPSOID, (vec3){0, 0, 0}, body, (vec3){rng_range(r, -0.6f, 0.3f), 0, 0}, f.blend));
+    vec3 lean = {rng_range(r, -0.6f, 0.3f), 0, 0};
+    implicit_add(shape, make_blob(BLOB_ELLIPSOID, (vec3){0, 0, 0}, body, lean, f.blend));
     float size = rng_range(r, 0.5f, 1.05f);
-    f.head_radii = vec3_make(size * body.x * rng_range(r, 0.8f, 1.2f), size * body.x * rng_range(r, 0.75f, 1.2f),
-                             size * body.x * rng_range(r, 0.8f, 1.2f));
-    f.head = vec3_make(0, body.y + f.head_radii.y * rng_range(r, 0.2f, 0.8f), body.z * rng_range(r, -0.1f, 0.8f));
+    f.head_radii = vec3_scale(random_between(r, 0.8f, 1.2f), size * body.x);
+    /* the neck is on the leaning body's surface, the head a part of its radius further out */
+    float up = rng_range(r, 0.2f, 0.75f), ahead = rng_range(r, -0.1f, 0.9f);
+    mat3 turn = rotation_xyz(lean.x, 0, 0);
+    vec3 neck = mat3_apply(&turn, vec3_make(0, body.y * cosf(ahead), body.z * sinf(ahead)));
+    f.head = vec3_add(neck, vec3_make(0, f.head_radii.y * up * cosf(ahead), f.head_radii.z * up * sinf(ahead)));
     vec3 none = {0, 0, 0}, tilt = {0, rng_normal(r) * 0.2f, 0};
     implicit_add(shape, make_blob(BLOB_ELLIPSOID, f.head, f.head_radii, rng_uniform(r) < 0.3f ? tilt : none, f.blend));
     add_face(r, shape, &f);
@@ -153,5 +156,5 @@ void shape_blend(rng *r, scn_mesh *mesh, shape_traits *traits)
         mesh_add_implicit(mesh, &shape, CELLS, 0);
     }
     float u = rng_uniform(r);
-    if (rng_uniform(r) < 0.6f) mesh_displace(mesh, 0, 0.1f * u * u, rng_range(r, 1.5f, 7), 3, rng_u32(r));
+    if (rng_uniform(r) < 0.6f) random_dents(r, mesh, 0, 0.1f * u * u, 1.5f, 7);
 }

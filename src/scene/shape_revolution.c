@@ -156,6 +156,8 @@ void shape_revolution(rng *r, scn_mesh *mesh, shape_traits *traits)
     *traits = (shape_traits){.name = "revolution", .upright = true, .crease_cosine = 0.7f, .parts = 1};
     if (sided && rng_uniform(r) < 0.3f) handle(r, mesh, &o, (uint8_t)traits->parts++);
     if (rng_uniform(r) < (sided ? 0.15f : 0.5f)) bend_and_twist(r, mesh, 0);
-    if (rng_uniform(r) < (sided ? 0.3f : 0.6f))
-        mesh_displace(mesh, 0, rng_range(r, 0.005f, 0.07f), rng_range(r, 1, 4), 2, rng_u32(r));
+    if (rng_uniform(r) < (sided ? 0.3f : 0.6f)) {
+        float amount = rng_range(r, 0.005f, 0.07f);
+        random_dents(r, mesh, 0, amount, 1, 4);
+    }
 }

@@ -46,8 +46,10 @@ static radial random_superellipsoid(rng *r)
 static radial random_polyhedron(rng *r)
 {
     radial s = {.planes = 6 + rng_below(r, PLANES - 11), .sharpness = 6 * powf(10, rng_uniform(r))};
-    for (int i = 0; i < s.planes; i++)
-        s.plane[i] = vec3_scale(random_direction(r), 1 / rng_range(r, 0.6f, 1));
+    for (int i = 0; i < s.planes; i++) {
+        s.plane[i] = random_direction(r);
+        s.plane[i] = vec3_scale(s.plane[i], 1 / rng_range(r, 0.6f, 1));
+    }
     for (int k = 0; k < 6 && s.planes <= PLANES - 1; k++) { /* a cage, so that no direction is open */
         float sign = k % 2 ? -1 : 1, far = rng_range(r, 0.7f, 1.1f);
         s.plane[s.planes++] =
@@ -63,7 +65,7 @@ void shape_superquadric(rng *r, scn_mesh *mesh, shape_traits *traits)
     mesh_add_cube_grid(mesh, 46, 0, map_radial, &s);
     if (rng_uniform(r) < 0.4f) bend_and_twist(r, mesh, 0);
     float u = rng_uniform(r);
-    if (rng_uniform(r) < 0.55f) mesh_displace(mesh, 0, 0.2f * u * u, rng_range(r, 0.8f, 4), 3, rng_u32(r));
+    if (rng_uniform(r) < 0.55f) random_dents(r, mesh, 0, 0.2f * u * u, 0.8f, 4);
     *traits =
         (shape_traits){.name = "superquadric", .upright = rng_uniform(r) < 0.5f, .crease_cosine = 0.6f, .parts = 1};
 }

@@ -114,7 +114,8 @@ static void vehicle(rng *r, scn_mesh *mesh, shape_traits *traits)
         float x = length * (1.3f * (float)(i / 2) / (float)(axles - 1) - 0.65f), side = i % 2 ? -1 : 1;
         place_wheel(mesh, wheel, thick, vec3_make(x, -0.85f * height, side * width), 2);
     }
-    if (rng_uniform(r) < 0.4f) mesh_displace(mesh, 0, rng_range(r, 0.01f, 0.06f), 1.5f, 2, rng_u32(r));
+    float dents = rng_uniform(r) < 0.4f ? rng_range(r, 0.01f, 0.06f) : 0;
+    random_dents(r, mesh, 0, dents, 1, 2);
     *traits = (shape_traits){.name = "union", .upright = true, .crease_cosine = 0.75f, .parts = 4};
 }
 
@@ -133,14 +134,15 @@ void shape_union(rng *r, scn_mesh *mesh, shape_traits *traits)
         add_primitive(r, mesh, n, (uint8_t)i);
         if (rng_uniform(r) < 0.3f) bend_and_twist(r, mesh, first);
         float u = rng_uniform(r), amount = rng_uniform(r) < 0.2f ? 0 : 0.3f * u * u;
-        mesh_displace(mesh, first, amount, rng_range(r, 0.8f, 2.5f), 1 + rng_below(r, 2), rng_u32(r));
+        random_dents(r, mesh, first, amount, 0.8f, 2.5f);
         float size = i == 0 ? 1 : rng_range(r, 0.3f, 0.85f);
         mat3 m = random_rotation(r);
         if (regular) m = (mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
         for (int k = 0; k < 3; k++)
             m.row[k] = vec3_scale(m.row[k], size);
         /* each next one starts at or near the surface of those before, so that all hang together */
-        vec3 away = vec3_fma(place, rng_range(r, 0.35f, 0.44f + 0.44f * size), random_direction(r));
+        float far = rng_range(r, 0.35f, 0.44f + 0.44f * size);
+        vec3 away = vec3_fma(place, far, random_direction(r));
         if (i > 0) mesh_transform(mesh, first, &m, away, true);
         if (i > 0 && rng_uniform(r) < 0.3f) place = vec3_scale(away, 0.7f);
     }
