@@ -62,6 +62,7 @@ status nn_profile(nn_program *p, int runs, void *file)
     if (runs < 1) return fail(ERROR_USAGE, "a profile of %d runs", runs);
     status s = nn_forward(p);
     if (s != OK) return s;
+    p->forwarded = false; /* what forward left is not kept for a backward */
     p->device->begin(p->context);
     s = profile_steps(p, runs, file);
     p->device->end(p->context);

@@ -160,7 +160,8 @@ typedef struct nn_cost {
     size_t parameter_count;
 } nn_cost;
 nn_cost nn_program_cost(const nn_program *p);
-/* One line per step with the best of its times over `runs` runs, to a FILE; for finding what is slow. */
+/* One line per step with the best of its times over `runs` runs, to a FILE; for finding what is slow. Changes running
+ * statistics and gradients. */
 status nn_profile(nn_program *p, int runs, void *file);
 
 /* Peak rate in FLOP/s of this machine's convolutions, measured now: 64→64, 3×3, 128×128, batch 8. */
