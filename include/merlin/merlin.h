@@ -98,7 +98,7 @@ typedef struct merlin_maps {
     int size;   /* what that square was resized to */
     float gain; /* the photograph was multiplied by this before the network saw it */
     merlin_mask_source mask_source;
-    float mask_confidence; /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.5: check it) */
+    float mask_confidence; /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
     char model[64];
     merlin_timing timing;
 } merlin_maps;

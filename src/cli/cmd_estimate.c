@@ -111,7 +111,7 @@ static void announce(const request *r, const photo_job *job, const merlin_maps *
         print_json(job, maps, seconds);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, seconds);
-    if (!r->quiet && maps->mask_confidence < 0.5f)
+    if (!r->quiet && maps->mask_confidence < 0.6f)
         fprintf(stderr,
                 "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
                 job->photo, (double)maps->mask_confidence, job->output);

@@ -1,5 +1,6 @@
 #include "estimate/find_object.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -8,15 +9,19 @@
 
 #include "image/resize.h"
 
-/* The search runs on a small copy: colours at the border start a two-sided colour model (object, background), which is
- * refined in a few rounds of "classify, smooth, keep one filled region, learn the colours again" (the idea of GrabCut,
- * Rother et al. 2004, with histograms instead of mixtures and a blur instead of a cut). */
-enum { WORKING_SIDE = 192, CLUSTERS = 4, CLUSTER_ROUNDS = 8, ROUNDS = 5, SMOOTHING = 2, BINS = 12, OTSU_BINS = 128 };
-static const float LEAST_SIGMA = 0.03f, FARTHEST = 12.0f, LEAST_AREA = 0.005f, LARGEST_AREA = 0.9f;
+/* The search runs on a small copy: what cannot be reached from the border without crossing an edge starts a two-sided
+ * colour model (object, background), which is refined in a few rounds of "classify, smooth, keep one filled region,
+ * learn the colours again" (the idea of GrabCut, Rother et al. 2004, with histograms instead of mixtures and a blur
+ * instead of a cut). */
+enum { WORKING_SIDE = 192, SCANS = 6, ROUNDS = 4, SMOOTHING = 2, BINS = 12, OTSU_BINS = 128 };
+static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f, LIKE_COLOR = 0.06f;
+static const float KEPT_SHARE = 0.1f;
+static const float COLOR_WEIGHT = 0.5f, LEAST_AREA = 0.005f, LARGEST_AREA = 0.9f;
 
 typedef struct search {
     img color;       /* small, square-root encoded */
     img probability; /* of being object */
+    float *prior;    /* log odds of being object, from the place alone */
     uint8_t *object; /* 0 or 1 */
     uint8_t *ring;   /* 1 within the border's width */
     size_t *stack;
@@ -28,6 +33,7 @@ static void search_free(search *s)
 {
     img_free(&s->color);
     img_free(&s->probability);
+    free(s->prior);
     free(s->object);
     free(s->ring);
     free(s->stack);
@@ -55,19 +61,16 @@ static status search_new(const img *photo, search *s)
     if (result != OK) return result;
     for (size_t i = 0; i < 3 * s->count; i++)
         s->color.data[i] = sqrtf(fminf(fmaxf(s->color.data[i], 0), 1));
+    s->prior = calloc(s->count, sizeof *s->prior);
     s->object = calloc(s->count, 1);
     s->ring = calloc(s->count, 1);
     s->stack = malloc(s->count * sizeof *s->stack);
-    if (!s->object || !s->ring || !s->stack) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!s->prior || !s->object || !s->ring || !s->stack) return fail(ERROR_MEMORY, "no memory to look for the object");
     mark_ring(s);
     return OK;
 }
 
-/* ---- the border's colours ---- */
-
-typedef struct cluster {
-    float mean[3], deviation;
-} cluster;
+/* ---- how far from the border ---- */
 
 static float distance2(const float a[3], const float b[3])
 {
@@ -75,47 +78,88 @@ static float distance2(const float a[3], const float b[3])
     return r * r + g * g + c * c;
 }
 
-static int nearest(const cluster *k, const float color[3])
+/* Of the picture's four sides, the nearest. */
+static int side_of(const search *s, size_t i)
 {
+    int x = (int)(i % (size_t)s->width), y = (int)(i / (size_t)s->width);
+    const int away[4] = {x, s->width - 1 - x, y, s->height - 1 - y};
     int best = 0;
-    for (int i = 1; i < CLUSTERS; i++)
-        if (distance2(k[i].mean, color) < distance2(k[best].mean, color)) best = i;
+    for (int k = 1; k < 4; k++)
+        if (away[k] < away[best]) best = k;
     return best;
 }
 
-static void cluster_round(const search *s, cluster *k)
+/* Which border pixels are background: those with a like colour on another side. An object that the picture cuts off at
+ * one side has none. */
+static void choose_seeds(search *s)
 {
-    float sum[CLUSTERS][3] = {{0}}, square[CLUSTERS] = {0}, weight[CLUSTERS] = {0};
+    size_t ring = 0, seeds = 0;
     for (size_t i = 0; i < s->count; i++) {
         if (!s->ring[i]) continue;
-        const float *color = s->color.data + 3 * i;
-        int at = nearest(k, color);
-        for (int c = 0; c < 3; c++)
-            sum[at][c] += color[c];
-        square[at] += distance2(color, k[at].mean);
-        weight[at] += 1;
+        s->stack[ring++] = i;
     }
-    for (int j = 0; j < CLUSTERS; j++) {
-        if (!(weight[j] > 0)) continue;
-        for (int c = 0; c < 3; c++)
-            k[j].mean[c] = sum[j][c] / weight[j];
-        k[j].deviation = fmaxf(sqrtf(square[j] / weight[j]), LEAST_SIGMA);
+    for (size_t i = 0; i < ring; i++) {
+        float nearest = FLT_MAX;
+        for (size_t j = 0; j < ring; j++) {
+            if (side_of(s, s->stack[j]) == side_of(s, s->stack[i])) continue;
+            nearest = fminf(nearest, distance2(s->color.data + 3 * s->stack[i], s->color.data + 3 * s->stack[j]));
+        }
+        s->object[s->stack[i]] = nearest < LIKE_COLOR * LIKE_COLOR;
+        seeds += s->object[s->stack[i]];
+    }
+    for (size_t i = 0; i < ring && 3 * seeds < ring; i++)
+        s->object[s->stack[i]] = 1;
+}
+
+/* One channel's barrier: the least (maximum - minimum) of any path from a seed (Strand et al. 2013), found by a few
+ * raster scans (Zhang et al. 2015). */
+typedef struct barrier {
+    const float *value; /* every third */
+    float *cost, *high, *low;
+    int width, height;
+} barrier;
+
+static void barrier_visit(barrier *b, size_t at, size_t from)
+{
+    float x = b->value[3 * at], high = fmaxf(b->high[from], x), low = fminf(b->low[from], x);
+    if (high - low >= b->cost[at]) return;
+    b->cost[at] = high - low;
+    b->high[at] = high;
+    b->low[at] = low;
+}
+
+static void barrier_scan(barrier *b, bool backward)
+{
+    size_t width = (size_t)b->width, height = (size_t)b->height, count = width * height;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = backward ? count - 1 - k : k, x = i % width, y = i / width;
+        if (!backward && x > 0) barrier_visit(b, i, i - 1);
+        if (!backward && y > 0) barrier_visit(b, i, i - width);
+        if (backward && x + 1 < width) barrier_visit(b, i, i + 1);
+        if (backward && y + 1 < height) barrier_visit(b, i, i + width);
     }
 }
 
-static void cluster_border(const search *s, cluster *k)
+/* probability = the barriers of all channels, seeds (in object) having none. */
+static status measure_barriers(search *s)
 {
-    size_t ring = 0, seen = 0;
-    for (size_t i = 0; i < s->count; i++)
-        ring += s->ring[i];
-    for (size_t i = 0; i < s->count; i++) {
-        if (!s->ring[i]) continue;
-        size_t j = seen++ * CLUSTERS / ring;
-        memcpy(k[j].mean, s->color.data + 3 * i, sizeof k[j].mean); /* the last of each quarter starts it */
-        k[j].deviation = LEAST_SIGMA;
+    float *memory = malloc(3 * s->count * sizeof *memory);
+    if (!memory) return fail(ERROR_MEMORY, "no memory to look for the object");
+    memset(s->probability.data, 0, s->count * sizeof(float));
+    for (int c = 0; c < 3; c++) {
+        barrier b = {s->color.data + c, memory, memory + s->count, memory + 2 * s->count, s->width, s->height};
+        for (size_t i = 0; i < s->count; i++) {
+            bool seed = s->ring[i] && s->object[i];
+            b.cost[i] = seed ? 0 : FLT_MAX;
+            b.high[i] = b.low[i] = b.value[3 * i];
+        }
+        for (int scan = 0; scan < SCANS; scan++)
+            barrier_scan(&b, scan & 1);
+        for (size_t i = 0; i < s->count; i++)
+            s->probability.data[i] += fminf(b.cost[i], 1);
     }
-    for (int round = 0; round < CLUSTER_ROUNDS; round++)
-        cluster_round(s, k);
+    free(memory);
+    return OK;
 }
 
 /* Threshold that separates two groups best (Otsu 1979), for values in [0, FARTHEST]. */
@@ -142,19 +186,19 @@ static float otsu(const float *value, size_t count)
     return (float)threshold / OTSU_BINS * FARTHEST;
 }
 
-static void start_from_border(search *s)
+static status start_from_border(search *s)
 {
-    cluster k[CLUSTERS] = {{{0}, 0}};
-    cluster_border(s, k);
-    float *away = s->probability.data;
+    choose_seeds(s);
+    status result = measure_barriers(s);
+    if (result != OK) return result;
+    const float *away = s->probability.data;
+    float threshold = fmaxf(OTSU_SHARE * otsu(away, s->count), LEAST_BARRIER);
     for (size_t i = 0; i < s->count; i++) {
-        away[i] = FARTHEST;
-        for (int j = 0; j < CLUSTERS; j++)
-            away[i] = fminf(away[i], sqrtf(distance2(s->color.data + 3 * i, k[j].mean)) / k[j].deviation);
-    }
-    float threshold = fmaxf(otsu(away, s->count), 2);
-    for (size_t i = 0; i < s->count; i++)
         s->object[i] = away[i] > threshold;
+        /* odds 1 at the threshold, e² twice as far */
+        s->prior[i] = 2 * (away[i] / threshold - 1);
+    }
+    return OK;
 }
 
 /* ---- regions ---- */
@@ -181,23 +225,18 @@ static float flood(search *s, size_t start, uint8_t from, uint8_t to)
     return sum;
 }
 
-/* Keeps the heaviest region and what it encloses. */
-static void keep_one_region(search *s)
+/* Keeps the heaviest region, those at least a tenth as heavy, and what they enclose. */
+static void keep_main_regions(search *s)
 {
-    enum { BACKGROUND, OBJECT, SEEN, BEST, OUTSIDE };
+    enum { BACKGROUND, OBJECT, SEEN, KEPT, OUTSIDE };
     float heaviest = 0;
-    size_t best = s->count;
-    for (size_t i = 0; i < s->count; i++) {
-        if (s->object[i] != OBJECT) continue;
-        float weight = flood(s, i, OBJECT, SEEN);
-        if (weight > heaviest) {
-            heaviest = weight;
-            best = i;
-        }
-    }
-    if (best < s->count) flood(s, best, SEEN, BEST);
     for (size_t i = 0; i < s->count; i++)
-        if (s->object[i] == SEEN) s->object[i] = BACKGROUND;
+        if (s->object[i] == OBJECT) heaviest = fmaxf(heaviest, flood(s, i, OBJECT, SEEN));
+    for (size_t i = 0; i < s->count; i++) {
+        if (s->object[i] != SEEN) continue;
+        float weight = flood(s, i, SEEN, KEPT);
+        if (weight < KEPT_SHARE * heaviest) flood(s, i, KEPT, BACKGROUND);
+    }
     for (size_t i = 0; i < s->count; i++) {
         size_t x = i % (size_t)s->width, y = i / (size_t)s->width;
         bool edge = x == 0 || y == 0 || x + 1 == (size_t)s->width || y + 1 == (size_t)s->height;
@@ -231,6 +270,11 @@ static float visit(histogram *h, const float color[3], float add)
     return value;
 }
 
+static float logistic(float x)
+{
+    return 1 / (1 + expf(-x));
+}
+
 static void classify(search *s, histogram *object, histogram *background)
 {
     memset(object, 0, sizeof *object);
@@ -243,7 +287,7 @@ static void classify(search *s, histogram *object, histogram *background)
     for (size_t i = 0; i < s->count; i++) {
         const float *color = s->color.data + 3 * i;
         float o = (visit(object, color, 0) + 0.05f) / objects, b = (visit(background, color, 0) + 0.05f) / backgrounds;
-        s->probability.data[i] = o / (o + b);
+        s->probability.data[i] = logistic(COLOR_WEIGHT * logf(o / b) + fminf(fmaxf(s->prior[i], -3), 3));
     }
 }
 
@@ -270,7 +314,7 @@ static status refine_by_color(search *s)
         for (int y = 0; y < s->height; y++)
             for (int x = 0; x < s->width; x++)
                 s->object[y * s->width + x] = smoothed(s, x, y) > 0.5f;
-        keep_one_region(s);
+        keep_main_regions(s);
     }
     free(both);
     return OK;
@@ -289,7 +333,9 @@ static float trust(const search *s, float area)
     }
     float agreement = (float)(decided / (double)s->count), spill = (float)cut / (float)ring;
     float plausible = fminf(1, fminf(area / 0.03f, (1 - area) / 0.15f));
-    return fmaxf(0, (2 * agreement - 1) * (1 - 2 * fminf(spill, 0.5f)) * plausible);
+    float raw = (2 * agreement - 1) * (1 - 2 * fminf(spill, 0.5f)) * plausible;
+    /* no photograph comes out much below 0.3: what is left spans 0 to 1 */
+    return fmaxf(0, (raw - 0.3f) / 0.7f);
 }
 
 /* To the photograph's size, edges where its edges are. */
@@ -313,9 +359,10 @@ static status enlarge(const search *s, const img *photo, img *mask)
 
 static status find(search *s, float *area)
 {
-    start_from_border(s);
-    keep_one_region(s);
-    status result = refine_by_color(s);
+    status result = start_from_border(s);
+    if (result != OK) return result;
+    keep_main_regions(s);
+    result = refine_by_color(s);
     if (result != OK) return result;
     size_t objects = 0;
     for (size_t i = 0; i < s->count; i++)

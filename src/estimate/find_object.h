@@ -8,7 +8,7 @@
 #include "image/image.h"
 
 /* mask: 1 channel of the photograph's size in [0, 1], one connected region without holes, edges following the
- * photograph. confidence in [0, 1]: how clearly object and background part; below 0.5 the mask wants a look.
+ * photograph. confidence in [0, 1]: how clearly object and background part; below 0.6 the mask wants a look.
  * ERROR_INPUT if nothing stands out at all. */
 status find_object(const img *photo, img *mask, float *confidence);
 
