@@ -98,7 +98,7 @@ void trace_scene_free(trace_scene *scene)
 void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, trace_hit *hits)
 {
     struct RTCRayHit16 packet;
-    int valid[TRACE_PACKET];
+    _Alignas(64) int valid[TRACE_PACKET];
     memset(&packet, 0, sizeof packet);
     for (int i = 0; i < TRACE_PACKET; i++) {
         vec3 d = directions[i < count ? i : 0];
