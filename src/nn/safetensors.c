@@ -130,18 +130,27 @@ static int compare_names(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
+/* Names end up in messages, which are one line on a terminal. */
+static bool is_printable(const char *name)
+{
+    for (; *name; name++)
+        if ((unsigned char)*name < ' ' || *name == 0x7f) return false;
+    return true;
+}
+
 static status check_keys(const st_file *f, const cJSON *object)
 {
     size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
     const char **names = malloc((count + 1) * sizeof *names);
     if (!names) return fail(ERROR_MEMORY, "no memory for the names in %s", f->where);
     const cJSON *item;
+    status s = OK;
     cJSON_ArrayForEach(item, object)
     {
+        if (!is_printable(item->string)) s = fail(ERROR_INPUT, "%s: a name has characters that do not print", f->where);
         names[i++] = item->string;
     }
     qsort(names, count, sizeof *names, compare_names);
-    status s = OK;
     for (i = 1; s == OK && i < count; i++)
         if (strcmp(names[i - 1], names[i]) == 0) s = fail(ERROR_INPUT, "%s: \"%s\" is there twice", f->where, names[i]);
     free(names);

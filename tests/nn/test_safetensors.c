@@ -190,7 +190,8 @@ static void malformed_headers_are_refused(void **state)
         {"{}x", 0},
         {"{}\n{}", 0},
         {"{\"a\":1}", 0},
-        {"{}", 1}, /* a rest */
+        {"{\"a\\n\":1}", 0}, /* would break a message into two lines */
+        {"{}", 1},           /* a rest */
         {"{\"__metadata__\":[]}", 0},
         {"{\"__metadata__\":{\"a\":1}}", 0},
         {"{\"__metadata__\":{\"a\":\"1\",\"a\":\"2\"}}", 0},
