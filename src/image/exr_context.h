@@ -1,5 +1,7 @@
-/* What reading and writing EXR share: an OpenEXR Core context that never prints, its first complaint kept for a status
- * message. */
+/* What reading and writing EXR share: an OpenEXR Core context that never prints.
+ *
+ * The library's complaints are kept by thread, not in the context's user data: while writing it calls the error handler
+ * with its lock held, and asking it for the user data there waits for ever (3.1.5). */
 #ifndef MERLIN_IMAGE_EXR_CONTEXT_H
 #define MERLIN_IMAGE_EXR_CONTEXT_H
 
@@ -7,14 +9,11 @@
 
 #include "base/status.h"
 
-typedef struct exr_complaint {
-    char text[256];
-} exr_complaint;
+/* An initializer with a silent error handler; forgets this thread's complaints so far. */
+exr_context_initializer_t exr_quiet(void);
+void exr_forget_complaint(void);
 
-/* An initializer whose errors go to *complaint, which must outlive the context. */
-exr_context_initializer_t exr_quiet(exr_complaint *complaint);
-
-/* "cannot VERB PATH: the library's words" with status s. */
-status exr_fail(status s, const char *verb, const char *path, const exr_complaint *complaint, exr_result_t code);
+/* "cannot VERB PATH: the library's first words since the last forgetting" with status s. */
+status exr_fail(status s, const char *verb, const char *path, exr_result_t code);
 
 #endif

@@ -5,11 +5,11 @@
 #include "base/half.h"
 #include "image/exr.h"
 #include "image/exr_context.h"
+#include "image/read.h"
 
 struct exr_file {
     char *path;
     exr_context_t context;
-    exr_complaint complaint;
     exr_attr_box2i_t window;
     const exr_attr_chlist_t *channels;
     exr_storage_t storage;
@@ -23,7 +23,7 @@ typedef struct source {
 
 static status fail_reading(const exr_file *f, exr_result_t code)
 {
-    return exr_fail(ERROR_INPUT, "read", f->path, &f->complaint, code);
+    return exr_fail(ERROR_INPUT, "read", f->path, code);
 }
 
 static size_t channel_bytes(const exr_attr_chlist_entry_t *c)
@@ -33,6 +33,10 @@ static size_t channel_bytes(const exr_attr_chlist_entry_t *c)
 
 static status check_layout(const exr_file *f)
 {
+    long long width = 1LL + f->window.max.x - f->window.min.x, height = 1LL + f->window.max.y - f->window.min.y;
+    if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE)
+        return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
+                    f->path, width, height, IMAGE_MAX_SIDE);
     if (f->storage != EXR_STORAGE_SCANLINE && f->storage != EXR_STORAGE_TILED)
         return fail(ERROR_INPUT, "cannot read %s: deep EXR files are not supported, flatten it first", f->path);
     for (int i = 0; i < f->channels->num_channels; i++)
@@ -44,7 +48,7 @@ static status check_layout(const exr_file *f)
 
 static status open_file(exr_file *f)
 {
-    exr_context_initializer_t init = exr_quiet(&f->complaint);
+    exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
     if (r == EXR_ERR_SUCCESS) r = exr_get_storage(f->context, 0, &f->storage);
     if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, 0, &f->window);
@@ -208,6 +212,7 @@ static exr_result_t read_tiles(reader *r)
 
 status exr_read(exr_file *f, const exr_target *targets, size_t count)
 {
+    exr_forget_complaint();
     source *sources = calloc(count + 1, sizeof *sources);
     if (!sources) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
     for (size_t i = 0; i < count; i++) {

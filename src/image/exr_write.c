@@ -14,7 +14,6 @@ static const float half_max = 65504.0f;
 typedef struct writer {
     const char *path;
     exr_context_t context;
-    exr_complaint complaint;
     int width, height;
     const exr_channel *channels;
     size_t channel_count;
@@ -110,7 +109,7 @@ static exr_result_t write_pixels(writer *w)
 
 static status write_file(writer *w, const char *temporary, const exr_attribute *attributes, size_t count)
 {
-    exr_context_initializer_t init = exr_quiet(&w->complaint);
+    exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_write(&w->context, temporary, EXR_WRITE_FILE_DIRECTLY, &init);
     if (r == EXR_ERR_SUCCESS) {
         exr_set_longname_support(w->context, 1);
@@ -119,7 +118,7 @@ static status write_file(writer *w, const char *temporary, const exr_attribute *
         exr_result_t closed = exr_finish(&w->context);
         if (r == EXR_ERR_SUCCESS) r = closed;
     }
-    return r == EXR_ERR_SUCCESS ? OK : exr_fail(ERROR_OUTPUT, "write", w->path, &w->complaint, r);
+    return r == EXR_ERR_SUCCESS ? OK : exr_fail(ERROR_OUTPUT, "write", w->path, r);
 }
 
 /* Done here because the library, refusing a channel, keeps its lock (3.1.5) and then never finishes. */

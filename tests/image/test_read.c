@@ -1,0 +1,414 @@
+#include <math.h>
+#include <vips/vips.h>
+
+#include "image/exr.h"
+#include "image/read.h"
+#include "image/write.h"
+
+#include "folder.h"
+
+/* A libvips image of 8- or 16-bit codes, for fixtures. */
+static VipsImage *fixture(const void *codes, int width, int height, int bands, VipsInterpretation interpretation)
+{
+    bool wide = interpretation == VIPS_INTERPRETATION_RGB16 || interpretation == VIPS_INTERPRETATION_GREY16;
+    VipsImage *bare =
+        vips_image_new_from_memory_copy(codes, (size_t)width * (size_t)height * (size_t)bands * (wide ? 2 : 1), width,
+                                        height, bands, wide ? VIPS_FORMAT_USHORT : VIPS_FORMAT_UCHAR);
+    VipsImage *out = NULL;
+    assert_non_null(bare);
+    assert_int_equal(vips_copy(bare, &out, "interpretation", interpretation, NULL), 0);
+    g_object_unref(bare);
+    return out;
+}
+
+/* Saves by the name's ending and drops the image. */
+static const char *save(VipsImage *image, const char *name)
+{
+    const char *path = in_folder(name);
+    if (vips_image_write_to_file(image, path, NULL)) print_error("%s", vips_error_buffer());
+    g_object_unref(image);
+    assert_true(file_exists(path));
+    return path;
+}
+
+static double exact(double encoded)
+{
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+static void every_8_bit_code_becomes_its_linear_value_and_back(void **state)
+{
+    (void)state;
+    uint8_t codes[768];
+    for (int i = 0; i < 768; i++)
+        codes[i] = (uint8_t)(i / 3);
+    img color = {0}, alpha = {0};
+    assert_int_equal(img_read(save(fixture(codes, 16, 16, 3, VIPS_INTERPRETATION_sRGB), "a.png"), &color, &alpha), OK);
+    assert_int_equal(color.width, 16);
+    assert_int_equal(color.channels, 3);
+    assert_null(alpha.data);
+    /* the table is the double formula rounded to float */
+    for (int i = 0; i < 768; i++)
+        assert_true(color.data[i] == (float)exact(i / 3 / 255.0));
+    assert_int_equal(img_write_png(in_folder("b.png"), &color, IMG_SRGB8), OK);
+    img again = {0};
+    assert_int_equal(img_read(in_folder("b.png"), &again, NULL), OK);
+    assert_memory_equal(again.data, color.data, 768 * sizeof(float));
+    img_free(&color);
+    img_free(&again);
+}
+
+static void sixteen_bits_keep_their_steps(void **state)
+{
+    (void)state;
+    uint16_t codes[16];
+    for (int i = 0; i < 16; i++)
+        codes[i] = (uint16_t)(1000 + i);
+    img color = {0};
+    const char *path = save(fixture(codes, 4, 4, 1, VIPS_INTERPRETATION_GREY16), "c.png");
+    assert_int_equal(img_read(path, &color, NULL), OK);
+    assert_int_equal(color.channels, 3);
+    for (int i = 0; i < 48; i++)
+        assert_true(color.data[i] == (float)exact((1000 + i / 3) / 65535.0));
+    img_free(&color);
+    path = save(fixture(codes, 4, 4, 1, VIPS_INTERPRETATION_GREY16), "c.tif");
+    assert_int_equal(img_read(path, &color, NULL), OK);
+    assert_true(color.data[47] == (float)exact(1015 / 65535.0));
+    img_free(&color);
+}
+
+static void linear_png_round_trips_within_half_a_code(void **state)
+{
+    (void)state;
+    static const struct {
+        img_encoding encoding;
+        float step;
+    } kinds[] = {{IMG_LINEAR8, 1 / 255.0f}, {IMG_LINEAR16, 1 / 65535.0f}};
+    img map, back;
+    assert_int_equal(img_new(&map, 9, 7, 1), OK);
+    for (int i = 0; i < 63; i++)
+        map.data[i] = (float)i / 40 - 0.2f;
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(img_write_png(in_folder("d.png"), &map, kinds[k].encoding), OK);
+        assert_int_equal(img_read_mask(in_folder("d.png"), &back), OK);
+        assert_int_equal(back.channels, 1);
+        for (int i = 0; i < 63; i++) {
+            float expected = fminf(fmaxf(map.data[i], 0), 1);
+            assert_true(fabsf(back.data[i] - expected) <= 0.5f * kinds[k].step + 1e-6f);
+        }
+        img_free(&back);
+    }
+    img_free(&map);
+}
+
+/* Left half red, right half blue, upper half bright: 16 × 8. */
+static VipsImage *quarters(void)
+{
+    uint8_t codes[8][16][3] = {0};
+    for (int y = 0; y < 8; y++)
+        for (int x = 0; x < 16; x++)
+            codes[y][x][x < 8 ? 0 : 2] = y < 4 ? 250 : 100;
+    return fixture(codes, 16, 8, 3, VIPS_INTERPRETATION_sRGB);
+}
+
+static void every_photograph_format_is_read(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"q.png", "q.jpg", "q.tif", "q.webp", "q.heic"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        if (strstr(names[k], "heic") && !vips_type_find("VipsOperation", "heifsave")) {
+            print_message("this libvips writes no HEIC: not tested\n");
+            continue;
+        }
+        img color = {0};
+        if (strstr(names[k], "heic")) {
+            VipsImage *image = quarters();
+            int failed = vips_heifsave(image, in_folder(names[k]), "Q", 90, NULL);
+            g_object_unref(image);
+            if (failed) {
+                print_message("HEIC cannot be written here (%s): not tested\n", vips_error_buffer());
+                vips_error_clear();
+                continue;
+            }
+        } else {
+            save(quarters(), names[k]);
+        }
+        if (img_read(in_folder(names[k]), &color, NULL) != OK) print_error("%s\n", status_message());
+        assert_int_equal(color.width, 16);
+        assert_int_equal(color.height, 8);
+        /* away from the borders, where lossy formats smear; 0.06 is what their default quality costs here */
+        assert_true(fabsf(img_at(&color, 2, 1)[0] - srgb_decode(250 / 255.0f)) < 0.06f);
+        assert_true(fabsf(img_at(&color, 13, 6)[2] - srgb_decode(100 / 255.0f)) < 0.06f);
+        assert_true(img_at(&color, 13, 1)[0] < 0.06f);
+        img_free(&color);
+    }
+}
+
+static void exif_orientation_turns_the_picture(void **state)
+{
+    (void)state;
+    for (int orientation = 1; orientation <= 8; orientation++) {
+        VipsImage *image = quarters();
+        vips_image_set_int(image, VIPS_META_ORIENTATION, orientation);
+        img color = {0};
+        assert_int_equal(img_read(save(image, "turned.jpg"), &color, NULL), OK);
+        bool sideways = orientation > 4;
+        assert_int_equal(color.width, sideways ? 8 : 16);
+        assert_int_equal(color.height, sideways ? 16 : 8);
+        /* whether the file's row 0 is seen last (at the bottom, or at the right of a turned picture), and its column 0
+         * (at the right, or at the bottom), by the EXIF standard's table */
+        static const bool row_is_last[9] = {0, 0, 0, 1, 1, 0, 1, 1, 0};
+        static const bool column_is_last[9] = {0, 0, 1, 1, 0, 0, 0, 1, 1};
+        bool row_last = row_is_last[orientation], column_last = column_is_last[orientation];
+        int along = row_last ? 6 : 1, across = column_last ? 14 : 1;
+        const float *bright_red = sideways ? img_at(&color, along, across) : img_at(&color, across, along);
+        assert_true(bright_red[0] > 0.8f && bright_red[2] < 0.1f);
+        img_free(&color);
+    }
+}
+
+static void alpha_is_split_off_unchanged(void **state)
+{
+    (void)state;
+    uint8_t codes[4][4] = {{255, 0, 0, 0}, {0, 255, 0, 51}, {0, 0, 255, 128}, {255, 255, 255, 255}};
+    img color = {0}, alpha = {0}, mask = {0};
+    const char *path = save(fixture(codes, 2, 2, 4, VIPS_INTERPRETATION_sRGB), "alpha.png");
+    assert_int_equal(img_read(path, &color, &alpha), OK);
+    assert_int_equal(alpha.channels, 1);
+    for (int i = 0; i < 4; i++)
+        assert_true(alpha.data[i] == (float)codes[i][3] / 255);
+    /* colour under a transparent pixel is kept */
+    assert_true(color.data[0] == 1 && color.data[1] == 0);
+    img_free(&color);
+    assert_int_equal(img_read(path, &color, NULL), OK);
+    assert_int_equal(img_read_mask(path, &mask), OK);
+    assert_memory_equal(mask.data, alpha.data, 4 * sizeof(float));
+    img_free(&color);
+    img_free(&alpha);
+    img_free(&mask);
+}
+
+static void grey_with_alpha_becomes_colour_and_alpha(void **state)
+{
+    (void)state;
+    uint16_t codes[2][2] = {{65535, 0}, {0, 65535}};
+    img color = {0}, alpha = {0};
+    const char *path = save(fixture(codes, 2, 1, 2, VIPS_INTERPRETATION_GREY16), "ga.png");
+    assert_int_equal(img_read(path, &color, &alpha), OK);
+    assert_true(color.data[0] == 1 && color.data[2] == 1 && color.data[3] == 0);
+    assert_true(alpha.data[0] == 0 && alpha.data[1] == 1);
+    img_free(&color);
+    img_free(&alpha);
+}
+
+static void embedded_profile_is_honoured(void **state)
+{
+    (void)state;
+    /* pure red of the wider P3 primaries is beyond sRGB's red and clips to it; its half bright red keeps a ratio that
+     * the same codes without the profile do not have */
+    uint8_t codes[2][3] = {{200, 100, 100}, {128, 128, 128}};
+    VipsImage *plain = fixture(codes, 2, 1, 3, VIPS_INTERPRETATION_sRGB), *p3 = NULL;
+    img tagged = {0}, untagged = {0};
+    int failed = vips_icc_transform(plain, &p3, "p3", "input_profile", "srgb", NULL);
+    g_object_unref(plain);
+    assert_int_equal(failed, 0);
+    assert_int_equal(img_read(save(p3, "p3.png"), &tagged, NULL), OK);
+    img_free(&untagged);
+    /* there and back through 8-bit P3 codes: at most one code of error a channel */
+    for (int c = 0; c < 3; c++) {
+        assert_true(fabsf(srgb_encode(tagged.data[c]) * 255 - codes[0][c]) < 1.5f);
+        assert_true(fabsf(srgb_encode(tagged.data[3 + c]) * 255 - codes[1][c]) < 1.5f);
+    }
+    /* without the profile the P3 codes mean a duller red */
+    VipsImage *stripped = vips_image_new_from_file(in_folder("p3.png"), NULL);
+    assert_int_equal(vips_pngsave(stripped, in_folder("stripped.png"), "strip", TRUE, NULL), 0);
+    g_object_unref(stripped);
+    assert_int_equal(img_read(in_folder("stripped.png"), &untagged, NULL), OK);
+    assert_true(untagged.data[0] < tagged.data[0] - 0.02f);
+    img_free(&tagged);
+    img_free(&untagged);
+}
+
+static void radiance_files_are_linear(void **state)
+{
+    (void)state;
+    float light[12] = {0.5f, 1, 2, 0.25f, 0.25f, 0.25f, 100, 10, 1, 0, 0, 0};
+    VipsImage *bare = vips_image_new_from_memory_copy(light, sizeof light, 2, 2, 3, VIPS_FORMAT_FLOAT), *named = NULL;
+    assert_int_equal(vips_copy(bare, &named, "interpretation", VIPS_INTERPRETATION_scRGB, NULL), 0);
+    g_object_unref(bare);
+    img color = {0};
+    assert_int_equal(img_read(save(named, "light.hdr"), &color, NULL), OK);
+    /* a shared exponent leaves each channel 8 bits of the largest one */
+    for (int i = 0; i < 12; i++) {
+        float largest = fmaxf(light[i / 3 * 3], fmaxf(light[i / 3 * 3 + 1], light[i / 3 * 3 + 2]));
+        assert_true(fabsf(color.data[i] - light[i]) <= largest / 128);
+    }
+    img_free(&color);
+}
+
+static void exr_pictures_are_found_by_their_channels(void **state)
+{
+    (void)state;
+    img picture, color = {0}, alpha = {0};
+    assert_int_equal(img_new(&picture, 5, 3, 3), OK);
+    for (int i = 0; i < 45; i++)
+        picture.data[i] = (float)i / 8;
+    assert_int_equal(img_write_exr(in_folder("rgb.exr"), &picture), OK);
+    assert_int_equal(img_read(in_folder("rgb.exr"), &color, &alpha), OK);
+    assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
+    assert_null(alpha.data);
+    img_free(&color);
+    const exr_channel layer[] = {{"depth.Z", picture.data, 1},
+                                 {"env.R", picture.data, 3},
+                                 {"env.G", picture.data + 1, 3},
+                                 {"env.B", picture.data + 2, 3}};
+    assert_int_equal(exr_write(in_folder("layer.exr"), 5, 3, layer, 4, NULL, 0), OK);
+    assert_int_equal(img_read(in_folder("layer.exr"), &color, &alpha), OK);
+    assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
+    img_free(&color);
+    const exr_channel grey[] = {{"Y", picture.data, 1}, {"A", picture.data, 1}};
+    assert_int_equal(exr_write(in_folder("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
+    assert_int_equal(img_read(in_folder("grey.exr"), &color, &alpha), OK);
+    assert_true(color.data[3] == picture.data[1] && color.data[5] == picture.data[1]);
+    assert_true(alpha.data[3] == picture.data[3] && alpha.data[14] == 1);
+    img_free(&color);
+    img_free(&alpha);
+    assert_int_equal(exr_write(in_folder("depth.exr"), 5, 3, layer, 1, NULL, 0), OK);
+    assert_int_equal(img_read(in_folder("depth.exr"), &color, NULL), ERROR_INPUT);
+    img_free(&picture);
+}
+
+static void one_pixel_is_a_picture(void **state)
+{
+    (void)state;
+    uint8_t code[3] = {255, 0, 255};
+    img color = {0};
+    assert_int_equal(img_read(save(fixture(code, 1, 1, 3, VIPS_INTERPRETATION_sRGB), "one.png"), &color, NULL), OK);
+    assert_true(color.width == 1 && color.height == 1 && color.data[0] == 1 && color.data[1] == 0);
+    img_free(&color);
+}
+
+/* Refused in one line that names the file and says the words. */
+static void assert_refused(const char *path, const char *words)
+{
+    img color = {0}, alpha = {0}, mask = {0};
+    assert_int_equal(img_read(path, &color, &alpha), ERROR_INPUT);
+    const char *name = strrchr(path, '/') + 1;
+    if (!strstr(status_message(), name) || !strstr(status_message(), words) || strchr(status_message(), '\n'))
+        print_error("message: %s\n", status_message());
+    assert_non_null(strstr(status_message(), name));
+    assert_non_null(strstr(status_message(), words));
+    assert_null(strchr(status_message(), '\n'));
+    assert_null(color.data);
+    assert_null(alpha.data);
+    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    assert_null(mask.data);
+}
+
+static void put(const char *name, const void *data, size_t size)
+{
+    assert_int_equal(file_write(in_folder(name), data, size), OK);
+}
+
+static void what_is_no_picture_is_refused(void **state)
+{
+    (void)state;
+    assert_refused(in_folder("missing.png"), "No such file");
+    assert_refused("/tmp/.", "folder");
+    put("empty.png", "", 0);
+    assert_refused(in_folder("empty.png"), "empty");
+    put("text.png", "these are words, not a picture\n", 31);
+    assert_refused(in_folder("text.png"), "not a picture");
+    put("drawing.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"/>", 62);
+    assert_refused(in_folder("drawing.svg"), "not a picture");
+}
+
+static void truncated_pictures_are_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"cut.png", "cut.jpg", "cut.webp", "cut.tif", "cut.hdr"};
+    enum { SIDE = 96 };
+    static uint8_t noise[SIDE * SIDE * 3];
+    srand(1);
+    for (size_t i = 0; i < sizeof noise; i++)
+        noise[i] = (uint8_t)rand();
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        const char *path = save(fixture(noise, SIDE, SIDE, 3, VIPS_INTERPRETATION_sRGB), names[k]);
+        char *data = NULL;
+        size_t size = 0;
+        assert_int_equal(file_read(path, 1u << 22, &data, &size), OK);
+        for (int part = 1; part < 4; part++) {
+            put(names[k], data, size * (size_t)part / 4);
+            assert_refused(path, "cannot read");
+        }
+        free(data);
+    }
+}
+
+static uint32_t crc32_of(const uint8_t *data, size_t size)
+{
+    uint32_t crc = 0xffffffffu;
+    for (size_t i = 0; i < size; i++) {
+        crc ^= data[i];
+        for (int b = 0; b < 8; b++)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    return ~crc;
+}
+
+static void huge_pictures_are_refused_by_their_header(void **state)
+{
+    (void)state;
+    /* a PNG of 20000 × 20000 (0x4e20) with a right header and no more */
+    uint8_t head[45] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0,    0,    13, 'I',
+                        'H',  'D', 'R', 0,   0,    0x4e, 0x20, 0,    0, 0x4e, 0x20, 8,  2};
+    uint32_t crc = crc32_of(head + 12, 17);
+    for (int i = 0; i < 4; i++)
+        head[29 + i] = (uint8_t)(crc >> (24 - 8 * i));
+    memcpy(head + 33, (uint8_t[]){0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e}, 12);
+    put("huge.png", head, sizeof head);
+    assert_refused(in_folder("huge.png"), "20000 x 20000");
+    static float line[20000];
+    const exr_channel channel = {"Y", line, 1};
+    assert_int_equal(exr_write(in_folder("wide.exr"), 20000, 1, &channel, 1, NULL, 0), OK);
+    assert_refused(in_folder("wide.exr"), "20000 x 1");
+}
+
+static void what_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    float values[4] = {1, NAN, 2, 3};
+    const exr_channel channel = {"Y", values, 1};
+    assert_int_equal(exr_write(in_folder("nan.exr"), 2, 2, &channel, 1, NULL, 0), OK);
+    assert_refused(in_folder("nan.exr"), "not finite");
+    values[1] = INFINITY;
+    VipsImage *bare = vips_image_new_from_memory_copy(values, sizeof values, 2, 2, 1, VIPS_FORMAT_FLOAT);
+    assert_refused(save(bare, "inf.tif"), "not finite");
+}
+
+static int start(void **state)
+{
+    return VIPS_INIT("test") || make_folder(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_8_bit_code_becomes_its_linear_value_and_back),
+        cmocka_unit_test(sixteen_bits_keep_their_steps),
+        cmocka_unit_test(linear_png_round_trips_within_half_a_code),
+        cmocka_unit_test(every_photograph_format_is_read),
+        cmocka_unit_test(exif_orientation_turns_the_picture),
+        cmocka_unit_test(alpha_is_split_off_unchanged),
+        cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
+        cmocka_unit_test(embedded_profile_is_honoured),
+        cmocka_unit_test(radiance_files_are_linear),
+        cmocka_unit_test(exr_pictures_are_found_by_their_channels),
+        cmocka_unit_test(one_pixel_is_a_picture),
+        cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(truncated_pictures_are_refused),
+        cmocka_unit_test(huge_pictures_are_refused_by_their_header),
+        cmocka_unit_test(what_is_not_finite_is_refused),
+    };
+    return cmocka_run_group_tests(tests, start, remove_folder);
+}

@@ -1,0 +1,198 @@
+#include <math.h>
+#include <vips/vips.h>
+
+#include "image/figure.h"
+#include "image/read.h"
+#include "image/write.h"
+
+#include "folder.h"
+
+static img make(int width, int height, int channels)
+{
+    img image;
+    assert_int_equal(img_new(&image, width, height, channels), OK);
+    size_t count = (size_t)width * (size_t)height * (size_t)channels;
+    for (size_t i = 0; i < count; i++)
+        image.data[i] = (float)(i % 97) / 96;
+    return image;
+}
+
+static void srgb_formula_inverts_itself(void **state)
+{
+    (void)state;
+    for (int i = 0; i <= 1000; i++) {
+        float x = (float)i / 1000;
+        /* powf is good to a few units in the last place, steepened at most 2.4-fold by the power */
+        assert_true(fabsf(srgb_decode(srgb_encode(x)) - x) < 2e-6f);
+    }
+    assert_true(srgb_encode(0) == 0 && srgb_decode(0) == 0);
+}
+
+/* What libvips sees in a file: an integer of its header. */
+static int header(const char *path, const char *field)
+{
+    VipsImage *image = vips_image_new_from_file(path, "n", -1, NULL);
+    int value = -1;
+    assert_non_null(image);
+    if (vips_image_get_int(image, field, &value)) value = -1;
+    g_object_unref(image);
+    return value;
+}
+
+static void animations_loop_with_their_frames_and_delays(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"turn.webp", "turn.gif"};
+    img frames[3];
+    for (int i = 0; i < 3; i++) {
+        frames[i] = make(24, 16, 3);
+        for (int k = 0; k < 24 * 16 * 3; k++)
+            frames[i].data[k] = k / 3 % 24 / 8 == i;
+    }
+    for (int k = 0; k < 2; k++) {
+        const char *path = in_folder(names[k]);
+        if (img_write_animation(path, frames, 3, 80) != OK) print_error("%s\n", status_message());
+        assert_int_equal(header(path, "n-pages"), 3);
+        assert_int_equal(header(path, "page-height"), 16);
+        assert_int_equal(header(path, "width"), 24);
+        assert_int_equal(header(path, "loop"), 0);
+        VipsImage *image = vips_image_new_from_file(path, NULL);
+        int *delays = NULL, count = 0;
+        assert_int_equal(vips_image_get_array_int(image, "delay", &delays, &count), 0);
+        assert_int_equal(count, 3);
+        assert_int_equal(delays[1], 80);
+        g_object_unref(image);
+    }
+    assert_int_equal(img_write_animation(in_folder("turn.mp4"), frames, 3, 80), ERROR_USAGE);
+    assert_int_equal(img_write_animation(in_folder("none.gif"), frames, 0, 80), ERROR_USAGE);
+    for (int i = 0; i < 3; i++)
+        img_free(&frames[i]);
+}
+
+static void failed_writes_leave_nothing_and_say_where(void **state)
+{
+    (void)state;
+    img image = make(4, 4, 3);
+    const figure_tile tile = {"tile", &image};
+    const char *path = in_folder("no/such/place.png");
+    assert_int_equal(img_write_png(path, &image, IMG_SRGB8), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "place.png"));
+    assert_null(strchr(status_message(), '~'));
+    assert_int_equal(img_write_exr(path, &image), ERROR_OUTPUT);
+    assert_int_equal(img_write_animation(in_folder("no/such/place.gif"), &image, 1, 80), ERROR_OUTPUT);
+    assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), ERROR_OUTPUT);
+    /* a folder in the file's place: all is written, and the last step, the renaming, fails */
+    assert_int_equal(file_make_folder(in_folder("taken.png")), OK);
+    assert_int_equal(img_write_png(in_folder("taken.png"), &image, IMG_SRGB8), ERROR_OUTPUT);
+    assert_int_equal(img_write_exr(in_folder("taken.png"), &image), ERROR_OUTPUT);
+    limit_file_size(32);
+    status full = img_write_png(in_folder("full.png"), &image, IMG_SRGB8);
+    limit_file_size(0);
+    assert_int_equal(full, ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "full.png"));
+    assert_false(file_exists(in_folder("full.png")));
+    assert_false(folder_has_leftovers());
+    assert_int_equal(rmdir(in_folder("taken.png")), 0);
+    image.channels = 2;
+    assert_int_equal(img_write_png(in_folder("two.png"), &image, IMG_SRGB8), ERROR_USAGE);
+    image.channels = 3;
+    img_free(&image);
+}
+
+static void sheet_shows_its_tiles_where_they_belong(void **state)
+{
+    (void)state;
+    enum { TILE = 96 };
+    img wide = make(60, 30, 3), grey = make(20, 20, 1), sheet = {0};
+    for (int i = 0; i < 60 * 30 * 3; i++)
+        wide.data[i] = i % 3 == 0;
+    for (int i = 0; i < 400; i++)
+        grey.data[i] = 1;
+    const figure_tile tiles[] = {{"wide <&> red", &wide}, {"grey", &grey}, {"w\xc3\xa4ide", &wide}};
+    assert_int_equal(figure_sheet(in_folder("sheet.png"), tiles, 3, 2, TILE), OK);
+    assert_int_equal(img_read(in_folder("sheet.png"), &sheet, NULL), OK);
+    assert_true(sheet.width > 2 * TILE && sheet.width < 3 * TILE);
+    assert_true(sheet.height > 2 * TILE && sheet.height < 4 * TILE);
+    int red = 0, white = 0, ink = 0;
+    for (int i = 0; i < sheet.width * sheet.height; i++) {
+        const float *p = sheet.data + 3 * (size_t)i;
+        red += p[0] == 1 && p[1] == 0 && p[2] == 0;
+        white += p[0] == 1 && p[1] == 1 && p[2] == 1;
+        ink += p[0] > 0.3f && p[0] < 0.9f && fabsf(p[0] - p[1]) < 0.1f;
+    }
+    /* two tiles of 2:1 fill half of a tile each */
+    assert_int_equal(red, TILE * TILE);
+    assert_int_equal(white, TILE * TILE);
+    assert_true(ink > 50); /* three labels of at least four letters */
+    img_free(&wide);
+    img_free(&grey);
+    img_free(&sheet);
+}
+
+static void chart_is_drawn_from_any_curves(void **state)
+{
+    (void)state;
+    float x[200], falling[200], nothing[200];
+    for (int i = 0; i < 200; i++) {
+        x[i] = (float)i;
+        falling[i] = i == 50 ? NAN : expf(-(float)i / 40);
+        nothing[i] = -1;
+    }
+    const figure_curve curves[] = {{"falling", x, falling, 200}, {"never above zero", x, nothing, 200}};
+    const figure_curve one = {"one point", x, falling, 1};
+    img chart = {0};
+    assert_int_equal(figure_chart(in_folder("log.png"), "loss & more", "step", "loss", true, curves, 2), OK);
+    assert_int_equal(figure_chart(in_folder("linear.png"), "loss", "step", "loss", false, curves, 2), OK);
+    assert_int_equal(figure_chart(in_folder("point.png"), NULL, NULL, NULL, true, &one, 1), OK);
+    assert_int_equal(figure_chart(in_folder("empty.png"), "", "", "", false, NULL, 0), OK);
+    assert_int_equal(img_read(in_folder("log.png"), &chart, NULL), OK);
+    assert_int_equal(chart.width, 960);
+    assert_int_equal(chart.height, 600);
+    int blue = 0;
+    for (int i = 0; i < chart.width * chart.height; i++)
+        blue += chart.data[3 * i + 2] > chart.data[3 * i] + 0.3f;
+    assert_true(blue > 800); /* a line across the plot, at least a pixel wide */
+    img_free(&chart);
+}
+
+static void normals_and_depth_become_colours_inside_the_mask(void **state)
+{
+    (void)state;
+    img normal = make(2, 1, 3), depth = make(2, 1, 1), mask = make(2, 1, 1), shown = {0};
+    memcpy(normal.data, (float[6]){0, 0, 1, 1, 0, 0}, sizeof(float[6]));
+    memcpy(depth.data, (float[2]){0.5f, INFINITY}, sizeof(float[2]));
+    memcpy(mask.data, (float[2]){1, 0}, sizeof(float[2]));
+    assert_int_equal(figure_normals(&normal, &mask, &shown), OK);
+    assert_true(fabsf(srgb_encode(shown.data[0]) - 0.5f) < 1e-5f && fabsf(srgb_encode(shown.data[2]) - 1) < 1e-5f);
+    assert_true(shown.data[3] == 0 && shown.data[5] == 0);
+    img_free(&shown);
+    assert_int_equal(figure_depth(&depth, &mask, &shown), OK);
+    assert_true(shown.data[0] > 0 && isfinite(shown.data[0]) && shown.data[3] == 0);
+    img_free(&shown);
+    depth.data[1] = 0.7f;
+    assert_int_equal(figure_depth(&depth, NULL, &shown), OK);
+    assert_true(shown.data[0] > 0.99f && shown.data[3] < 0.05f && shown.data[3] > 0);
+    img_free(&shown);
+    assert_int_equal(figure_normals(&depth, NULL, &shown), ERROR_USAGE);
+    img_free(&normal);
+    img_free(&depth);
+    img_free(&mask);
+}
+
+static int start(void **state)
+{
+    return VIPS_INIT("test") || make_folder(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(srgb_formula_inverts_itself),
+        cmocka_unit_test(animations_loop_with_their_frames_and_delays),
+        cmocka_unit_test(failed_writes_leave_nothing_and_say_where),
+        cmocka_unit_test(sheet_shows_its_tiles_where_they_belong),
+        cmocka_unit_test(chart_is_drawn_from_any_curves),
+        cmocka_unit_test(normals_and_depth_become_colours_inside_the_mask),
+    };
+    return cmocka_run_group_tests(tests, start, remove_folder);
+}
