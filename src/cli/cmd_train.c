@@ -49,6 +49,7 @@ int cmd_train(int argc, char **argv)
     trn_options o = {.interrupted = cli_interrupted};
     status s = OK;
     int c;
+    opterr = 0; /* one line, and it is ours */
     while ((c = getopt_long(argc, argv, "d:o:ri:n:t:qh", options, NULL)) != -1) {
         switch (c) {
         case 'd':
@@ -76,7 +77,7 @@ int cmd_train(int argc, char **argv)
             help();
             return 0;
         default:
-            return cli_usage("train", "wrong option");
+            return cli_usage("train", "unknown option, or its value is missing: %s", argv[optind - 1]);
         }
         if (s != OK) return cli_fail("train", s);
     }

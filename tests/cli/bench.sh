@@ -1,0 +1,24 @@
+# merlin bench: one quick measurement as JSON, and one line for each kind of bad input.
+source "$(dirname "$0")/check.bash"
+make_tiny_model
+make_bad_weights
+export OMP_WAIT_POLICY=passive # other tests may run beside this one
+
+if "$MERLIN" bench --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" >"$scratch/bench.json"; then
+    for figure in copy_bytes_per_second peak_forward peak_training inference_256 seconds gflop_per_second planned_bytes \
+        share_of_peak training_128 estimate_256 resident_bytes samples_per_second rays_per_second; do
+        grep -q -E "\"$figure\":[[:space:]]*([{]|[1-9]|0[.]0*[1-9])" "$scratch/bench.json" ||
+            complain "the report has no $figure above zero"
+    done
+else
+    complain "bench failed"
+fi
+
+refuses 2 "--batch wants" "$MERLIN" bench --batch 0
+refuses 2 "exclude each other" "$MERLIN" bench --model a --config b
+refuses 2 "unexpected argument" "$MERLIN" bench more
+refuses 1 "missing.json" "$MERLIN" bench --config "$scratch/missing.json" --quiet
+for bad in missing empty truncated altered; do
+    refuses 1 "$bad.safetensors" "$MERLIN" bench --model "$scratch/$bad.safetensors" --quiet
+done
+finish

@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# merlin estimate from outside: what it writes, and how it refuses.
+. "$MERLIN_SOURCE_DIR/tests/cli/support/common.sh"
+estimate() { "$MERLIN" estimate "$@"; }
+small=(--size 64 -o out.merlin)
+
+radiance disc.hdr 64 22
+names="albedo.png depth.png maps.exr mask.png normal.png overview.png reconstruction.png report.json roughness.png"
+
+echo "a photograph becomes a folder of maps"
+succeeds estimate disc.hdr --size 64
+[ "$(ls -A disc.merlin | sort | tr '\n' ' ')" = "$names " ] || complain "disc.merlin has $(ls -A disc.merlin)"
+for name in $names; do present "disc.merlin/$name"; done
+grep -q '"mask":.*"found"' disc.merlin/report.json || complain "report.json does not say how the mask came about"
+
+echo "--json prints a report, --quiet nothing, --help explains"
+succeeds estimate disc.hdr "${small[@]}" --json
+grep -q '^{.*"exposure_gain".*}$' out || complain "no report: $(cat out)"
+succeeds estimate disc.hdr "${small[@]}" --quiet
+[ -s out ] && complain "--quiet was not: $(cat out)"
+succeeds estimate --help
+grep -q -- --exposure out || complain "--help does not help"
+rm -rf out.merlin
+
+echo "masks are used, and must fit"
+succeeds estimate disc.hdr --mask disc.merlin/mask.png "${small[@]}" --json
+grep -q '"mask":"given"' out || complain "the mask was not used: $(cat out)"
+rm -rf out.merlin
+radiance large.hdr 80 30
+refuses 1 'the mask is 64×64 pixels, the photograph 80×80' estimate large.hdr --mask disc.merlin/mask.png "${small[@]}"
+radiance empty.hdr 64 0
+refuses 1 'mask selects nothing' estimate disc.hdr --mask empty.hdr "${small[@]}"
+refuses 1 'no object stands out' estimate empty.hdr "${small[@]}"
+refuses 1 'missing.png' estimate disc.hdr --mask missing.png "${small[@]}"
+absent out.merlin
+
+echo "wrong use"
+refuses 2 'no photograph' estimate
+refuses 2 'unknown option' estimate disc.hdr --nonsense
+refuses 2 'multiple of 32' estimate disc.hdr --size 100
+refuses 2 '--size' estimate disc.hdr --size huge
+refuses 2 '--exposure' estimate disc.hdr --exposure nan
+refuses 2 '--mask' estimate disc.hdr large.hdr --mask disc.merlin/mask.png
+
+echo "photographs that are none"
+refuses 1 'missing.png' estimate missing.png "${small[@]}"
+: >nothing.png
+refuses 1 'nothing.png' estimate nothing.png "${small[@]}"
+head -c 3000 disc.hdr >cut.hdr
+refuses 1 'cut.hdr' estimate cut.hdr "${small[@]}"
+head -c 2000 disc.merlin/albedo.png >cut.png
+refuses 1 'cut.png' estimate cut.png "${small[@]}"
+echo "not a picture" >text.png
+refuses 1 'text.png' estimate text.png "${small[@]}"
+radiance one.hdr 1 1
+refuses 1 '1×1' estimate one.hdr "${small[@]}"
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 20000\n' >huge.hdr
+refuses 1 'huge.hdr' estimate huge.hdr "${small[@]}"
+openexr nan.exr '\0\0\300\177'
+refuses 1 'nan.exr' estimate nan.exr "${small[@]}"
+openexr infinite.exr '\0\0\200\177'
+refuses 1 'infinite.exr' estimate infinite.exr "${small[@]}"
+openexr even.exr '\0\0\0\77'
+refuses 1 'no object stands out' estimate even.exr "${small[@]}"
+mkdir no-photos
+refuses 1 'no photographs' estimate no-photos "${small[@]}"
+absent out.merlin
+
+echo "weights that are none"
+refuses 1 'missing.safetensors' estimate disc.hdr --model missing.safetensors "${small[@]}"
+head -c 100000 "$MERLIN_MODEL" >cut.safetensors
+refuses 1 'cut.safetensors' estimate disc.hdr --model cut.safetensors "${small[@]}"
+cp "$MERLIN_MODEL" altered.safetensors
+printf 'merlin' | dd of=altered.safetensors bs=1 seek=1000000 conv=notrunc status=none
+refuses 1 'altered.safetensors' estimate disc.hdr --model altered.safetensors "${small[@]}"
+header='{"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}}'
+printf "\\x$(printf %x ${#header})"'\0\0\0\0\0\0\0%s\0\0\0\0' "$header" >other.safetensors
+refuses 1 'other.safetensors' estimate disc.hdr --model other.safetensors "${small[@]}"
+: >nothing.safetensors
+refuses 1 'nothing.safetensors' estimate disc.hdr --model nothing.safetensors "${small[@]}"
+absent out.merlin
+
+echo "places that cannot be written"
+refuses 1 '/proc/merlin' estimate disc.hdr --size 64 -o /proc/merlin
+echo >file
+refuses 1 'file' estimate disc.hdr --size 64 -o file
+mkdir -p taken/albedo.png
+refuses 1 'taken/albedo.png' estimate disc.hdr --size 64 -o taken
+[ "$(ls -A taken)" = albedo.png ] || complain "taken has $(ls -A taken)"
+
+echo "a disk that fills up leaves nothing"
+limited() { (ulimit -f "$1" && shift && "$@"); }
+for blocks in 1 8 24; do
+    refuses 1 'cannot write' limited $blocks "$MERLIN" estimate disc.hdr --size 64 -o full.merlin
+    absent full.merlin
+done
+
+echo "a batch goes on after a failure and says so"
+mkdir batch
+cp disc.hdr batch/a.hdr
+cp disc.hdr batch/c.hdr
+cp disc.merlin/mask.png batch/c.mask.png
+echo "not a picture" >batch/b.png
+refuses 1 'b.png' estimate batch --size 64 -o results
+present results/a/maps.exr results/c/maps.exr
+absent results/b results/c.mask
+grep -q '"given"' results/c/report.json || complain "NAME.mask.png was not used in a folder"
+
+echo "an interrupted batch stops and leaves nothing half written"
+mkdir many
+for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
+"$MERLIN" estimate many --size 64 -o interrupted >out 2>err &
+pid=$!
+for _ in {1..600}; do
+    [ -e interrupted/100/report.json ] && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+code=$?
+[ $code -eq 1 ] || complain "exit code $code after an interrupt"
+[ "$(wc -l <err)" -eq 1 ] || complain "after an interrupt: $(cat err)"
+grep -q interrupted err || complain "after an interrupt: $(cat err)"
+for folder in interrupted/*; do
+    [ "$(ls -A "$folder" | sort | tr '\n' ' ')" = "$names " ] || complain "$folder has $(ls -A "$folder")"
+done
+finish

@@ -1,0 +1,45 @@
+# merlin eval: the whole way once with a tiny model, and one line for each kind of bad input.
+source "$(dirname "$0")/check.bash"
+make_tiny_model
+make_bad_weights
+weights=$scratch/weights.safetensors samples=$scratch/samples
+
+succeeds "means over 4 samples" "$MERLIN" eval --means "$samples" -o "$scratch/means.exr"
+succeeds "^albedo error" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --means-file "$scratch/means.exr" \
+    --figure "$scratch/sheet.png" --figure-rows 2
+[[ -s $scratch/sheet.png ]] || complain "no figure"
+succeeds "favours that answer" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1
+OMP_NUM_THREADS=1 "$MERLIN" eval --data "$samples" --model "$weights" --quiet --json >"$scratch/a.json"
+OMP_NUM_THREADS=2 "$MERLIN" eval --data "$samples" --model "$weights" --quiet --json >"$scratch/b.json"
+cmp -s "$scratch/a.json" "$scratch/b.json" || complain "results depend on the number of threads"
+
+refuses 2 "--data DIR is missing" "$MERLIN" eval --model "$weights"
+refuses 2 "--model W is missing" "$MERLIN" eval --data "$samples"
+refuses 2 "--means needs -o" "$MERLIN" eval --means "$samples"
+refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 0
+refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 3x
+refuses 2 "--precision wants" "$MERLIN" eval --data "$samples" --model "$weights" --precision float16
+refuses 2 "wants a value" "$MERLIN" eval --data
+refuses 2 "unexpected argument" "$MERLIN" eval --data "$samples" --model "$weights" more
+refuses 1 "cannot open the folder" "$MERLIN" eval --data "$scratch/missing" --model "$weights" --quiet
+mkdir "$scratch/empty"
+refuses 1 "holds no samples" "$MERLIN" eval --data "$scratch/empty" --model "$weights" --quiet
+refuses 1 "holds no samples" "$MERLIN" eval --means "$scratch/empty" -o "$scratch/none.exr" --quiet
+[[ ! -e $scratch/none.exr ]] || complain "a file was left behind"
+for bad in missing empty truncated stub text altered; do
+    refuses 1 "$bad.safetensors" "$MERLIN" eval --data "$samples" --model "$scratch/$bad.safetensors" --quiet
+done
+refuses 1 "means" "$MERLIN" eval --data "$samples" --model "$weights" --means-file "$samples/000000.exr" --quiet
+refuses 1 "missing.exr" "$MERLIN" eval --data "$samples" --model "$weights" --means-file "$scratch/missing.exr" --quiet
+refuses 1 "nowhere" "$MERLIN" eval --data "$samples" --model "$weights" --figure "$scratch/nowhere/f.png" --quiet
+refuses 1 "nowhere" "$MERLIN" eval --means "$samples" -o "$scratch/nowhere/means.exr" --quiet
+
+mkdir "$scratch/damaged"
+cp "$samples"/*.exr "$scratch/damaged"
+head -c 3000 "$samples/000002.exr" >"$scratch/damaged/000002.exr"
+refuses 1 "000002.exr" "$MERLIN" eval --data "$scratch/damaged" --model "$weights" --quiet
+echo "not an image" >"$scratch/damaged/000002.exr"
+refuses 1 "000002.exr" "$MERLIN" eval --data "$scratch/damaged" --model "$weights" --quiet
+"$MERLIN" render --count 1 --size 72 --spp 1 --paths 1 --no-env --quiet -o "$scratch/odd" >/dev/null
+refuses 1 "multiple of 32" "$MERLIN" eval --data "$scratch/odd" --model "$weights" --quiet
+finish

@@ -1,0 +1,21 @@
+# merlin info: what it says of good weights, and one line for each kind of bad ones.
+source "$(dirname "$0")/check.bash"
+make_tiny_model
+make_bad_weights
+weights=$scratch/weights.safetensors
+
+succeeds "^model  *tiny" "$MERLIN" info "$weights"
+succeeds "GMAC" "$MERLIN" info "$weights"
+succeeds "encoder.*F16 .*x3x3" "$MERLIN" info "$weights" --tensors
+succeeds '"parameters":' "$MERLIN" info "$weights" --json
+succeeds '"type":.*"F16"' "$MERLIN" info "$weights" --json --tensors
+
+refuses 2 "one weights file" "$MERLIN" info
+refuses 2 "one weights file" "$MERLIN" info "$weights" "$weights"
+refuses 1 "missing.safetensors" "$MERLIN" info "$scratch/missing.safetensors"
+refuses 1 "merlin info: " "$MERLIN" info "$scratch"
+for bad in empty truncated stub text altered; do
+    refuses 1 "$bad.safetensors" "$MERLIN" info "$scratch/$bad.safetensors"
+done
+refuses 1 "checkpoint.safetensors" "$MERLIN" info "$scratch/run/checkpoint.safetensors"
+finish

@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# merlin relight from outside: what it writes, and how it refuses.
+. "$MERLIN_SOURCE_DIR/tests/cli/support/common.sh"
+relight() { "$MERLIN" relight "$@"; }
+
+radiance disc.hdr 64 22
+succeeds "$MERLIN" estimate disc.hdr --size 64
+
+echo "lights become pictures"
+succeeds relight disc.merlin --light 0.5,0.2,-0.4 --light -0.5,0.2,-0.4
+present disc.merlin/relit/relit_000.png disc.merlin/relit/relit_001.png disc.merlin/relit/relit.png
+cmp -s disc.merlin/relit/relit_000.png disc.merlin/relit/relit_001.png && complain "two lights, one picture"
+succeeds relight disc.merlin --light 0.5,0.2,-0.4 --by network -o network
+present network/relit_000.png
+cmp -s network/relit_000.png disc.merlin/relit/relit_000.png && complain "network and BRDF give the same bits"
+
+echo "the same light gives the same picture"
+succeeds relight disc.merlin --light 0.5,0.2,-0.4 -o again
+cmp -s again/relit_000.png disc.merlin/relit/relit_000.png || complain "relighting is not deterministic"
+
+echo "a photograph can be relit at once"
+succeeds relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
+present at-once/relit_000.png
+grep -q '^{.*"lights": 1.*}$' out || complain "no report: $(cat out)"
+
+echo "lists of lights"
+printf '0.5 0.2 -0.4\n# another\n-0.5 0.2 -0.4\n' >lights.txt
+printf '2\na.jpg 0.5 0.2 0.8\nb.jpg -0.5 0.2 0.8\n' >lights.lp
+for list in lights.txt lights.lp; do
+    succeeds relight disc.merlin --lights $list -o "from-$list"
+    present "from-$list/relit_001.png"
+    absent "from-$list/relit_002.png"
+done
+
+echo "an orbit becomes frames and animations"
+succeeds relight disc.merlin --orbit 5 -o orbit
+present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.png
+absent orbit/frame_005.png
+
+echo "wrong use"
+refuses 2 'no photograph' relight
+refuses 2 'no light' relight disc.merlin
+refuses 2 'one photograph' relight disc.merlin disc.hdr --light 0,0,0
+refuses 2 '--light' relight disc.merlin --light 1,2
+refuses 2 '--light' relight disc.merlin --light 0,nan,0
+refuses 2 '--orbit' relight disc.merlin --orbit 100000
+refuses 2 '--by' relight disc.merlin --light 0,0,0 --by magic
+refuses 2 'unknown option' relight disc.merlin --nonsense
+
+echo "bad input"
+lights=(--light 0,0,0 -o none)
+refuses 1 'missing' relight missing "${lights[@]}"
+mkdir empty
+refuses 1 'merlin estimate first' relight empty "${lights[@]}"
+mkdir cut
+head -c 1500 disc.merlin/maps.exr >cut/maps.exr
+refuses 1 'cut/maps.exr' relight cut "${lights[@]}"
+mkdir other
+openexr other/maps.exr '\0\0\0\77'
+refuses 1 'not written by merlin' relight other "${lights[@]}"
+printf '0 0 0\n0 inf 0\n' >bad.txt
+refuses 1 'bad.txt:2' relight disc.merlin --lights bad.txt -o none
+: >nothing.txt
+refuses 1 'no lights' relight disc.merlin --lights nothing.txt -o none
+refuses 1 'missing.lp' relight disc.merlin --lights missing.lp -o none
+refuses 1 'missing.safetensors' relight disc.merlin --model missing.safetensors "${lights[@]}"
+absent none
+
+echo "places that cannot be written, disks that fill up"
+refuses 1 '/proc/merlin' relight disc.merlin --light 0,0,0 -o /proc/merlin
+limited() { (ulimit -f "$1" && shift && "$@"); }
+refuses 1 'cannot write' limited 1 "$MERLIN" relight disc.merlin --orbit 4 -o full/deep
+absent full
+
+echo "an interrupted orbit leaves nothing"
+"$MERLIN" relight disc.merlin --orbit 240 -o interrupted/deep >out 2>err &
+pid=$!
+for _ in {1..600}; do
+    [ -e interrupted/deep ] && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+code=$?
+[ $code -eq 1 ] || complain "exit code $code after an interrupt"
+[ "$(wc -l <err)" -eq 1 ] || complain "after an interrupt: $(cat err)"
+absent interrupted
+finish

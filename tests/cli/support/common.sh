@@ -1,0 +1,82 @@
+# What the command-line tests share; sourced. MERLIN is the program, MERLIN_SOURCE_DIR the source tree.
+set -uo pipefail
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+export MERLIN_MODEL=${MERLIN_MODEL:-$MERLIN_SOURCE_DIR/models/merlin-point.safetensors}
+failures=0
+
+complain() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# succeeds WORDS...: exit code 0 and nothing on stderr.
+succeeds() {
+    "$@" >out 2>err
+    local code=$?
+    [ $code -eq 0 ] || complain "exit code $code of: $*: $(cat err)"
+    [ -s err ] && complain "unexpected words from: $*: $(cat err)"
+}
+
+# refuses CODE PATTERN WORDS...: that exit code and exactly one line on stderr, which has the pattern in it.
+refuses() {
+    local wanted=$1 pattern=$2
+    shift 2
+    "$@" >out 2>err
+    local code=$? lines
+    lines=$(wc -l <err)
+    [ $code -eq "$wanted" ] || complain "exit code $code instead of $wanted of: $*: $(cat err)"
+    [ "$lines" -eq 1 ] || complain "$lines lines instead of 1 from: $*: $(cat err)"
+    grep -qiE -- "$pattern" err || complain "no \"$pattern\" in: $(cat err) (from: $*)"
+}
+
+# absent PATH...: nothing may be there.
+absent() {
+    for path in "$@"; do [ -e "$path" ] && complain "$path was left behind: $(ls -A "$path" | tr '\n' ' ')"; done
+}
+
+present() {
+    for path in "$@"; do [ -s "$path" ] || complain "$path is missing or empty"; done
+}
+
+# radiance FILE SIDE RADIUS: a Radiance HDR picture of a bright disc before black.
+radiance() {
+    local file=$1 side=$2 radius=$3 x y row
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n' "$side" "$side" >"$file"
+    for ((y = 0; y < side; y++)); do
+        row=
+        for ((x = 0; x < side; x++)); do
+            if (((2 * x - side) ** 2 + (2 * y - side) ** 2 < 4 * radius ** 2)); then
+                row+='\240\200\140\200'
+            else
+                row+='\001\001\001\170'
+            fi
+        done
+        printf "$row" >>"$file"
+    done
+}
+
+# openexr FILE BYTES: 16×16 float pixels, uncompressed, every value the four bytes given as printf escapes.
+openexr() {
+    local file=$1 value=$2 one='\0\0\200\77' four='\4\0\0\0' y offset line=
+    local box='box2i\0\20\0\0\0\0\0\0\0\0\0\0\0\17\0\0\0\17\0\0\0' kind='\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0'
+    {
+        printf 'v/1\1\2\0\0\0channels\0chlist\0\67\0\0\0B'"$kind"'G'"$kind"'R'"$kind"'\0'
+        printf 'compression\0compression\0\1\0\0\0\0dataWindow\0'"$box"'displayWindow\0'"$box"
+        printf 'lineOrder\0lineOrder\0\1\0\0\0\0pixelAspectRatio\0float\0'"$four$one"
+        printf 'screenWindowCenter\0v2f\0\10\0\0\0\0\0\0\0\0\0\0\0screenWindowWidth\0float\0'"$four$one"'\0'
+    } >"$file"
+    offset=$(($(stat -c %s "$file") + 128))
+    for ((y = 0; y < 16; y++)); do
+        printf "$(printf '\\x%02x\\x%02x' $((offset % 256)) $((offset / 256)))"'\0\0\0\0\0\0' >>"$file"
+        offset=$((offset + 200))
+    done
+    for ((y = 0; y < 48; y++)); do line+=$value; done
+    for ((y = 0; y < 16; y++)); do printf "$(printf '\\x%02x' $y)"'\0\0\0\300\0\0\0'"$line" >>"$file"; done
+}
+
+finish() {
+    [ $failures -eq 0 ] && echo "all as expected"
+    exit $((failures > 0))
+}
