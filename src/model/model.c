@@ -29,11 +29,11 @@ typedef struct network {
 void model_encode_image(const float *linear, float *encoded, size_t n)
 {
     for (size_t i = 0; i < n; i++)
-        encoded[i] = sqrtf(fminf(fmaxf(linear[i], 0.0f), 1.0f));
+        encoded[i] = sqrtf(fminf(fmaxf(linear[i], 0.0f), MODEL_BRIGHTEST));
 }
 
-/* 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. The range of a bare tanh would end at 0.95, behind the
- * front of an object that stands at 1. */
+/* 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. The range of a bare tanh would end at 0.95, behind
+ * the front of an object that stands at 1. */
 static nn_node *shape_depth(nn_graph *g, nn_node *x)
 {
     return nn_reciprocal(g, nn_tanh(g, x), 1.2f, 1.45f);

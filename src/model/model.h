@@ -58,8 +58,12 @@ char *model_config_write(const model_config *config);
 /* Length of the lighting code: 3, 27 or 30. */
 int model_light_size(const model_config *config);
 
-/* What the input "image" holds: the square root of linear values clamped to [0, 1], which spends the network's
- * precision as the eye (and sRGB) does. n values; in place is fine. */
+/* Radiance above which the network sees no more: photographs whose white lies higher are scaled down before. */
+#define MODEL_BRIGHTEST 4.0f
+
+/* What the input "image" holds: the square root of radiance clamped to [0, MODEL_BRIGHTEST], which spends the network's
+ * precision as the eye (and sRGB) does. Radiance is in the unit of the lights' power; where a photograph saturates
+ * (radiance 1 in the published data, up to 2.5 in training) it stays flat. n values; in place is fine. */
 void model_encode_image(const float *linear, float *encoded, size_t n);
 
 typedef enum model_part {

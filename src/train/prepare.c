@@ -7,9 +7,12 @@
 #include "optics/camera.h"
 #include "optics/light.h"
 
+/* Natural logarithm of the highest radiance a sensor takes without saturating. */
+static const float WHITE_RANGE = 0.9f;
+
 trn_camera trn_camera_perfect(void)
 {
-    return (trn_camera){.gain = {1, 1, 1}};
+    return (trn_camera){.gain = {1, 1, 1}, .white = 1};
 }
 
 trn_camera trn_camera_draw(const train_config *c, rng *r)
@@ -22,6 +25,7 @@ trn_camera trn_camera_draw(const train_config *c, rng *r)
     lens.shot = rng_uniform(r) * (noisy ? 2e-4f : 0.0f);
     lens.read = rng_uniform(r) * (noisy ? 5e-3f : 0.0f);
     lens.eight_bit = rng_uniform(r) < 0.5f;
+    lens.white = expf(WHITE_RANGE * rng_uniform(r));
     return lens;
 }
 
@@ -41,11 +45,11 @@ static float cheap_normal(rng *r)
 
 static float photographed(const trn_camera *lens, float radiance, int channel, rng *noise)
 {
-    float x = fminf(radiance * lens->gain[channel], 1.0f);
+    float x = fminf(radiance * lens->gain[channel] / lens->white, 1.0f);
     if (lens->read > 0 || lens->shot > 0) x += sqrtf(lens->shot * x + lens->read * lens->read) * cheap_normal(noise);
     x = fminf(fmaxf(x, 0.0f), 1.0f);
     if (lens->eight_bit) x = srgb_decode(roundf(srgb_encode(x) * 255.0f) / 255.0f);
-    return x;
+    return x * lens->white;
 }
 
 static void take_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise)

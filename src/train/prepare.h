@@ -13,13 +13,16 @@ enum { TRN_STREAM_ORDER = 101, TRN_STREAM_PRESENTATION = 102, TRN_STREAM_VALIDAT
 
 /* What spoils a photograph; trn_camera_perfect for none. */
 typedef struct trn_camera {
-    float gain[3];    /* exposure and colour balance */
-    float shot, read; /* noise of standard deviation sqrt(shot I + read²), I in [0, 1] after gain */
+    float gain[3];    /* error of exposure and colour balance */
+    float white;      /* radiance at which the sensor saturates, at least 1 */
+    float shot, read; /* noise of standard deviation sqrt(shot I + read²), I in [0, 1] of white */
     bool eight_bit;   /* rounded to 8 bits of sRGB */
 } trn_camera;
 
 trn_camera trn_camera_perfect(void);
-/* Exposure and colour as configured; noise up to 1.5 % of full scale and 8 bits in half of all photographs each. */
+/* Exposure and colour as configured; noise up to 1.5 % of full scale and 8 bits in half of all photographs each. The
+ * sensor's white lies between radiance 1, the published data's, at which two pixels in five of bright objects burn out,
+ * and 2.5, where a white object keeps its shading as in a photograph exposed for it. */
 trn_camera trn_camera_draw(const train_config *c, rng *r);
 
 /* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered;

@@ -160,6 +160,30 @@ static void perfect_camera_shows_direct_plus_indirect(void **state)
     }
 }
 
+static void sensor_saturates_at_its_white(void **state)
+{
+    fixture *f = *state;
+    rng r = rng_at(1, 2, 3);
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    float *radiance = malloc(3 * PIXELS * sizeof(float));
+    assert_non_null(radiance);
+    for (int i = 0; i < 3 * PIXELS; i++)
+        radiance[i] = f->view.direct[i] *= 4; /* bright enough for both kinds of pixel */
+    trn_camera lens = trn_camera_perfect();
+    lens.white = 2;
+    trn_prepare(&f->view, false, &lens, vec3_make(0, 0, 0), &r);
+    int saturated = 0, below = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        if (f->view.mask[i / 3] == 0) continue;
+        float expected = radiance[i] < 2 ? radiance[i] : 2;
+        assert_float_equal(f->view.image[i] * f->view.image[i], expected, 1e-5); /* float rounding of the root */
+        saturated += radiance[i] >= 2;
+        below += radiance[i] > 1 && radiance[i] < 2;
+    }
+    assert_true(saturated > 0 && below > 0);
+    free(radiance);
+}
+
 static void camera_spoils_the_input_and_not_the_targets(void **state)
 {
     fixture *f = *state;
@@ -206,6 +230,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(sample_of_another_size_is_refused, set_up, tear_down),
         cmocka_unit_test(empty_folder_is_refused),
         cmocka_unit_test_setup_teardown(perfect_camera_shows_direct_plus_indirect, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sensor_saturates_at_its_white, set_up, tear_down),
         cmocka_unit_test_setup_teardown(camera_spoils_the_input_and_not_the_targets, set_up, tear_down),
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
     };
