@@ -222,7 +222,8 @@ static void keep_values(session *s)
     }
 }
 
-/* Steps are kept in half precision: 5e-4; they are differences of float32 values, about 1e-7 against 1e-2. */
+/* Steps are kept in half precision, good to 5e-4, and are differences of float32 values near one: 6e-8 of each, which
+ * is 6e-6 after division by the rate, against steps of about 1e-2 for the smallest gradients. */
 static void compare_steps(const session *s, double tolerance)
 {
     float *before = s->before;
@@ -279,13 +280,13 @@ static void run_variant(bool everything)
     compare_gradients(&s, 1e-3);
     keep_values(&s);
     assert_int_equal(nn_adam_step(adam, rate), OK);
-    compare_steps(&s, 1e-3);
+    compare_steps(&s, 3e-3);
     assert_int_equal(nn_forward(s.train), OK);
     compare_losses(&s, "after", 1e-4);
     compare_running(&s, 1e-4);
     nn_params_touch(s.params);
     assert_int_equal(nn_forward(s.infer), OK);
-    compare_outputs(&s, 1e-3);
+    compare_outputs(&s, 1e-4);
     nn_adam_free(adam);
     session_free(&s);
 }
