@@ -2,7 +2,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,26 +67,18 @@ void file_discard(char *temporary)
     free(temporary);
 }
 
-static status sync_path(const char *path)
-{
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0) return fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
-    int failed = fsync(fd);
-    close(fd);
-    return failed ? fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno)) : OK;
-}
-
 status file_commit(char *temporary, const char *path)
 {
-    status s = sync_path(temporary);
-    if (s == OK && rename(temporary, path) != 0)
+    status s = OK;
+    if (rename(temporary, path) != 0) {
         s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
-    if (s != OK) unlink(temporary);
+        unlink(temporary);
+    }
     free(temporary);
     return s;
 }
 
-status file_write(const char *path, const void *data, size_t size)
+static status write_through_temporary(const char *path, const void *data, size_t size, bool durable)
 {
     char *temporary = NULL;
     status s = file_temporary(path, &temporary);
@@ -99,6 +90,7 @@ status file_write(const char *path, const void *data, size_t size)
         return s;
     }
     bool written = fwrite(data, 1, size, f) == size;
+    if (written && durable) written = fflush(f) == 0 && fsync(fileno(f)) == 0;
     bool closed = fclose(f) == 0;
     if (!written || !closed) {
         s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
@@ -106,6 +98,16 @@ status file_write(const char *path, const void *data, size_t size)
         return s;
     }
     return file_commit(temporary, path);
+}
+
+status file_write(const char *path, const void *data, size_t size)
+{
+    return write_through_temporary(path, data, size, false);
+}
+
+status file_write_durable(const char *path, const void *data, size_t size)
+{
+    return write_through_temporary(path, data, size, true);
 }
 
 status file_make_folder(const char *path)

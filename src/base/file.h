@@ -11,8 +11,10 @@
  * limit bytes. */
 status file_read(const char *path, size_t limit, char **data, size_t *size);
 
-/* Writes all of a file through a temporary name beside it, fsync and rename. */
+/* Writes all of a file through a temporary name beside it and rename: a killed process or a full disk leaves the old
+ * file. file_write_durable also waits for the disk, so that a power cut does too: for what took hours to make. */
 status file_write(const char *path, const void *data, size_t size);
+status file_write_durable(const char *path, const void *data, size_t size);
 
 /* For libraries that write by name: a temporary name beside path, with path's own ending so that the library picks the
  * right format (malloc'ed); then file_commit renames it to path and frees the name, or file_discard removes and frees

@@ -95,7 +95,7 @@ status st_write(const char *path, const st_tensor *tensors, size_t count, const 
     char *file = header ? assemble(header, tensors, count, &size) : NULL;
     free(header);
     if (!file) return fail(ERROR_MEMORY, "no memory to write %s", path);
-    status s = file_write(path, file, size);
+    status s = file_write_durable(path, file, size);
     free(file);
     return s;
 }
