@@ -198,6 +198,7 @@ status file_list(const char *folder, const char *const *endings, char ***names, 
 
 void file_list_free(char **names, size_t count)
 {
-    for (size_t i = 0; i < count; i++) free(names[i]);
+    for (size_t i = 0; i < count; i++)
+        free(names[i]);
     free(names);
 }
