@@ -87,10 +87,12 @@ static status write_random_weights(const char *config_path, const char *path)
     return s;
 }
 
-static status run(bench_request *r)
+static status run(const bench_request *r, const char *weights)
 {
+    bench_options options = r->options;
+    options.weights = weights;
     bench_report report;
-    status s = bench_run(&r->options, &report);
+    status s = bench_run(&options, &report);
     if (s != OK) return s;
     if (!r->json) {
         bench_print_table(&report, stdout);
@@ -103,26 +105,24 @@ static status run(bench_request *r)
     return OK;
 }
 
-static status run_with_random_weights(bench_request *r)
+static status run_with_random_weights(const bench_request *r)
 {
     char path[] = "/tmp/merlin-bench-XXXXXX.safetensors";
     int file = mkstemps(path, (int)strlen(".safetensors"));
     if (file < 0) return fail(ERROR_OUTPUT, "cannot make a temporary file in /tmp");
     close(file);
     status s = write_random_weights(r->config, path);
-    r->options.weights = path;
-    if (s == OK) s = run(r);
+    if (s == OK) s = run(r, path);
     unlink(path);
     return s;
 }
 
-static status run_with_model(bench_request *r)
+static status run_with_model(const bench_request *r)
 {
     char *path;
     status s = photo_find_model(r->model, &path);
     if (s != OK) return s;
-    r->options.weights = path;
-    s = run(r);
+    s = run(r, path);
     free(path);
     return s;
 }

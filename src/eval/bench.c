@@ -82,10 +82,12 @@ static status measure_copy(const bench_options *o, bench_report *out)
 {
     copy_work c = {malloc(COPY_BYTES), malloc(COPY_BYTES)};
     double seconds = 0;
-    status s = c.from && c.to ? OK : fail(ERROR_MEMORY, "no memory to measure the rate of copying");
-    if (s == OK) {
+    status s;
+    if (c.from && c.to) {
         memset(c.from, 1, COPY_BYTES); /* untouched pages are all one page of zeros */
         s = time_work(copy_all, &c, patience_of(o), &seconds);
+    } else {
+        s = fail(ERROR_MEMORY, "no memory to measure the rate of copying");
     }
     free(c.from);
     free(c.to);
@@ -209,7 +211,7 @@ static status measure_rendering(const bench_options *o, bench_report *out)
     render_stats stats;
     options.quiet = true;
     options.interrupted = o->stopped;
-    options.count = (size_t)(2 * parallel_threads());
+    options.count = 2 * (size_t)parallel_threads();
     status s = render_samples(&options, &stats);
     if (s != OK) return s;
     double wanted = (o->quick ? 2 : 10) * (double)stats.rendered / stats.seconds;

@@ -126,29 +126,43 @@ static int compare_seconds(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static status run_in(const char *folder, const char *program, const char *weights, int runs, double *seconds,
-                     size_t *bytes)
+/* The files of one measurement, all in the temporary folder. */
+typedef struct bench_files {
+    char *picture, *output, *errors;
+} bench_files;
+
+static status run_often(const bench_files *files, const char *program, const char *weights, int runs, double *seconds,
+                        size_t *bytes)
 {
-    char *picture = file_join(folder, "ball.png"), *output = file_join(folder, "ball");
-    char *errors = file_join(folder, "errors.txt");
     double times[MAX_RUNS];
-    status s = picture && output && errors ? write_picture(picture) : fail(ERROR_MEMORY, "no memory for a path");
-    char *const arguments[] = {(char *)program, "estimate", "--model", (char *)weights, picture, "-o",
-                               output,          "--quiet",  NULL};
+    char *const arguments[] = {(char *)program, "estimate", "--model", (char *)weights, files->picture, "-o",
+                               files->output,   "--quiet",  NULL};
+    status s = write_picture(files->picture);
     *bytes = 0;
     if (runs > MAX_RUNS) runs = MAX_RUNS;
     for (int i = 0; s == OK && i < runs; i++) {
         size_t held = 0;
-        s = run_once(arguments, errors, &times[i], &held);
+        s = run_once(arguments, files->errors, &times[i], &held);
         if (held > *bytes) *bytes = held;
     }
-    if (s == OK) {
-        qsort(times, (size_t)runs, sizeof times[0], compare_seconds);
-        *seconds = times[runs / 2];
-    }
-    free(picture);
-    free(output);
-    free(errors);
+    if (s != OK) return s;
+    qsort(times, (size_t)runs, sizeof times[0], compare_seconds);
+    *seconds = times[runs / 2];
+    return OK;
+}
+
+static status run_in(const char *folder, const char *program, const char *weights, int runs, double *seconds,
+                     size_t *bytes)
+{
+    bench_files files = {file_join(folder, "ball.png"), file_join(folder, "ball"), file_join(folder, "errors.txt")};
+    status s;
+    if (files.picture && files.output && files.errors)
+        s = run_often(&files, program, weights, runs, seconds, bytes);
+    else
+        s = fail(ERROR_MEMORY, "no memory for a path");
+    free(files.picture);
+    free(files.output);
+    free(files.errors);
     return s;
 }
 

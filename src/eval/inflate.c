@@ -22,6 +22,8 @@ static void field_free(field *f)
 {
     free(f->u);
     free(f->inside);
+    f->u = NULL;
+    f->inside = NULL;
 }
 
 static status field_new(const img *mask, field *f)

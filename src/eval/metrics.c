@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 
-enum { WINDOW = 11, MOMENTS = 5 };
+enum { REACH = 5, WINDOW = 2 * REACH + 1, MOMENTS = 5 };
 
 double eval_mse(const img *a, const img *b, const img *mask)
 {
@@ -58,7 +58,7 @@ static void gaussian(double weights[WINDOW])
 {
     double sum = 0;
     for (int i = 0; i < WINDOW; i++) {
-        double x = (i - WINDOW / 2) / 1.5;
+        double x = (i - REACH) / 1.5;
         sum += weights[i] = exp(-0.5 * x * x);
     }
     for (int i = 0; i < WINDOW; i++)

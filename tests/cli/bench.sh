@@ -1,5 +1,7 @@
+#!/usr/bin/env bash
 # merlin bench: one quick measurement as JSON, and one line for each kind of bad input.
-source "$(dirname "$0")/check.bash"
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
 make_tiny_model
 make_bad_weights
 export OMP_WAIT_POLICY=passive # other tests may run beside this one

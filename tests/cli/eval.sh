@@ -1,5 +1,7 @@
+#!/usr/bin/env bash
 # merlin eval: the whole way once with a tiny model, and one line for each kind of bad input.
-source "$(dirname "$0")/check.bash"
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
 make_tiny_model
 make_bad_weights
 weights=$scratch/weights.safetensors samples=$scratch/samples

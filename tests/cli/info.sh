@@ -1,5 +1,7 @@
+#!/usr/bin/env bash
 # merlin info: what it says of good weights, and one line for each kind of bad ones.
-source "$(dirname "$0")/check.bash"
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
 make_tiny_model
 make_bad_weights
 weights=$scratch/weights.safetensors

@@ -1,5 +1,7 @@
+#!/usr/bin/env bash
 # merlin itself: help, version, and what is no command.
-source "$(dirname "$0")/check.bash"
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
 
 succeeds "commands:" "$MERLIN" --help
 succeeds "^merlin [0-9]" "$MERLIN" --version
