@@ -22,22 +22,21 @@ static void field_free(field *f)
 {
     free(f->u);
     free(f->inside);
-    f->u = NULL;
-    f->inside = NULL;
 }
 
-static status field_new(const img *mask, field *f)
+/* False if memory ran out. */
+static bool field_new(const img *mask, field *f)
 {
     size_t count = (size_t)(mask->width + 2) * (size_t)(mask->height + 2);
     *f = (field){mask->width, mask->height, calloc(count, sizeof *f->u), calloc(count, 1)};
     if (!f->u || !f->inside) {
         field_free(f);
-        return fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
+        return false;
     }
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++)
             f->inside[field_at(f, x, y)] = *img_at(mask, x, y) > EVAL_MASK_LEVEL;
-    return OK;
+    return true;
 }
 
 /* Successive over-relaxation with Young's best factor for a square of the picture's longer side; three sweeps a pixel
@@ -83,9 +82,9 @@ status eval_inflate_mask(const img *mask, img *normal, img *height)
 {
     *normal = *height = (img){0};
     field f;
-    status s = field_new(mask, &f);
-    if (s != OK) return s;
-    s = img_new(normal, mask->width, mask->height, 3);
+    if (!field_new(mask, &f))
+        return fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
+    status s = img_new(normal, mask->width, mask->height, 3);
     if (s == OK) s = img_new(height, mask->width, mask->height, 1);
     if (s == OK) {
         solve_poisson(&f);
