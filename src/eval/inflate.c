@@ -82,8 +82,10 @@ status eval_inflate_mask(const img *mask, img *normal, img *height)
 {
     *normal = *height = (img){0};
     field f;
-    if (!field_new(mask, &f))
-        return fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
+    if (!field_new(mask, &f)) {
+        fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
+        return ERROR_MEMORY;
+    }
     status s = img_new(normal, mask->width, mask->height, 3);
     if (s == OK) s = img_new(height, mask->width, mask->height, 1);
     if (s == OK) {
