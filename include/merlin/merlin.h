@@ -96,7 +96,7 @@ typedef struct merlin_maps {
         int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
     } crop;
     int size;   /* what that square was resized to */
-    float gain; /* the photograph was multiplied by this before the network saw it */
+    float gain; /* the photograph times this is radiance under a flash of power 5.95 */
     merlin_mask_source mask_source;
     float mask_confidence; /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
     char model[64];
@@ -123,8 +123,8 @@ typedef enum merlin_relighting {
                         */
 } merlin_relighting;
 
-/* The object under one point light at this place instead of the flash; the photograph's size, 3 channels, [0, 1], in
- * the exposure of the training data (a flash of power 5.95 at distance 1). */
+/* The object under one point light at this place instead of the flash, of the flash's power (5.95): the photograph's
+ * size and exposure, 3 channels in [0, 1]. */
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
 

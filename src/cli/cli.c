@@ -76,6 +76,8 @@ void cli_catch_interrupts(void)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    /* a file that may not grow is then a failed write, which says what happened */
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 int cli_interrupted(void)

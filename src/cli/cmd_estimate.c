@@ -22,7 +22,7 @@ static const char help[] =
     "                       photographs a folder each inside DIR\n"
     "      --model FILE     weights (default: $MERLIN_MODEL, else the shipped models/merlin-point.safetensors)\n"
     "      --size N         side of the square the network sees, a multiple of 32 (default 256)\n"
-    "      --exposure EV    brighten by EV stops before the network; default auto: only if too dark or too bright\n"
+    "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"

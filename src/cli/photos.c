@@ -203,6 +203,7 @@ status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask)
 status photo_find_model(const char *asked, char **path)
 {
     static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
+    *path = NULL;
     const char *environment = getenv("MERLIN_MODEL");
     if (!asked && environment && *environment) asked = environment;
     if (asked) return (*path = strdup(asked)) ? OK : no_memory();
@@ -215,6 +216,7 @@ status photo_find_model(const char *asked, char **path)
         if (asprintf(path, "%.*s%s/merlin-point.safetensors", folder, program, places[i]) < 0) return no_memory();
         if (file_exists(*path)) return OK;
         free(*path);
+        *path = NULL;
     }
     return fail(ERROR_INPUT, "no models/merlin-point.safetensors near %.*s: give --model or set MERLIN_MODEL", folder,
                 program);

@@ -36,14 +36,15 @@ static inline crop_square crop_of(const merlin_maps *maps)
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {
     surface full, low;
-    img low_photo; /* by network only */
+    img low_photo; /* radiance */
+    float white;   /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;
 } stage;
 
 /* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
-/* The square under a point light, bounces included: 3 channels in [0, 1] in the training data's exposure. */
+/* The square under a point light, bounces included: 3 channels in [0, 1] of `white`. */
 status stage_relight(network *n, const stage *s, vec3 light, img *out);
 
 /* What merlin_maps_write does; stop (may be NULL) is asked between files. */

@@ -78,16 +78,8 @@ static void multiply_mask(img *image, const img *mask)
             image->data[(size_t)image->channels * i + (size_t)c] *= mask->data[i];
 }
 
-static void clamp_image(img *image, float high)
-{
-    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    for (size_t i = 0; i < count; i++) {
-        float x = image->data[i];
-        image->data[i] = x > 0 ? (x < high ? x : high) : 0;
-    }
-}
-
-/* The picture and mask that the network sees, like a rendered sample: multiplied by coverage, then area-averaged. */
+/* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
+ * area-averaged, the mask hard. */
 static status make_input(work *w, float *gain)
 {
     int size = w->params->size;
@@ -102,13 +94,12 @@ static status make_input(work *w, float *gain)
     if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
     img_free(&masked);
     if (s != OK) return s;
-    clamp_image(&w->low_mask, 1);
+    harden_mask(&w->low_photo, &w->low_mask);
     *gain =
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
     size_t count = 3 * (size_t)size * (size_t)size;
     for (size_t i = 0; i < count; i++)
         w->low_photo.data[i] *= *gain;
-    clamp_image(&w->low_photo, 1);
     return OK;
 }
 
@@ -120,14 +111,12 @@ static status refine(work *w, float gain)
     img indirect = {0};
     if (s == OK) s = surface_resize_image(&w->low_indirect, &w->low.mask, w->crop.side, w->crop.side, &indirect);
     if (s != OK) return s;
-    clamp_image(&w->reconstruction, 1);
     size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
-    for (size_t i = 0; i < count; i++)
-        w->reconstruction.data[i] += indirect.data[i] * w->crop_mask.data[i / 3];
+    for (size_t i = 0; i < count; i++) {
+        float radiance = w->reconstruction.data[i] + indirect.data[i] * w->crop_mask.data[i / 3];
+        w->reconstruction.data[i] = fminf(fmaxf(radiance / gain, 0), 1);
+    }
     img_free(&indirect);
-    clamp_image(&w->reconstruction, 1);
-    for (size_t i = 0; i < count; i++)
-        w->reconstruction.data[i] /= gain;
     return OK;
 }
 

@@ -6,8 +6,9 @@ enum { BINS = 1024 };
 /* Luminance from 2^-24 to 2^8, 32 bins a stop. */
 static const float LOWEST_STOP = -24.0f, BINS_PER_STOP = 32.0f;
 static const float PERCENTILE = 0.95f;
-/* The span of that percentile in the training data, about its 10th and 90th percentile over samples. */
-static const float DARK_END = 0.30f, BRIGHT_END = 1.0f, LARGEST_GAIN = 64.0f;
+/* The span of that percentile in the training data: its 10th percentile over samples, and what the brightest white
+ * leaves of its 90th. */
+static const float DARK_END = 0.34f, BRIGHT_END = 2.2f, LARGEST_CHANGE = 64.0f;
 
 static float luminance(const float rgb[3])
 {
@@ -32,14 +33,13 @@ static float bright_luminance(const img *color, const img *mask)
 
 float exposure_gain(const img *color, const img *mask)
 {
-    float bright = bright_luminance(color, mask), gain = 1;
-    if (!(bright > 1e-6f)) return 1;
-    if (bright < DARK_END) gain = DARK_END / bright;
-    if (bright > BRIGHT_END) gain = BRIGHT_END / bright;
-    return fminf(fmaxf(gain, 1 / LARGEST_GAIN), LARGEST_GAIN);
+    float bright = EXPOSURE_WHITE * bright_luminance(color, mask), change = 1;
+    if (bright > 1e-6f && bright < DARK_END) change = DARK_END / bright;
+    if (bright > BRIGHT_END) change = BRIGHT_END / bright;
+    return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / LARGEST_CHANGE), LARGEST_CHANGE);
 }
 
 float exposure_from_ev(float ev)
 {
-    return exp2f(ev);
+    return EXPOSURE_WHITE * exp2f(ev);
 }

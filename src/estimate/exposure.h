@@ -1,20 +1,23 @@
-/* The brightness of a photograph against that of the training data.
+/* From the brightness of a photograph to the radiance the network knows.
  *
- * A photograph's exposure is whatever the camera chose; the training data is lit by a flash of power 5.95 at distance
- * about 1, and jittered by a stop or so. A photograph whose bright parts (the 95th percentile of the object's
- * luminance) lie within the training data's usual span is taken as it is; a darker or brighter one is multiplied by the
- * gain that brings it to the nearer end of that span, so that a small change of the photograph is a small change of the
- * gain. */
+ * A photograph's values are relative: 1 is where it saturates, at whatever exposure the camera chose. The network was
+ * trained on radiance under a flash of power 5.95 at distance about 1, photographed with a white between 1 and 2.5. A
+ * photograph's white is taken to be the middle of that, unless its bright parts (the 95th percentile of the object's
+ * luminance) then fall outside the span they have in the training data: a darker or brighter one gets the gain that
+ * brings them to the nearer end, so that a small change of the photograph is a small change of the gain. */
 #ifndef MERLIN_ESTIMATE_EXPOSURE_H
 #define MERLIN_ESTIMATE_EXPOSURE_H
 
 #include "image/image.h"
 
-/* color: 3 channels, linear; mask: 1 channel, the object from 0.5 on. The gain is within [1/64, 64]; 1 for a black
- * photograph. */
+/* The middle of the training data's whites, e^0.45. */
+#define EXPOSURE_WHITE 1.568f
+
+/* Radiance per value. color: 3 channels, linear; mask: 1 channel, the object from 0.5 on. Within a factor of 64 of
+ * EXPOSURE_WHITE, which a black photograph gets. */
 float exposure_gain(const img *color, const img *mask);
 
-/* 2^EV. */
+/* EXPOSURE_WHITE · 2^EV. */
 float exposure_from_ev(float ev);
 
 #endif

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/api.h"
+#include "estimate/exposure.h"
 #include "estimate/staging.h"
 #include "image/figure.h"
 #include "image/write.h"
@@ -122,10 +123,13 @@ static status show_values(const img *values, img *out)
 /* Before the files are written side by side, because the network uses every processor itself. */
 static status make_overview(network *n, const merlin_maps *maps, overview *o)
 {
-    /* by network, because that keeps the photograph for the first tile */
-    status s = stage_new(maps, maps->size, MERLIN_BY_NETWORK, &o->stage);
+    status s = stage_new(maps, maps->size, MERLIN_BY_BRDF, &o->stage);
     if (s != OK) return s;
-    o->stage.how = MERLIN_BY_BRDF;
+    /* an underexposed photograph is shown as it should have been exposed */
+    o->stage.white = EXPOSURE_WHITE;
+    size_t count = 3 * (size_t)maps->size * (size_t)maps->size;
+    for (size_t i = 0; i < count; i++)
+        o->stage.low_photo.data[i] /= EXPOSURE_WHITE;
     const surface *full = &o->stage.full;
     s = figure_normals(&full->normal, &full->mask, &o->normal);
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);

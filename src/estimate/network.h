@@ -26,7 +26,7 @@ const model_config *network_config(const network *n);
 /* Makes the programs for this size now, so that the time is seen apart. */
 status network_prepare(network *n, int size);
 
-/* photo: 3 channels, linear, already in the training data's exposure and multiplied by the mask. *indirect: the light
+/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. *indirect: the light
  * of bounces 2 and up under the flash; zero for a model without global illumination. */
 status network_estimate(network *n, const img *photo, const img *mask, surface *maps, img *indirect);
 

@@ -4,12 +4,6 @@
 #include "estimate/api.h"
 #include "image/resize.h"
 
-static void clip(float *x, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        x[i] = x[i] > 0 ? (x[i] < 1 ? x[i] : 1) : 0;
-}
-
 static size_t value_count(const img *image)
 {
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
@@ -42,45 +36,43 @@ static status crop_surface(const merlin_maps *maps, surface *out)
     return s;
 }
 
-static status surface_at(const surface *from, int side, surface *out)
+static status surface_at(const surface *from, int side, bool hard, surface *out)
 {
     img mask = {0};
     status s = img_resize(&from->mask, side, side, &mask);
-    if (s == OK) {
-        clip(mask.data, value_count(&mask));
-        s = surface_resize(from, &mask, out);
-    }
+    if (s == OK && hard) harden_mask(NULL, &mask);
+    if (s == OK) s = surface_resize(from, &mask, out);
     img_free(&mask);
     return s;
 }
 
 /* The photograph as the network saw it. */
-static status take_low_photo(const merlin_maps *maps, img *out)
+static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
     img whole = img_of(&maps->photo), part = {0};
     status s = crop_take(&whole, crop_of(maps), &part);
     if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
     img_free(&part);
     if (s != OK) return s;
+    harden_mask(out, mask);
     for (size_t i = 0; i < value_count(out); i++)
         out->data[i] *= maps->gain;
-    clip(out->data, value_count(out));
     return OK;
 }
 
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
-    *out = (stage){.how = how};
+    *out = (stage){.how = how, .white = maps->gain};
     surface whole = {0};
     status s = crop_surface(maps, &whole);
-    if (s == OK) s = surface_at(&whole, maps->size, &out->low);
+    if (s == OK) s = surface_at(&whole, maps->size, true, &out->low);
     if (s == OK && side != 0 && side != maps->crop.side) {
-        s = surface_at(&whole, side, &out->full);
+        s = surface_at(&whole, side, false, &out->full);
         surface_free(&whole);
     } else {
         out->full = whole;
     }
-    if (s == OK && how == MERLIN_BY_NETWORK) s = take_low_photo(maps, &out->low_photo);
+    if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
     if (s != OK) stage_free(out);
     return s;
 }
@@ -104,7 +96,7 @@ static status light_by_network(network *n, const stage *s, vec3 light, img *full
     return result;
 }
 
-/* The network's bounces 2 and up for `low`, resized and added to `full`; everything clipped. */
+/* The network's bounces 2 and up for `low`, resized and added to `full`. */
 static status add_indirect(network *n, const stage *s, const img *low, img *full)
 {
     img indirect = {0}, large = {0};
@@ -112,14 +104,18 @@ static status add_indirect(network *n, const stage *s, const img *low, img *full
     if (result == OK) result = surface_resize_image(&indirect, &s->low.mask, full->width, full->height, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
-        clip(full->data, value_count(full));
         for (size_t i = 0; i < value_count(full); i++)
             full->data[i] += large.data[i];
-        clip(full->data, value_count(full));
     }
     img_free(&indirect);
     img_free(&large);
     return result;
+}
+
+static void expose(img *radiance, float white)
+{
+    for (size_t i = 0; i < value_count(radiance); i++)
+        radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
 }
 
 status stage_relight(network *n, const stage *s, vec3 light, img *out)
@@ -129,6 +125,7 @@ status stage_relight(network *n, const stage *s, vec3 light, img *out)
     status result =
         s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, out, &low) : light_by_brdf(s, light, out, &low);
     if (result == OK) result = add_indirect(n, s, &low, out);
+    if (result == OK) expose(out, s->white);
     img_free(&low);
     if (result != OK) img_free(out);
     return result;

@@ -61,8 +61,7 @@ static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
     size_t count = (size_t)maps->mask.width * (size_t)maps->mask.height;
     for (size_t i = 0; i < 3 * count; i++) {
         if (maps->mask.data[i / 3] < 0.5f) continue;
-        /* in the exposure the network worked in, clipped as it was */
-        double seen = fmin(maps->photo.data[i] * maps->gain, 1), made = maps->reconstruction.data[i] * maps->gain;
+        double seen = fmin(maps->photo.data[i], 1), made = maps->reconstruction.data[i];
         add(&r, (seen - made) * (seen - made));
     }
     cJSON_AddNumberToObject(root, "reconstruction_rmse", sqrt(mean(&r)));

@@ -75,6 +75,16 @@ void surface_tidy(surface *s)
     parallel_blocks((size_t)s->mask.width * (size_t)s->mask.height, tidy_pixels, s);
 }
 
+void harden_mask(img *image, img *mask)
+{
+    size_t count = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < count; i++) {
+        mask->data[i] = mask->data[i] > 0.5f;
+        for (size_t c = 3 * i; image && c < 3 * i + 3; c++)
+            image->data[c] = mask->data[i] > 0 && image->data[c] > 0 ? image->data[c] : 0;
+    }
+}
+
 status surface_resize_image(const img *from, const img *mask, int width, int height, img *out)
 {
     if (from->width == width && from->height == height) return img_copy(out, from);

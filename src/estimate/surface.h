@@ -29,6 +29,10 @@ void surface_free(surface *s);
  * toward the camera, non-finite values replaced, everything outside the mask zeroed. */
 void surface_tidy(surface *s);
 
+/* What the network is given: a mask that is 0 or 1, and an image (3 channels, may be NULL) that is zero outside it and
+ * not negative inside. */
+void harden_mask(img *image, img *mask);
+
 /* To another square size, averaging or interpolating the object's own pixels only. mask: the new size's. */
 status surface_resize(const surface *from, const img *mask, surface *out);
 

@@ -1,35 +1,4 @@
-# What the command-line tests share; sourced. MERLIN is the program, MERLIN_SOURCE_DIR the source tree.
-set -uo pipefail
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-export MERLIN_MODEL=${MERLIN_MODEL:-$MERLIN_SOURCE_DIR/models/merlin-point.safetensors}
-failures=0
-
-complain() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# succeeds WORDS...: exit code 0 and nothing on stderr.
-succeeds() {
-    "$@" >out 2>err
-    local code=$?
-    [ $code -eq 0 ] || complain "exit code $code of: $*: $(cat err)"
-    [ -s err ] && complain "unexpected words from: $*: $(cat err)"
-}
-
-# refuses CODE PATTERN WORDS...: that exit code and exactly one line on stderr, which has the pattern in it.
-refuses() {
-    local wanted=$1 pattern=$2
-    shift 2
-    "$@" >out 2>err
-    local code=$? lines
-    lines=$(wc -l <err)
-    [ $code -eq "$wanted" ] || complain "exit code $code instead of $wanted of: $*: $(cat err)"
-    [ "$lines" -eq 1 ] || complain "$lines lines instead of 1 from: $*: $(cat err)"
-    grep -qiE -- "$pattern" err || complain "no \"$pattern\" in: $(cat err) (from: $*)"
-}
+# For the scripts about photographs, beside check.bash: input made from nothing, and what must or must not lie in a folder.
 
 # absent PATH...: nothing may be there.
 absent() {
@@ -50,7 +19,7 @@ radiance() {
             if (((2 * x - side) ** 2 + (2 * y - side) ** 2 < 4 * radius ** 2)); then
                 row+='\240\200\140\200'
             else
-                row+='\001\001\001\170'
+                row+='\003\003\003\170'
             fi
         done
         printf "$row" >>"$file"
@@ -74,9 +43,4 @@ openexr() {
     done
     for ((y = 0; y < 48; y++)); do line+=$value; done
     for ((y = 0; y < 16; y++)); do printf "$(printf '\\x%02x' $y)"'\0\0\0\300\0\0\0'"$line" >>"$file"; done
-}
-
-finish() {
-    [ $failures -eq 0 ] && echo "all as expected"
-    exit $((failures > 0))
 }
