@@ -46,8 +46,10 @@ static void begin(void *p)
 static void end(void *p)
 {
 #ifdef __SSE__
-    const dnn_context *context = p;
-    _mm_setcsr(context->control);
+    /* all threads, not this one alone: what others compute between runs must not depend on which thread does it */
+    unsigned control = ((const dnn_context *)p)->control;
+#pragma omp parallel
+    _mm_setcsr(control);
 #else
     (void)p;
 #endif
