@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo test asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install test asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -23,6 +23,12 @@ demo: build
 	@echo "maps, reconstruction and report: $(OUT)/"
 	@echo "the light going round:           $(OUT)/orbit/orbit.webp"
 	@echo "overview:                        $(OUT)/overview.png"
+
+# The command, libmerlin.so, its header, the weights and the manual, under PREFIX.
+PREFIX = /usr/local
+install: build
+	cmake --build --preset release --target libmerlin
+	cmake --install build/release --prefix $(PREFIX)
 
 test: setup-test
 	cmake --preset release -DBUILD_TESTING=ON

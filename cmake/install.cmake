@@ -1,0 +1,23 @@
+# libmerlin.so with the functions of include/merlin and nothing else, and what make install puts where.
+include(GNUInstallDirs)
+
+add_library(libmerlin SHARED $<TARGET_OBJECTS:merlin_estimate>)
+target_link_libraries(libmerlin PRIVATE merlin_estimate)
+set_target_properties(libmerlin PROPERTIES OUTPUT_NAME merlin VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+  LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/libmerlin.map)
+target_link_options(libmerlin PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/libmerlin.map)
+if(NOT MERLIN_SANITIZE AND NOT MERLIN_FUZZ)
+  target_link_options(libmerlin PRIVATE -Wl,--no-undefined)
+endif()
+
+add_executable(relight_photo EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/examples/relight_photo.c)
+target_include_directories(relight_photo PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_link_libraries(relight_photo PRIVATE libmerlin)
+
+configure_file(${PROJECT_SOURCE_DIR}/cmake/merlin.pc.in merlin.pc @ONLY)
+install(TARGETS merlin libmerlin)
+install(DIRECTORY include/merlin TYPE INCLUDE)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/merlin)
+install(FILES man/merlin.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES completions/merlin.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME merlin)
