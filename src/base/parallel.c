@@ -5,7 +5,8 @@
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context)
 {
 #pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < count; i++) body(context, i);
+    for (size_t i = 0; i < count; i++)
+        body(context, i);
 }
 
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context)

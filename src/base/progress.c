@@ -44,7 +44,8 @@ static void show(progress *p, const char *note)
         enum { WIDTH = 28 };
         char bar[WIDTH + 1];
         size_t filled = p->total ? p->done * WIDTH / p->total : WIDTH;
-        for (size_t i = 0; i < WIDTH; i++) bar[i] = i < filled ? '#' : '.';
+        for (size_t i = 0; i < WIDTH; i++)
+            bar[i] = i < filled ? '#' : '.';
         bar[WIDTH] = 0;
         fprintf(stderr, "\r%s [%s] %zu/%zu  %.3g %s/s  %s left  %s\033[K", p->label, bar, p->done, p->total, rate,
                 p->unit, left, extra);

@@ -7,7 +7,8 @@
 
 typedef struct progress {
     const char *label, *unit;
-    size_t done, total, first; /* first: what was already done when the work began, so that a resumed run's rate is right */
+    size_t done, total;
+    size_t first; /* what was already done when the work began, so that a resumed run's rate is right */
     double started, shown;
     bool quiet, terminal;
 } progress;

@@ -4,6 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+/* the analysis' view of them, where it is in force */
+#undef fail
+#undef fail_in
+
 enum { MESSAGE_SIZE = 1024 };
 
 static _Thread_local char message[MESSAGE_SIZE];

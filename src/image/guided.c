@@ -128,7 +128,7 @@ static void invert(const double m[PAIRS], double out[PAIRS])
 /* a and b of one window from its sums (He et al. 2013, eq. 14 and 15), into out's PER_CHANNEL values a channel. */
 static void solve_window(const float *sums, int channels, double epsilon, float *out)
 {
-    double w = sums[AT_WEIGHT], mean[GUIDE], covariance[PAIRS], inverse[PAIRS];
+    double w = sums[AT_WEIGHT], mean[GUIDE], covariance[PAIRS] = {0}, inverse[PAIRS];
     for (int a = 0; a < GUIDE; a++)
         mean[a] = sums[AT_GUIDE + a] / w;
     for (int a = 0, k = 0; a < GUIDE; a++)

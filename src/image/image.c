@@ -13,9 +13,11 @@ status img_new(img *out, int width, int height, int channels)
     if (__builtin_mul_overflow((size_t)width * (size_t)height, (size_t)channels, &count) ||
         __builtin_mul_overflow(count, sizeof(float), &bytes) || bytes > PTRDIFF_MAX)
         return fail(ERROR_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
-    float *data = calloc(count, sizeof(float));
-    if (!data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
-    *out = (img){width, height, channels, data};
+    out->data = calloc(count, sizeof(float));
+    if (!out->data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
+    out->width = width;
+    out->height = height;
+    out->channels = channels;
     return OK;
 }
 

@@ -130,11 +130,12 @@ static vec3 path_direction(const vec3 *path, int count, int i)
 void mesh_add_tube(scn_mesh *mesh, const vec3 *path, const float *radius, int count, int segments, float aspect,
                    uint8_t part)
 {
-    uint32_t *rings = malloc(2 * (size_t)segments * sizeof *rings), *ring = rings, *last = rings + segments;
+    uint32_t *rings = malloc(2 * (size_t)segments * sizeof *rings), *ring = rings;
     if (!rings) {
         mesh->failed = true;
         return;
     }
+    uint32_t *last = rings + segments;
     vec3 direction = path_direction(path, count, 0);
     vec3 helper = fabsf(direction.z) < 0.9f ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
     vec3 side = vec3_normalize(vec3_cross(direction, helper));

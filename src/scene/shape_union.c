@@ -12,7 +12,7 @@ typedef struct rounded_box {
 static vec3 map_rounded_box(const void *context, vec3 cube)
 {
     const rounded_box *box = context;
-    const real *half = &box->half.x, *at = &cube.x;
+    const real half[3] = {box->half.x, box->half.y, box->half.z}, at[3] = {cube.x, cube.y, cube.z};
     float inner[3], direction[3], length = 0;
     for (int k = 0; k < 3; k++) {
         float flat = min_of(1, fabsf(at[k]) / 0.75f), edge = max_of(0, (fabsf(at[k]) - 0.75f) / 0.25f);

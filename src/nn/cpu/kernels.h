@@ -3,8 +3,8 @@
  *
  * Every forward writes all of y. Every backward writes dx, or adds to it if `accumulate` says that another use of x has
  * already written its gradient there. Tensors are float32 or bfloat16 (computed in float32); x, y and their gradients
- * share a type unless said otherwise. Sizes must fit (the compiler of the graph has checked them). Results do not depend
- * on the number of threads. */
+ * share a type unless said otherwise. Sizes must fit (the compiler of the graph has checked them). Results do not
+ * depend on the number of threads. */
 #ifndef MERLIN_NN_CPU_KERNELS_H
 #define MERLIN_NN_CPU_KERNELS_H
 
