@@ -325,13 +325,17 @@ nn_node *nn_gate(nn_graph *g, nn_node *x, nn_node *gate)
     return matches(node, gate, false) ? node : NULL;
 }
 
-nn_node *nn_scale_shift(nn_graph *g, nn_node *x, float scale, float shift)
+static nn_node *affine(nn_node *node, float scale, float shift)
 {
-    nn_node *node = append1(g, OP_SCALE_SHIFT, x);
     if (!node) return NULL;
     node->at.scale = scale;
     node->at.shift = shift;
     return node;
+}
+
+nn_node *nn_scale_shift(nn_graph *g, nn_node *x, float scale, float shift)
+{
+    return affine(append1(g, OP_SCALE_SHIFT, x), scale, shift);
 }
 
 nn_node *nn_upsample_nearest(nn_graph *g, nn_node *x)
@@ -399,11 +403,7 @@ nn_node *nn_normalize(nn_graph *g, nn_node *x)
 
 nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift)
 {
-    nn_node *node = append1(g, OP_RECIPROCAL, x);
-    if (!node) return NULL;
-    node->at.scale = scale;
-    node->at.shift = shift;
-    return node;
+    return affine(append1(g, OP_RECIPROCAL, x), scale, shift);
 }
 
 nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float light_power)
