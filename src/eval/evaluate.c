@@ -309,9 +309,9 @@ status eval_run(const eval_options *options, eval_report *out)
     status s = file_list(options->data, (const char *const[]){".exr", NULL}, &names, &count);
     if (s != OK) return s;
     if (!count) s = fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin render", options->data);
-    if (options->count && options->count < count) count = options->count;
+    size_t used = options->count && options->count < count ? options->count : count;
     if (s == OK) s = begin(&e, names[0]);
-    if (s == OK) s = evaluate_files(&e, names, count);
+    if (s == OK) s = evaluate_files(&e, names, used);
     if (s == OK && e.sheet) s = eval_sheet_write(e.sheet, options->figure);
     out->seconds = clock_seconds() - started;
     eval_sheet_free(e.sheet);
