@@ -109,7 +109,7 @@ static status refine(work *w, float gain)
     status s = surface_refine(&w->low, &w->crop_photo, &w->crop_mask, &w->full);
     if (s == OK) s = surface_shade(&w->full, vec3_make(0, 0, 0), &w->reconstruction);
     img indirect = {0};
-    if (s == OK) s = surface_resize_image(&w->low_indirect, &w->low.mask, w->crop.side, w->crop.side, &indirect);
+    if (s == OK) s = surface_resize_indirect(&w->low_indirect, &w->low.mask, w->crop.side, w->crop.side, &indirect);
     if (s != OK) return s;
     size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
     for (size_t i = 0; i < count; i++) {

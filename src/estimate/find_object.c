@@ -143,7 +143,7 @@ static void barrier_scan(barrier *b, bool backward)
 /* probability = the barriers of all channels, seeds (in object) having none. */
 static status measure_barriers(search *s)
 {
-    float *memory = malloc(3 * s->count * sizeof *memory);
+    float *memory = calloc(s->count, 3 * sizeof *memory);
     if (!memory) return fail(ERROR_MEMORY, "no memory to look for the object");
     memset(s->probability.data, 0, s->count * sizeof(float));
     for (int c = 0; c < 3; c++) {

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "estimate/smooth.h"
+
 typedef struct compiled {
     nn_graph *graph;
     nn_program *program;
@@ -145,6 +147,10 @@ static status take_maps(nn_program *p, const img *mask, surface *maps)
     if (s == OK) s = take(p, "normal", size, 3, 1, 0, &maps->normal);
     if (s == OK) s = take(p, "roughness", size, 1, 0.5f, 0.5f, &maps->roughness);
     if (s == OK) s = take(p, "depth", size, 1, 1, 0, &maps->depth);
+    /* albedo has edges of one pixel, which the photograph restores (surface_refine), shape has none so sharp */
+    if (s == OK) s = smooth_inside(&maps->normal, mask);
+    if (s == OK) s = smooth_inside(&maps->roughness, mask);
+    if (s == OK) s = smooth_inside(&maps->depth, mask);
     if (s == OK) surface_tidy(maps);
     return s;
 }

@@ -101,7 +101,7 @@ static status add_indirect(network *n, const stage *s, const img *low, img *full
 {
     img indirect = {0}, large = {0};
     status result = network_indirect(n, &s->low, low, &indirect);
-    if (result == OK) result = surface_resize_image(&indirect, &s->low.mask, full->width, full->height, &large);
+    if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, full->width, full->height, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
         for (size_t i = 0; i < value_count(full); i++)

@@ -96,6 +96,18 @@ status surface_resize_image(const img *from, const img *mask, int width, int hei
     return s;
 }
 
+status surface_resize_indirect(const img *from, const img *mask, int width, int height, img *out)
+{
+    img filled = {0}, half = {0};
+    status s = img_copy(&filled, from);
+    if (s == OK) s = fill_outside(&filled, mask);
+    if (s == OK) s = img_resize(&filled, from->width / 2, from->height / 2, &half);
+    if (s == OK) s = img_resize(&half, width, height, out);
+    img_free(&filled);
+    img_free(&half);
+    return s;
+}
+
 status surface_resize(const surface *from, const img *mask, surface *out)
 {
     *out = (surface){0};
@@ -141,19 +153,17 @@ static status encode_guide(const img *linear, img *out)
 
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out)
 {
-    /* colour follows the photograph closely; shape follows it only where the edge is strong, or print on a flat side
-     * would become relief */
-    const float colour_epsilon = 1e-4f, shape_epsilon = 1e-2f;
-    if (guide->width <= from->mask.width) return surface_resize(from, mask, out);
+    const float albedo_epsilon = 1e-4f, roughness_epsilon = 1e-2f;
+    if (guide->width < from->mask.width) return surface_resize(from, mask, out);
     *out = (surface){0};
     img encoded = {0};
     refinement r = {&from->mask, &encoded, mask};
     status s = encode_guide(guide, &encoded);
     if (s == OK) s = img_copy(&out->mask, mask);
-    if (s == OK) s = refine(&r, &from->albedo, colour_epsilon, &out->albedo);
-    if (s == OK) s = refine(&r, &from->normal, shape_epsilon, &out->normal);
-    if (s == OK) s = refine(&r, &from->roughness, shape_epsilon, &out->roughness);
-    if (s == OK) s = refine(&r, &from->depth, shape_epsilon, &out->depth);
+    if (s == OK) s = refine(&r, &from->albedo, albedo_epsilon, &out->albedo);
+    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask->width, mask->height, &out->normal);
+    if (s == OK) s = refine(&r, &from->roughness, roughness_epsilon, &out->roughness);
+    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, mask->width, mask->height, &out->depth);
     img_free(&encoded);
     if (s != OK)
         surface_free(out);

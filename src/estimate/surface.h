@@ -36,12 +36,16 @@ void harden_mask(img *image, img *mask);
 /* To another square size, averaging or interpolating the object's own pixels only. mask: the new size's. */
 status surface_resize(const surface *from, const img *mask, surface *out);
 
-/* The same with edges that follow a guide (3 channels, linear, mask's size). For a guide no larger than the surface
- * this is surface_resize. */
+/* The same with albedo and roughness edges that follow a guide (3 channels, linear, mask's size); shape does not, or
+ * print on a flat side would become relief. For a guide smaller than the surface this is surface_resize. */
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out);
 
 /* Radiance under a point light of the training data's power at `light`, before clipping, times coverage; no shadows. */
 status surface_shade(const surface *s, vec3 light, img *out);
+
+/* Light of bounces 2 and up from the network's size to another: smooth by nature, so that the pattern of the network's
+ * last layer, two pixels wide, is averaged away. */
+status surface_resize_indirect(const img *from, const img *mask, int width, int height, img *out);
 
 /* Any image that belongs to a surface, resized without letting its outside in: values where mask < 0.5 are replaced by
  * their neighbours' first. */

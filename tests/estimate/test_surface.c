@@ -1,6 +1,7 @@
 #include "estimate/crop.h"
 #include "estimate/exposure.h"
 #include "estimate/fill.h"
+#include "estimate/smooth.h"
 #include "estimate/surface.h"
 #include "optics/light.h"
 
@@ -92,6 +93,23 @@ static void filling_without_any_inside_gives_zeros(void **state)
     assert_int_equal(fill_outside(&image, &mask), OK);
     for (int i = 0; i < 60; i++)
         assert_true(image.data[i] == 0);
+    img_free(&image);
+    img_free(&mask);
+}
+
+static void smoothing_removes_a_pattern_of_two_pixels_and_keeps_a_slope(void **state)
+{
+    (void)state;
+    img image, mask;
+    assert_int_equal(img_new(&image, 16, 16, 1), OK);
+    assert_int_equal(img_new(&mask, 16, 16, 1), OK);
+    box(&mask, 0, 0, 16, 16);
+    for (int i = 0; i < 256; i++)
+        image.data[i] = (float)(i % 16) + ((i ^ i >> 4) & 1 ? 0.5f : -0.5f);
+    assert_int_equal(smooth_inside(&image, &mask), OK);
+    for (int y = 1; y < 15; y++)
+        for (int x = 1; x < 15; x++)
+            assert_float_equal(*img_at(&image, x, y), x, 1e-5); /* a few roundings */
     img_free(&image);
     img_free(&mask);
 }
@@ -241,6 +259,7 @@ int main(void)
         cmocka_unit_test(a_crop_put_back_lands_where_it_came_from),
         cmocka_unit_test(filling_keeps_the_inside_and_continues_it),
         cmocka_unit_test(filling_without_any_inside_gives_zeros),
+        cmocka_unit_test(smoothing_removes_a_pattern_of_two_pixels_and_keeps_a_slope),
         cmocka_unit_test(tidy_surfaces_keep_their_promises_whatever_came_in),
         cmocka_unit_test(the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance),
         cmocka_unit_test(a_light_on_the_left_brightens_the_left),

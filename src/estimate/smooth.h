@@ -1,0 +1,13 @@
+/* What the network's last layer leaves behind.
+ *
+ * It makes four pixels from one, each by weights of its own, so that a faint pattern of two pixels' period lies over
+ * its answer. The binomial filter (1 2 1)/4 has its zero exactly there, and hardly touches anything coarser. */
+#ifndef MERLIN_ESTIMATE_SMOOTH_H
+#define MERLIN_ESTIMATE_SMOOTH_H
+
+#include "image/image.h"
+
+/* Filters an image in both directions; values where mask < 0.5 do not leak in. */
+status smooth_inside(img *image, const img *mask);
+
+#endif
