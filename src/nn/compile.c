@@ -31,6 +31,7 @@ static status fill_step(compilation *c, int index)
                       .at = head->node->at,
                       .compute = c->low.options.type,
                       .train = train,
+                      .momentum = NN_NORM_MOMENTUM,
                       .relu = from->relu,
                       .inputs = head->node->inputs,
                       .out = result->tensor,

@@ -28,6 +28,7 @@ struct nn_step {
     nn_type compute;  /* the type convolutions run in */
     bool train, relu; /* relu: applied to the result */
     bool backs;       /* has a backward pass */
+    float momentum;   /* of batch norm's running statistics */
     int inputs;
     nn_tensor in[NN_MAX_INPUTS], out;
     nn_tensor in_gradient[NN_MAX_INPUTS], out_gradient; /* data NULL: none is wanted */

@@ -54,8 +54,8 @@ nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kerne
 nn_node *nn_conv_transpose2d(nn_graph *g, nn_node *x, const char *name, int out, nn_bias bias);
 /* On vectors (1×1): `name.weight` out × in, `name.bias`. */
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out);
-/* Per channel over N, H, W; eps 1e-5, running statistics with momentum 0.1 (Ioffe & Szegedy 2015). `name.weight`,
- * `name.bias`, `name.running_mean`, `name.running_var`. */
+/* Per channel over N, H, W (Ioffe & Szegedy 2015); eps 1e-5, running statistics as nn_set_norm_momentum says.
+ * `name.weight`, `name.bias`, `name.running_mean`, `name.running_var`. */
 nn_node *nn_batch_norm(nn_graph *g, nn_node *x, const char *name);
 nn_node *nn_relu(nn_graph *g, nn_node *x);
 nn_node *nn_tanh(nn_graph *g, nn_node *x);
@@ -149,6 +149,10 @@ status nn_forward(nn_program *p);
 /* Gradients of the weighted sum of all losses into the parameters, zeroed first. Once after each nn_forward,
  * NN_TRAIN only. */
 status nn_backward(nn_program *p);
+/* How far a training program's batch norms move their running statistics toward a batch's: NN_NORM_MOMENTUM unless set,
+ * in (0, 1]. 1, 1/2, 1/3, … over as many batches gives their plain mean. */
+#define NN_NORM_MOMENTUM 0.1f
+void nn_set_norm_momentum(nn_program *p, float momentum);
 /* After nn_forward: a loss's unweighted value; NAN for an unknown name. */
 float nn_loss(const nn_program *p, const char *name);
 float nn_total_loss(const nn_program *p);

@@ -123,6 +123,12 @@ float nn_loss(const nn_program *p, const char *name)
     return NAN;
 }
 
+void nn_set_norm_momentum(nn_program *p, float momentum)
+{
+    for (int i = 0; i < p->step_count; i++)
+        p->steps[i].momentum = momentum;
+}
+
 float nn_total_loss(const nn_program *p)
 {
     double total = 0;

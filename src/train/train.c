@@ -186,10 +186,29 @@ static trn_curve_row row_of(const run *r)
                                                  (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
 }
 
+/* Batch norm's running statistics as the mean over many batches with the weights as they are ("precise BN", Wu and
+ * Johnson 2021). The moving ones see ten batches, too few for the coarsest level, where a handful of pixels decides
+ * about the depth of the whole object. The batches are those that come next. */
+static status settle_statistics(run *r)
+{
+    enum { SETTLING_BATCHES = 64 };
+    uint64_t first = (uint64_t)presented(r);
+    status s = OK;
+    for (int i = 0; s == OK && i < SETTLING_BATCHES; i++) {
+        nn_set_norm_momentum(r->program, 1.0f / (float)(i + 1));
+        s = trn_feed_training(r->feed, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
+        if (s == OK) s = nn_forward(r->program);
+    }
+    nn_set_norm_momentum(r->program, NN_NORM_MOMENTUM);
+    nn_params_touch(r->params);
+    return s;
+}
+
 static status validate(run *r)
 {
     trn_losses losses = {0};
-    nn_params_touch(r->params); /* running statistics have moved since the last validation */
+    status settled = settle_statistics(r);
+    if (settled != OK) return settled;
     for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
         status s = trn_feed_validation(r->judge_feed, (size_t)first);
         if (s == OK) s = nn_forward(r->judge);

@@ -10,7 +10,7 @@ static const char *reason(dnnl_status_t code)
     case dnnl_invalid_arguments:
         return "invalid arguments";
     case dnnl_unimplemented:
-        return "not implemented for these types and sizes";
+        return "not available for these types and sizes";
     default:
         return "runtime error";
     }

@@ -8,7 +8,6 @@
 #include "nn/tensor.h"
 
 #define NORM_EPSILON 1e-5f
-#define NORM_MOMENTUM 0.1f
 
 /* Floats of workspace for a channel count. */
 size_t norm_partial_floats(int channels);

@@ -28,8 +28,8 @@ static void update_running(const nn_step *step)
     float unbiased = count > 1 ? (float)(count / (count - 1)) : 1;
     float *mean = step->params.running_mean->value, *variance = step->params.running_var->value;
     for (int i = 0; i < step->out.c; i++) {
-        mean[i] += NORM_MOMENTUM * (state->mean[i] - mean[i]);
-        variance[i] += NORM_MOMENTUM * (unbiased * state->variance[i] - variance[i]);
+        mean[i] += step->momentum * (state->mean[i] - mean[i]);
+        variance[i] += step->momentum * (unbiased * state->variance[i] - variance[i]);
     }
 }
 
