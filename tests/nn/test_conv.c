@@ -305,6 +305,32 @@ static void running_statistics_follow_the_batch(void **state)
     close_fixture(&f);
 }
 
+static void running_statistics_can_be_the_mean_over_batches(void **state)
+{
+    (void)state;
+    static fixture f;
+    open_fixture(&f, NN_FLOAT32, NN_TRAIN);
+    float *mean = nn_params_find(f.params, "an.running_mean")->value, *input = nn_input_data(f.program, "x");
+    size_t count = sizeof f.input / sizeof(float);
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        nn_set_norm_momentum(f.program, 1);
+        assert_int_equal(nn_forward(f.program), OK);
+        sum += (double)mean[2];
+        for (size_t k = 0; k < count; k++)
+            input[k] += 0.25f * (float)(k % 3);
+    }
+    memcpy(input, f.input, sizeof f.input);
+    for (int i = 0; i < 3; i++) {
+        nn_set_norm_momentum(f.program, 1.0f / (float)(i + 1));
+        assert_int_equal(nn_forward(f.program), OK);
+        for (size_t k = 0; k < count; k++)
+            input[k] += 0.25f * (float)(k % 3);
+    }
+    assert_float_equal(mean[2], sum / 3, 1e-6); /* rounding of three float sums */
+    close_fixture(&f);
+}
+
 static void touched_parameters_are_picked_up(void **state)
 {
     (void)state;
@@ -328,6 +354,7 @@ int main(void)
         cmocka_unit_test(folded_batch_norm_matches_the_definition),
         cmocka_unit_test(gradients_match_central_differences),
         cmocka_unit_test(running_statistics_follow_the_batch),
+        cmocka_unit_test(running_statistics_can_be_the_mean_over_batches),
         cmocka_unit_test(touched_parameters_are_picked_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
