@@ -140,15 +140,18 @@ static status choose_output(photo_list *list, size_t i, const char *folder)
 {
     photo_job *job = &list->at[i];
     for (int number = 1; number < 10000; number++) {
-        char suffix[32] = "", *name = NULL;
-        if (number > 1) snprintf(suffix, sizeof suffix, "-%d", number);
+        const char *ending = folder ? "" : ".merlin";
+        char suffix[32], *name = NULL;
+        if (number > 1)
+            snprintf(suffix, sizeof suffix, "-%d%s", number, ending);
+        else
+            snprintf(suffix, sizeof suffix, "%s", ending);
         if (folder) {
             const char *photo = base_name(job->photo);
             char *last = format_name(photo, stem_length(photo), suffix);
             name = last ? file_join(folder, last) : NULL;
             free(last);
         } else {
-            strcat(suffix, ".merlin");
             name = format_name(job->photo, stem_length(job->photo), suffix);
         }
         if (!name) return no_memory();

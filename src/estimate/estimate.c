@@ -1,6 +1,7 @@
 /* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
+#include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/progress.h"
 #include "estimate/api.h"
@@ -73,6 +74,7 @@ static status choose_mask(work *w, const merlin_image *given, merlin_maps *maps)
 static void multiply_mask(img *image, const img *mask)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
+    assert(mask->data);
     for (size_t i = 0; i < count; i++)
         for (int c = 0; c < image->channels; c++)
             image->data[(size_t)image->channels * i + (size_t)c] *= mask->data[i];
@@ -172,7 +174,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     merlin_params defaults = merlin_params_default();
     work w = {.params = params ? params : &defaults, .photo = img_of(photo)};
     maps->size = w.params->size;
-    strcpy(maps->model, network_config(model->network)->name);
+    snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
     status s = estimate(model, &w, mask, maps);
     work_free(&w);
     if (s != OK) merlin_maps_free(maps);

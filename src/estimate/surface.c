@@ -188,12 +188,13 @@ static void shade_rows(void *context, size_t begin, size_t end)
         float coverage = s->mask.data[i];
         if (!(coverage > 0)) continue;
         const float *a = s->albedo.data + 3 * i, *n = s->normal.data + 3 * i;
+        size_t x = i % width, y = i / width;
         shade_input in = {
             .albedo = vec3_make(a[0], a[1], a[2]),
             .roughness = s->roughness.data[i],
             .normal = vec3_make(n[0], n[1], n[2]),
             .depth = s->depth.data[i],
-            .ray = camera_point(&job->view, (float)(i % width) + 0.5f, (float)(i / width) + 0.5f, 1),
+            .ray = camera_point(&job->view, (float)x + 0.5f, (float)y + 0.5f, 1),
             .light = job->light,
             .power = LIGHT_POWER,
         };

@@ -38,8 +38,9 @@ static int cast_pixel(renderer *r, const pixel *p, vec3 *direction, trace_hit *h
 {
     int n = r->settings->strata, cells = n * n, met = 0;
     for (int i = 0; i < cells; i++) {
-        float dx = ((float)(i % n) + rng_uniform(&r->jitter)) / (float)n;
-        float dy = ((float)(i / n) + rng_uniform(&r->jitter)) / (float)n;
+        int column = i % n, row = i / n;
+        float dx = ((float)column + rng_uniform(&r->jitter)) / (float)n;
+        float dy = ((float)row + rng_uniform(&r->jitter)) / (float)n;
         direction[i] = camera_ray(&r->eye, (float)p->x + dx, (float)p->y + dy);
     }
     for (int i = 0; i < cells; i += TRACE_PACKET)
