@@ -100,6 +100,8 @@ void nn_masked_gradient_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn
 
 /* Fresh parameters for a graph: convolutions He 2015, gamma 1, beta 0, biases 0. Deterministic from seed. */
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out);
+/* The same with zeros where nn_params_new draws random numbers: for nn_params_load, which then starts sooner. */
+status nn_params_zero(const nn_graph *g, nn_params **out);
 void nn_params_free(nn_params *params);
 size_t nn_params_count(const nn_params *params);
 
@@ -153,6 +155,8 @@ status nn_backward(nn_program *p);
  * in (0, 1]. 1, 1/2, 1/3, … over as many batches gives their plain mean. */
 #define NN_NORM_MOMENTUM 0.1f
 void nn_set_norm_momentum(nn_program *p, float momentum);
+/* Replaces the weight that a loss was built with; an unknown name changes nothing. */
+void nn_set_loss_weight(nn_program *p, const char *name, float weight);
 /* After nn_forward: a loss's unweighted value; NAN for an unknown name. */
 float nn_loss(const nn_program *p, const char *name);
 float nn_total_loss(const nn_program *p);

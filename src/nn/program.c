@@ -129,6 +129,12 @@ void nn_set_norm_momentum(nn_program *p, float momentum)
         p->steps[i].momentum = momentum;
 }
 
+void nn_set_loss_weight(nn_program *p, const char *name, float weight)
+{
+    for (int i = 0; i < p->step_count; i++)
+        if (op_is_loss(p->steps[i].op) && strcmp(p->steps[i].name, name) == 0) p->steps[i].at.weight = weight;
+}
+
 float nn_total_loss(const nn_program *p)
 {
     double total = 0;

@@ -21,6 +21,7 @@ static status read_rates(json_object *o, train_config *c)
     if (s == OK) s = json_number(o, "beta1", 0, 0.9999, &c->beta1);
     if (s == OK) s = json_number(o, "beta2", 0, 0.999999, &c->beta2);
     if (s == OK) s = json_number(o, "clip_norm", 0, 1e6, &c->clip_norm);
+    if (s == OK) s = json_number(o, "depth_weight", 0, 1e4, &c->depth_weight);
     return s;
 }
 
@@ -100,10 +101,11 @@ char *train_config_write(const train_config *c)
         &text,
         "{\"size\": %d, \"batch\": %d, \"presentations\": %d, \"learning_rate\": %.9g, \"encoder_rate_scale\": %.9g, "
         "\"halve_every_epochs\": %.9g, \"warmup_steps\": %d, \"beta1\": %.9g, \"beta2\": %.9g, \"clip_norm\": %.9g, "
-        "\"type\": \"%s\", \"seed\": %d, \"exposure_jitter\": %.9g, \"colour_jitter\": %.9g, \"memory_gib\": %.9g, "
+        "\"depth_weight\": %.9g, \"type\": \"%s\", \"seed\": %d, \"exposure_jitter\": %.9g, \"colour_jitter\": %.9g, "
+        "\"memory_gib\": %.9g, "
         "\"validation_count\": %d, \"validation_steps\": %d, \"curve_steps\": %d, \"checkpoint_minutes\": %.9g}",
         c->size, c->batch, c->presentations, c->learning_rate, c->encoder_rate_scale, c->halve_every_epochs,
-        c->warmup_steps, c->beta1, c->beta2, c->clip_norm, type_words[c->type == NN_BFLOAT16], c->seed,
+        c->warmup_steps, c->beta1, c->beta2, c->clip_norm, c->depth_weight, type_words[c->type == NN_BFLOAT16], c->seed,
         c->exposure_jitter, c->colour_jitter, c->memory_gib, c->validation_count, c->validation_steps, c->curve_steps,
         c->checkpoint_minutes);
     return length < 0 ? NULL : text;

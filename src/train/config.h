@@ -13,7 +13,8 @@ typedef struct train_config {
     double halve_every_epochs; /* may be a fraction; 0: never */
     int warmup_steps;          /* the rate rises linearly over so many steps */
     double beta1, beta2, clip_norm;
-    nn_type type; /* "f32" or "bf16" */
+    double depth_weight; /* of the depth loss; the paper's is 1 */
+    nn_type type;        /* "f32" or "bf16" */
     int seed;
     double exposure_jitter; /* half-width of the uniform exposure error, natural logarithm */
     double colour_jitter;   /* the same, each channel on its own */

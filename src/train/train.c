@@ -109,9 +109,11 @@ static status build(run *r)
     s = nn_adam_new(r->params, &adam, &r->adam);
     if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
     if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
+    if (s == OK) nn_set_loss_weight(r->program, "depth", (float)c->depth_weight);
     if (s != OK || c->validation_count == 0) return s;
     options.purpose = NN_INFER;
     s = nn_compile(r->graph, r->params, &options, &r->judge);
+    if (s == OK) nn_set_loss_weight(r->judge, "depth", (float)c->depth_weight);
     return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
 }
 

@@ -45,7 +45,7 @@ make_tiny_model() {
            "gated_attention": true, "relight": "network", "global_illumination": true, "lighting": "point",
            "widths": [8, 8, 8, 8, 8], "gi_widths": [8, 8, 8, 8, 8]},
  "training": {"size": 64, "batch": 2, "presentations": 4, "learning_rate": 1e-3, "encoder_rate_scale": 0.5,
-              "halve_every_epochs": 5, "warmup_steps": 1, "beta1": 0.9, "beta2": 0.999, "clip_norm": 1.0,
+              "halve_every_epochs": 5, "warmup_steps": 1, "beta1": 0.9, "beta2": 0.999, "clip_norm": 1.0, "depth_weight": 1,
               "type": "f32", "seed": 1, "exposure_jitter": 0.1, "colour_jitter": 0.05, "memory_gib": 1,
               "validation_count": 2, "validation_steps": 0, "curve_steps": 1, "checkpoint_minutes": 5}}
 JSON
