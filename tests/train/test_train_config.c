@@ -81,7 +81,7 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("\"batch\": 16", "\"batch\": \"16\"", "batch");
     refuses("\"batch\": 16", "\"batch\": 15", "validation_count");
     refuses("\"batch\": 16", "\"batch\": 16, \"bacth\": 16", "bacth");
-    refuses("\"presentations\": 208000", "\"presentations\": 1e12", "presentations");
+    refuses("\"presentations\": 192000", "\"presentations\": 1e12", "presentations");
     refuses("\"bf16\"", "\"f16\"", "type");
     refuses("\"training\":", "\"trianing\":", "training");
     refuses("\"model\":", "\"extra\": {}, \"model\":", "extra");
