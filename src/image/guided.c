@@ -270,7 +270,7 @@ status img_guided_upsample(const img *low, const img *low_mask, const img *guide
     *out = (img){0};
     status s = check_sizes(low, low_mask, guide, mask, radius, epsilon);
     if (s != OK) return s;
-    float *mean = malloc((size_t)low->channels * sizeof *mean);
+    float *mean = calloc((size_t)low->channels, sizeof *mean);
     if (!mean) s = fail(ERROR_MEMORY, "no memory to filter an image");
     if (s == OK) s = shrink_guide(guide, mask, low->width, low->height, &small);
     if (s == OK) s = find_coefficients(low, low_mask, &small, radius, epsilon, &coefficients);
