@@ -240,7 +240,7 @@ status model_load(const char *weights, model_config *config, nn_params **params)
     nn_graph *g = NULL;
     nn_params *p = NULL;
     s = model_build(config, MODEL_WHOLE, &g);
-    if (s == OK) s = nn_params_new(g, 0, &p);
+    if (s == OK) s = nn_params_zero(g, &p);
     if (s == OK) s = nn_params_load(p, weights);
     nn_graph_free(g);
     if (s != OK) {

@@ -74,7 +74,8 @@ static float *new_floats(size_t count)
     return x;
 }
 
-static status add_param(nn_params *params, const param_spec *spec, uint64_t seed)
+/* seed NULL: zeros instead of random numbers. */
+static status add_param(nn_params *params, const param_spec *spec, const uint64_t *seed)
 {
     nn_param *p = &params->items[params->count++];
     *p = (nn_param){.rank = spec->rank, .count = 1, .learning_rate_scale = 1};
@@ -86,14 +87,15 @@ static status add_param(nn_params *params, const param_spec *spec, uint64_t seed
     if (spec->trained) p->gradient = new_floats(p->count);
     if (!p->name || !p->value || (spec->trained && !p->gradient))
         return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
-    rng random = rng_at(seed, hash_name(spec->name), 0);
+    if (!seed && spec->fan_in > 0) return OK;
+    rng random = rng_at(seed ? *seed : 0, hash_name(spec->name), 0);
     float deviation = spec->fan_in > 0 ? (float)sqrt(2 / spec->fan_in) : 0;
     for (size_t i = 0; i < p->count; i++)
         p->value[i] = spec->fan_in > 0 ? deviation * rng_normal(&random) : spec->constant;
     return OK;
 }
 
-status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
+static status make_params(const nn_graph *g, const uint64_t *seed, nn_params **out)
 {
     *out = NULL;
     status s = graph_check(g);
@@ -116,6 +118,16 @@ status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
     else
         nn_params_free(params);
     return s;
+}
+
+status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
+{
+    return make_params(g, &seed, out);
+}
+
+status nn_params_zero(const nn_graph *g, nn_params **out)
+{
+    return make_params(g, NULL, out);
 }
 
 void nn_params_free(nn_params *params)
