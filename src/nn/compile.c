@@ -245,8 +245,8 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
     if (s == OK) s = create_steps(c);
     if (s != OK) return s;
     /* a value and its gradient for each node, three for each step */
-    c->buffers = malloc(((size_t)g->count * 5 + 1) * sizeof *c->buffers);
-    c->step_buffers = malloc(((size_t)g->count * 3 + 1) * sizeof *c->step_buffers);
+    c->buffers = calloc((size_t)g->count * 5 + 1, sizeof *c->buffers);
+    c->step_buffers = calloc((size_t)g->count * 3 + 1, sizeof *c->step_buffers);
     if (!c->buffers || !c->step_buffers) return fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
     order_gradients(c);
     s = plan(c);
@@ -259,19 +259,20 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out)
 {
     *out = NULL;
-    compilation c = {.program = calloc(1, sizeof(nn_program))};
-    if (!c.program) return fail(ERROR_MEMORY, "no memory for a program");
-    c.program->device = cpu_device();
-    c.program->params = params;
-    c.program->options = *options;
-    c.program->options.type = c.program->device->usable_type(options->type);
-    status s = build(&c, g, &c.program->options);
+    nn_program *p = calloc(1, sizeof *p);
+    if (!p) return fail(ERROR_MEMORY, "no memory for a program");
+    p->device = cpu_device();
+    p->params = params;
+    p->options = *options;
+    p->options.type = p->device->usable_type(options->type);
+    compilation c = {.program = p};
+    status s = build(&c, g, &p->options);
     free(c.buffers);
     free(c.step_buffers);
     lowering_free(&c.low);
     if (s == OK)
-        *out = c.program;
+        *out = p;
     else
-        nn_program_free(c.program);
+        nn_program_free(p);
     return s;
 }

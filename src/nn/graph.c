@@ -103,7 +103,7 @@ static nn_node *append(nn_graph *g, nn_op op, nn_node *const *in, int inputs)
         if (!in[i]) return reject(g, "%s: input %d is NULL", op_name(op), i);
         if (in[i]->graph != g) return reject(g, "%s: input %d belongs to another graph", op_name(op), i);
     }
-    if (!reserve((void **)&g->nodes, g->count, &g->capacity, sizeof *g->nodes)) return out_of_memory(g);
+    if (!reserve((void **)&g->nodes, g->count, &g->capacity, sizeof g->nodes[0])) return out_of_memory(g);
     nn_node *node = calloc(1, sizeof *node);
     if (!node) return out_of_memory(g);
     node->graph = g;
@@ -204,7 +204,7 @@ nn_node *nn_float(nn_graph *g, nn_node *x)
 static nn_node *append_named(nn_graph *g, nn_op op, nn_node *x, const char *name, int channels)
 {
     nn_node *node = append1(g, op, x);
-    if (!node) return NULL;
+    if (!x || !node) return NULL;
     if (x->is_float) return reject(g, "%s \"%s\": convert the input with nn_compute first", op_name(op), name);
     if (channels < 1) return reject(g, "%s \"%s\": %d output channels", op_name(op), name, channels);
     node->channels = channels;

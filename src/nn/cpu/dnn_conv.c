@@ -165,7 +165,7 @@ static void conv_release(nn_step *step)
     conv *state = step->state;
     dnn_call *calls[] = {&state->forward, &state->data,         &state->weights,
                          &state->convert, &state->convert_back, &state->collect};
-    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
+    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
         dnn_release(calls[i]);
     free(state->folded_weight);
     free(state->folded_bias);

@@ -1,6 +1,8 @@
 /* Operations that look at one element at a time. */
 #include "nn/cpu/kernels.h"
 
+#include <assert.h>
+
 #include "nn/cpu/chunk.h"
 #include "nn/cpu/functions.h"
 
@@ -176,5 +178,6 @@ static void add(const float *a, const float *b, float *y, size_t count, affine k
 
 void cpu_add(const cpu_tensor *a, const cpu_tensor *b, cpu_tensor *y)
 {
+    assert(b);
     map(a, b, y, false, add, (affine){0});
 }
