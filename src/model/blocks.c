@@ -25,7 +25,7 @@ void block_encoder(nn_graph *g, nn_node *x, const char *name, const int *widths,
     nn_node *y = nn_space_to_depth(g, nn_compute(g, x), 2);
     features[0] = y = block_conv(g, y, join(buffer, name, "level0.a"), widths[0], 1);
     for (int i = 1; i < MODEL_LEVELS; i++) {
-        char level[16];
+        char level[32];
         snprintf(level, sizeof level, "level%d.a", i);
         y = block_conv(g, y, join(buffer, name, level), widths[i], 2);
         snprintf(level, sizeof level, "level%d.b", i);

@@ -103,7 +103,7 @@ static nn_node *append(nn_graph *g, nn_op op, nn_node *const *in, int inputs)
         if (!in[i]) return reject(g, "%s: input %d is NULL", op_name(op), i);
         if (in[i]->graph != g) return reject(g, "%s: input %d belongs to another graph", op_name(op), i);
     }
-    if (!reserve((void **)&g->nodes, g->count, &g->capacity, sizeof g->nodes[0])) return out_of_memory(g);
+    if (!reserve((void **)&g->nodes, g->count, &g->capacity, sizeof(nn_node *))) return out_of_memory(g);
     nn_node *node = calloc(1, sizeof *node);
     if (!node) return out_of_memory(g);
     node->graph = g;
