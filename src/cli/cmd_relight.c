@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
-#include "estimate/light_list.h"
+#include "base/light_list.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"

@@ -3,7 +3,7 @@
 #define MERLIN_CLI_RELIGHT_OUTPUT_H
 
 #include "base/status.h"
-#include "estimate/light_list.h"
+#include "base/light_list.h"
 #include "merlin/merlin.h"
 
 enum { RELIGHT_MOST_FRAMES = 240 };
