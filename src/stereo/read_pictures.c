@@ -127,14 +127,15 @@ static status read_first_shape(reading *r, pst_capture *c)
     int bits;
     status s = read_one(r, c->name[0], &first, &bits);
     if (s != OK) return s;
-    img whole = first;
-    img_free(&whole);
+    status fits = OK;
     if (c->width && (c->width != first.width || c->height != first.height))
-        return fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
+        fits = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
                     first.width, first.height, c->width, c->height);
     c->width = first.width;
     c->height = first.height;
     c->channels = first.channels;
+    img_free(&first);
+    if (fits != OK) return fits;
     return bits == 32 ? measure_scale(r, c) : OK;
 }
 
