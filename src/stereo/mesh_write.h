@@ -10,7 +10,11 @@ typedef struct pst_mesh_source {
     pst_camera camera;
 } pst_mesh_source;
 
-/* One vertex a pixel inside the mask; triangles that would bridge a depth jump are left out. Camera space. */
+/* ERROR_USAGE unless the name ends in .ply, .obj or .glb. */
+status pst_mesh_check_name(const char *path);
+
+/* One vertex a pixel inside the mask; triangles that would bridge a depth jump are left out. Camera space. Albedo is
+ * linear in [0, 1]. An OBJ brings NAME.mtl and, with albedo, NAME.png along. */
 status pst_mesh_write(const char *path, const pst_mesh_source *from);
 
 #endif
