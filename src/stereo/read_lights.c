@@ -73,6 +73,7 @@ static status names_from_list(const char *folder, const char *lights, const ligh
 static status set_lights(const char *path, const light_list *list, bool near, pst_capture *c)
 {
     c->lighting = near ? PST_NEAR : PST_DISTANT;
+    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
     for (size_t i = 0; i < list->count; i++) {
         vec3 at = list->at[i];
         if (near) {
