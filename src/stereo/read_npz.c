@@ -149,8 +149,8 @@ status npz_parse(const char *bytes, size_t size, const char *where, const char *
 {
     *out = (number_array){0};
     zip z = {(const unsigned char *)bytes, size, where};
-    member m;
-    unsigned char *npy;
+    member m = {0};
+    unsigned char *npy = NULL;
     status s = find_member(&z, name, &m);
     if (s == OK) s = unpack(&z, &m, &npy);
     if (s != OK) return s;
