@@ -183,31 +183,30 @@ static double spread(const double g[3], const lights3 *l, double *mean)
     return square / l->count - *mean * *mean;
 }
 
-/* x² + y² + (g·l)² = k is linear in g gᵀ/k and 1/k; g from the best rank one. */
+/* x² + y² + (g·l)² = k is lᵀ Q l = 1 with Q = (diag(1, 1, 0) + g gᵀ) / k, linear in the six numbers of Q; flat relief
+ * where no g of that form exists. */
 static status linear_relief(const lights3 *l, double g[3])
 {
     int n = l->count;
-    double *a = calloc((size_t)n * 8, sizeof *a), m[9], eigenvalue[3];
+    double *a = calloc((size_t)n * 7, sizeof *a);
     if (!a) return fail(ERROR_MEMORY, "no memory for %d lights", n);
-    double *right = a + 7 * n;
+    double *q = a + 6 * n; /* the right-hand side first, xx xy xz yy yz zz then */
     for (int k = 0; k < n; k++) {
         double x = l->x[k], y = l->y[k], z = l->z[k];
-        memcpy(a + 7 * k, &(double[7]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z, x * x + y * y},
-               7 * sizeof *a);
-        right[k] = 1;
+        memcpy(a + 6 * k, &(double[6]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z}, 6 * sizeof *a);
+        q[k] = 1;
     }
-    lapack_int info = LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n, 7, 1, a, 7, right, 1);
-    double *q = right;
-    memcpy(m, &(double[9]){q[0], q[1], q[2], q[1], q[3], q[4], q[2], q[4], q[5]}, sizeof m);
-    double inverse = q[6];
+    memcpy(g, &(double[3]){0, 0, 1}, 3 * sizeof *g);
+    lapack_int info = LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n, 6, 1, a, 6, q, 1);
+    if (info == 0 && q[5] > 0) {
+        double inverse = (q[0] - q[2] * q[2] / q[5] + q[3] - q[4] * q[4] / q[5]) / 2;
+        if (inverse > 0) {
+            g[2] = sqrt(q[5] / inverse);
+            g[0] = q[2] / q[5] * g[2];
+            g[1] = q[4] / q[5] * g[2];
+        }
+    }
     free(a);
-    if (info == 0) info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, m, 3, eigenvalue);
-    if (info != 0 || !(inverse > 0) || !(eigenvalue[2] > 0)) {
-        memcpy(g, &(double[3]){0, 0, 1}, 3 * sizeof *g);
-        return OK;
-    }
-    for (int j = 0; j < 3; j++)
-        g[j] = m[3 * j + 2] * sqrt(eigenvalue[2] / inverse);
     return OK;
 }
 
