@@ -30,9 +30,9 @@ typedef struct pst_light {
 
 typedef struct pst_camera {
     bool perspective;
-    float focal;            /* pixels */
+    float focal;              /* pixels */
     float center_x, center_y; /* principal point, pixels from the top left corner */
-    float mean_distance;    /* from the camera to the object, in the unit of the light positions; 0 if unknown */
+    float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
 } pst_camera;
 
 /* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (sRGB decoded for 8-bit sources, ambient
@@ -45,19 +45,19 @@ typedef struct pst_capture {
     pst_lighting lighting;
     bool intensities_known;
     pst_camera camera;
-    img mask;   /* 1 channel; 1 on the object */
+    img mask;        /* 1 channel; 1 on the object */
     img normal_true; /* 3, or empty: ground truth where the layout has one */
     img depth_true;  /* 1, or empty */
 } pst_capture;
 
 typedef struct pst_read_options {
-    const char *lights; /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
-    const char *mask;   /* NULL: mask.png in the folder, NAME.mask.png, or the pictures' own non-black part */
+    const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
+    const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or the pictures' own non-black part */
     const char *ambient; /* picture to subtract; NULL: ambient.png in the folder if there is one */
-    bool near;          /* lights.txt holds positions */
+    bool near;           /* lights.txt holds positions */
     bool unknown_lights; /* ignore lights: uncalibrated */
-    bool linear;        /* 8-bit pictures are linear already */
-    pst_camera camera;  /* focal 0: from the layout, else 60 degrees when near */
+    bool linear;         /* 8-bit pictures are linear already */
+    pst_camera camera;   /* focal 0: from the layout, else 60 degrees when near */
 } pst_read_options;
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
