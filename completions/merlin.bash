@@ -4,7 +4,9 @@ _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local -A options=(
         [estimate]="--mask --output --model --size --exposure --json --quiet --help"
-        [relight]="--light --lights --orbit --by --frame --mask --output --model --size --exposure --json --quiet --help"
+        [relight]="--light --lights --orbit --dome --lp --by --frame --mask --output --model --size --exposure --json --quiet --help"
+        [stereo]="--lights --near --method --mask --ambient --linear --integrate --mesh --output --model --size --exposure
+            --sphere --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --note --threads --quiet --help"
@@ -19,6 +21,9 @@ _merlin() {
     fi
     case $previous in
     --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
+    --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi uncalibrated auto" -- "$current") ;;
+    --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
+    --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
     --data | --means | --env-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     *)

@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "estimate/light_list.h"
+#include "base/light_list.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -14,6 +14,7 @@ typedef struct cli_command {
 
 int cmd_estimate(int argc, char **argv);
 int cmd_relight(int argc, char **argv);
+int cmd_stereo(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_train(int argc, char **argv);
 int cmd_eval(int argc, char **argv);

@@ -5,16 +5,17 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/light_list.h"
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
-#include "estimate/light_list.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
     "       merlin relight PHOTO|DIR --lights FILE [options]\n"
-    "       merlin relight PHOTO|DIR --orbit N [options]\n\n"
+    "       merlin relight PHOTO|DIR --orbit N [options]\n"
+    "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n\n"
     "Shows an object under one point light instead of the flash. DIR is a folder made by merlin estimate; a PHOTO is\n"
     "estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop\n"
     "around the object counts as a frame 60 degrees wide.\n\n"
@@ -22,6 +23,10 @@ static const char help[] =
     "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
     "      --orbit N        N frames with the light on a circle in front of the object, also as orbit.webp and "
     "orbit.gif\n"
+    "      --dome N         N pictures, dome_000.png and on, under lights spread evenly over the frontal hemisphere, "
+    "and "
+    "mask.png\n"
+    "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo\n"
     "      --by WAY         brdf (default): the maps' BRDF and the network's global illumination; network: the\n"
     "                       relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
@@ -38,6 +43,8 @@ enum {
     OPTION_LIGHT = 256,
     OPTION_LIGHTS,
     OPTION_ORBIT,
+    OPTION_DOME,
+    OPTION_LP,
     OPTION_BY,
     OPTION_FRAME,
     OPTION_MASK,
@@ -52,6 +59,8 @@ static const struct option long_options[] = {
     {"light", required_argument, NULL, OPTION_LIGHT},
     {"lights", required_argument, NULL, OPTION_LIGHTS},
     {"orbit", required_argument, NULL, OPTION_ORBIT},
+    {"dome", required_argument, NULL, OPTION_DOME},
+    {"lp", no_argument, NULL, OPTION_LP},
     {"by", required_argument, NULL, OPTION_BY},
     {"frame", required_argument, NULL, OPTION_FRAME},
     {"mask", required_argument, NULL, OPTION_MASK},
@@ -70,8 +79,8 @@ typedef struct request {
     light_list lights;
     merlin_params params;
     merlin_relighting how;
-    long orbit, frame;
-    bool json, quiet, help;
+    long orbit, frame, dome;
+    bool lp, json, quiet, help;
 } request;
 
 static status take_light(const char *text, light_list *lights)
@@ -107,6 +116,9 @@ static status take_text(int option, const char *value, request *r)
     case 'o':
         r->output = value;
         return OK;
+    case OPTION_LP:
+        r->lp = true;
+        return OK;
     case OPTION_JSON:
         r->json = true;
         return OK;
@@ -128,6 +140,8 @@ static status take_option(int option, const char *value, request *r)
         return take_light(value, &r->lights);
     case OPTION_ORBIT:
         return cli_int("--orbit", value, 2, RELIGHT_MOST_FRAMES, &r->orbit);
+    case OPTION_DOME:
+        return cli_int("--dome", value, 3, RELIGHT_MOST_DOME, &r->dome);
     case OPTION_FRAME:
         return cli_int("--frame", value, 32, 1024, &r->frame);
     case OPTION_BY:
@@ -154,8 +168,9 @@ static status parse(int argc, char **argv, request *r)
     if (optind + 1 < argc)
         return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", argv[optind + 1]);
     r->input = argv[optind];
-    if (r->lights.count == 0 && !r->list && r->orbit == 0)
-        return fail(ERROR_USAGE, "no light: give --light, --lights or --orbit");
+    if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0)
+        return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit or --dome");
+    if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
 }
 
@@ -200,8 +215,9 @@ static char *choose_output(const request *r)
 static void announce(const request *r, const relight_job *job, double seconds)
 {
     if (r->json)
-        printf("{\"lights\": %zu, \"orbit\": %d, \"by\": \"%s\", \"model\": \"%s\", \"seconds_total\": %.4f}\n",
-               job->lights.count, job->orbit, r->how == MERLIN_BY_NETWORK ? "network" : "brdf",
+        printf("{\"lights\": %zu, \"orbit\": %d, \"dome\": %d, \"by\": \"%s\", \"model\": \"%s\", \"seconds_total\": "
+               "%.4f}\n",
+               job->lights.count, job->orbit, job->dome, r->how == MERLIN_BY_NETWORK ? "network" : "brdf",
                merlin_model_name(job->model), seconds);
     else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
@@ -213,6 +229,8 @@ static status relight(const request *r, const char *weights, const char *output)
     relight_job job = {.output = output,
                        .lights = r->lights,
                        .how = r->how,
+                       .dome = (int)r->dome,
+                       .lp = r->lp,
                        .orbit = (int)r->orbit,
                        .frame = (int)r->frame,
                        .stop = cli_interrupted};

@@ -7,6 +7,7 @@
 static const cli_command commands[] = {
     {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
     {"relight", "show the object of a photograph under other light", cmd_relight},
+    {"stereo", "surfaces from many lights, or from one photograph", cmd_stereo},
     {"render", "make training data", cmd_render},
     {"train", "train a model", cmd_train},
     {"eval", "measure a model on held-out data, beside trivial answers", cmd_eval},

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "estimate/api.h"
 #include "estimate/staging.h"
 #include "image/figure.h"
@@ -71,16 +72,22 @@ static status write_picture(const staging *t, const char *pattern, size_t i, con
 
 /* ---- single lights, in the photograph's frame ---- */
 
-static status write_light(const relight_job *job, const stage *st, const staging *t, size_t i, sheet *all)
+typedef struct picture {
+    const char *name;
+    size_t number;
+    vec3 light;
+} picture;
+
+/* all: where a small copy goes, or NULL. */
+static status write_light(const relight_job *job, const stage *st, const staging *t, const picture *p, sheet *all)
 {
-    vec3 light = job->lights.at[i];
     img square = {0}, whole = {0};
-    status s = stage_relight(job->model->network, st, light, &square);
-    if (s == OK) s = sheet_add(all, &square, light);
+    status s = stage_relight(job->model->network, st, p->light, &square);
+    if (s == OK && all) s = sheet_add(all, &square, p->light);
     if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
     if (s == OK) {
         crop_put(&square, crop_of(job->maps), &whole);
-        s = write_picture(t, "relit", i, &whole);
+        s = write_picture(t, p->name, p->number, &whole);
     }
     img_free(&square);
     img_free(&whole);
@@ -95,9 +102,64 @@ static status write_lights(const relight_job *job, const staging *t)
     if (s != OK) return s;
     sheet all = {.count = 0};
     for (size_t i = 0; i < job->lights.count && s == OK; i++)
-        s = stopped(job) ? fail(ERROR_STOPPED, "stopped") : write_light(job, &st, t, i, &all);
+        s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
+                         : write_light(job, &st, t, &(picture){"relit", i, job->lights.at[i]}, &all);
     if (s == OK) s = sheet_write(&all, t, "relit.png");
     sheet_free(&all);
+    stage_free(&st);
+    return s;
+}
+
+/* ---- a dome: the frontal hemisphere, evenly ---- */
+
+/* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
+static vec3 dome_light(int i, int count)
+{
+    real cosine = 1 - ((real)i + (real)0.5) / (real)count, sine = sqrt(1 - cosine * cosine);
+    real phi = (real)2.39996322972865332 * (real)i;
+    return vec3_make(sine * cos(phi), sine * sin(phi), cosine - 1);
+}
+
+/* The directions to distant lights, which is what an .lp file knows. */
+static status write_lp(const relight_job *job, const staging *t)
+{
+    char *text = NULL, *path = staging_path(t, "dome.lp");
+    size_t size = 0;
+    FILE *f = path ? open_memstream(&text, &size) : NULL;
+    status s = f ? OK : fail(ERROR_MEMORY, "no memory for a list of lights");
+    if (f) {
+        fprintf(f, "%d\n", job->dome);
+        for (int i = 0; i < job->dome; i++) {
+            vec3 l = vec3_add(dome_light(i, job->dome), vec3_make(0, 0, 1));
+            fprintf(f, "dome_%03d.png %.6f %.6f %.6f\n", i, (double)l.x, (double)l.y, (double)l.z);
+        }
+        s = fclose(f) == 0 ? file_write(path, text, size) : fail(ERROR_MEMORY, "no memory for a list of lights");
+    }
+    free(text);
+    free(path);
+    return s;
+}
+
+static status write_dome_mask(const relight_job *job, const staging *t)
+{
+    img mask = img_of(&job->maps->mask);
+    char *path = staging_path(t, "mask.png");
+    status s = path ? img_write_png(path, &mask, IMG_LINEAR8) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(path);
+    return s;
+}
+
+static status write_dome(const relight_job *job, const staging *t)
+{
+    if (job->dome == 0) return OK;
+    stage st;
+    status s = stage_new(job->maps, 0, job->how, &st);
+    if (s != OK) return s;
+    for (int i = 0; i < job->dome && s == OK; i++)
+        s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
+                         : write_light(job, &st, t, &(picture){"dome", (size_t)i, dome_light(i, job->dome)}, NULL);
+    if (s == OK) s = write_dome_mask(job, t);
+    if (s == OK && job->lp) s = write_lp(job, t);
     stage_free(&st);
     return s;
 }
@@ -167,6 +229,7 @@ status relight_output(const relight_job *job)
     status s = staging_begin(job->output, &t);
     if (s != OK) return s;
     s = write_lights(job, t);
+    if (s == OK) s = write_dome(job, t);
     if (s == OK) s = write_orbit(job, t);
     if (s == OK && stopped(job)) s = fail(ERROR_STOPPED, "stopped");
     return s == OK ? staging_commit(t) : staging_abort(t, s);

@@ -2,11 +2,13 @@
 #ifndef MERLIN_CLI_RELIGHT_OUTPUT_H
 #define MERLIN_CLI_RELIGHT_OUTPUT_H
 
+#include <stdbool.h>
+
+#include "base/light_list.h"
 #include "base/status.h"
-#include "estimate/light_list.h"
 #include "merlin/merlin.h"
 
-enum { RELIGHT_MOST_FRAMES = 240 };
+enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 
 typedef struct relight_job {
     merlin_model *model;
@@ -14,6 +16,8 @@ typedef struct relight_job {
     const char *output; /* folder */
     light_list lights;  /* relit_000.png …, of the photograph's size */
     merlin_relighting how;
+    int dome;  /* pictures under a dome of lights, of the photograph's size; 0: none */
+    bool lp;   /* and a list of the dome's lights for RTI viewers */
     int orbit; /* frames; 0: none */
     int frame; /* their side; 0: the crop's, at most 512 */
     int (*stop)(void);

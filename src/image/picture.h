@@ -13,6 +13,8 @@ typedef enum picture_colour {
 
 /* color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
 status picture_decode(const char *path, picture_colour how, img *color, img *alpha);
+/* Bits of a sample, from the file's head alone: 8, 16 or 32. Not for EXR. */
+status picture_bits(const char *path, int *bits);
 status picture_read_exr(const char *path, img *color, img *alpha);
 
 #endif

@@ -158,3 +158,15 @@ status picture_decode(const char *path, picture_colour how, img *color, img *alp
     if (opacity) g_object_unref(opacity);
     return s;
 }
+
+status picture_bits(const char *path, int *bits)
+{
+    VipsImage *image = NULL;
+    status s = vips_begin();
+    if (s == OK) s = open_picture(path, &image);
+    if (s != OK) return s;
+    VipsBandFormat format = vips_image_get_format(image);
+    *bits = format == VIPS_FORMAT_UCHAR ? 8 : format == VIPS_FORMAT_USHORT ? 16 : 32;
+    g_object_unref(image);
+    return OK;
+}

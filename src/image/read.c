@@ -85,6 +85,26 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
+static status read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
+{
+    bool is_exr = false;
+    *bits = 32;
+    status s = look_at(path, &is_exr);
+    if (s != OK || is_exr) return s == OK ? picture_read_exr(path, color, NULL) : s;
+    s = picture_bits(path, bits);
+    if (s != OK) return s;
+    return picture_decode(path, *bits == 8 && decode_8_bit ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS, color, NULL);
+}
+
+status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
+{
+    *color = (img){0};
+    status s = read_samples(path, decode_8_bit, color, bits);
+    if (s == OK) s = check_finite(path, color);
+    if (s != OK) img_free(color);
+    return s;
+}
+
 static bool is_opaque(const img *alpha)
 {
     size_t pixels = (size_t)alpha->width * (size_t)alpha->height;

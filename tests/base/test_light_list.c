@@ -1,4 +1,4 @@
-#include "estimate/light_list.h"
+#include "base/light_list.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,6 +30,7 @@ static void plain_lists_are_positions(void **state)
     light_list lights;
     assert_int_equal(parse("# from the left\n-0.5 0.25 -0.5\n\n 1,2, 3 # the far one\r\n0\t0\t0", &lights), OK);
     assert_int_equal(lights.count, 3);
+    assert_null(lights.name);
     assert_float_equal(lights.at[0].x, -0.5, 0);
     assert_float_equal(lights.at[1].z, 3, 0);
     assert_float_equal(lights.at[2].y, 0, 0);
@@ -46,6 +47,9 @@ static void lp_directions_become_positions_around_the_object(void **state)
     assert_float_equal(lights.at[0].z, 0, 1e-6);
     assert_float_equal(lights.at[1].x, 0.6, 1e-6);
     assert_float_equal(lights.at[1].z, -0.2, 1e-6);
+    assert_float_equal(light_list_direction(&lights, 1).z, 0.8, 1e-6);
+    assert_string_equal(lights.name[0], "a.jpg");
+    assert_string_equal(lights.name[1], "b.jpg");
     light_list_free(&lights);
 }
 

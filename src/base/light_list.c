@@ -1,4 +1,4 @@
-#include "estimate/light_list.h"
+#include "base/light_list.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -19,6 +19,9 @@ typedef struct reader {
 
 void light_list_free(light_list *list)
 {
+    for (size_t i = 0; list->name && i < list->count; i++)
+        free(list->name[i]);
+    free(list->name);
     free(list->at);
     *list = (light_list){0};
 }
@@ -31,6 +34,19 @@ status light_list_add(light_list *list, vec3 light)
     larger[list->count++] = light;
     list->at = larger;
     return OK;
+}
+
+/* The name of the light that was added last. */
+static status add_name(light_list *list, const char *word)
+{
+    char **larger = realloc(list->name, list->count * sizeof *larger);
+    if (larger) {
+        list->name = larger;
+        list->name[list->count - 1] = strdup(word);
+    }
+    if (larger && list->name[list->count - 1]) return OK;
+    list->count--;
+    return fail(ERROR_MEMORY, "no memory for %zu lights", list->count + 1);
 }
 
 /* The next line without its comment and outer blanks into line; false at the end of the text. */
@@ -126,6 +142,7 @@ static status parse_line(reader *r, char *line, bool first, light_list *out)
     status s = parse_light(r, words, count, &light);
     if (s != OK) return s;
     s = light_list_add(out, light);
+    if (s == OK && r->lp) s = add_name(out, words[0]);
     return s == OK ? OK : fail_in(s, "%s:%d", r->where, r->line);
 }
 

@@ -7,10 +7,10 @@
  *
  * An .lp file starts with a line that holds one number, the count; then `name x y z` a line, the last three being the
  * direction to a distant light, x right, y up, z toward the camera. Such a direction becomes the position at distance 1
- * from (0, 0, -1), where the object stands: the frontal hemisphere of docs/conventions.md. Empty lines and what follows
- * a # are skipped. */
-#ifndef MERLIN_ESTIMATE_LIGHT_LIST_H
-#define MERLIN_ESTIMATE_LIGHT_LIST_H
+ * from (0, 0, -1), where the object stands: the frontal hemisphere of docs/conventions.md; light_list_direction takes
+ * it back. Empty lines and what follows a # are skipped. */
+#ifndef MERLIN_BASE_LIGHT_LIST_H
+#define MERLIN_BASE_LIGHT_LIST_H
 
 #include <stddef.h>
 
@@ -21,6 +21,7 @@ enum { LIGHT_LIST_MAX = 4096 };
 
 typedef struct light_list {
     vec3 *at;
+    char **name; /* of an .lp file: the picture each light belongs to; NULL for a plain list */
     size_t count;
 } light_list;
 
@@ -29,8 +30,14 @@ typedef struct light_list {
 status light_list_read(const char *path, light_list *out);
 /* The same from bytes (need not end in a zero); `where` is put in front of messages. */
 status light_list_parse(const char *text, size_t size, const char *where, light_list *out);
-/* One more light; for lights named on a command line. */
+/* One more light without a name; for lights named on a command line. */
 status light_list_add(light_list *list, vec3 light);
 void light_list_free(light_list *list);
+
+/* The unit direction that entry i of an .lp file held. */
+static inline vec3 light_list_direction(const light_list *list, size_t i)
+{
+    return vec3_normalize(vec3_add(list->at[i], vec3_make(0, 0, 1)));
+}
 
 #endif

@@ -1,0 +1,273 @@
+/* merlin stereo: surfaces from many lights, and from one photograph. */
+#include <cJSON.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "cli/cli.h"
+#include "cli/photos.h"
+#include "cli/stereo_commands.h"
+#include "cli/stereo_folder.h"
+#include "cli/stereo_photo.h"
+#include "stereo/mesh_write.h"
+
+static const char help[] =
+    "usage: merlin stereo DIR [options]\n"
+    "       merlin stereo PHOTO [options]\n"
+    "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
+    "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
+    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
+    "under 50 lights. calibrate finds light directions from pictures of a ball.\n\n"
+    "      --lights FILE    x y z a line, or .lp (default: found in DIR)\n"
+    "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
+    "      --method NAME    ls, robust, near, semi, uncalibrated or auto (default)\n"
+    "      --mask FILE      white on the object (default: mask.png in DIR, else what is not black)\n"
+    "      --ambient FILE   a picture without the lights, to subtract (default: ambient.png in DIR)\n"
+    "      --linear         8-bit pictures hold linear values, not sRGB\n"
+    "      --integrate HOW  ls (default) or edges: depth may jump\n"
+    "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
+    "output)\n"
+    "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
+    "      --model FILE, --size N, --exposure EV\n"
+    "                       for a PHOTO, as in merlin estimate\n"
+    "      --json           the report on standard output\n"
+    "      --quiet          no other output than errors\n"
+    "  -h, --help           this text\n\n"
+    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n";
+
+enum {
+    OPTION_LIGHTS = 256,
+    OPTION_NEAR,
+    OPTION_METHOD,
+    OPTION_MASK,
+    OPTION_AMBIENT,
+    OPTION_LINEAR,
+    OPTION_INTEGRATE,
+    OPTION_MESH,
+    OPTION_MODEL,
+    OPTION_SIZE,
+    OPTION_EXPOSURE,
+    OPTION_JSON,
+    OPTION_QUIET
+};
+
+static const struct option long_options[] = {
+    {"lights", required_argument, NULL, OPTION_LIGHTS},
+    {"near", no_argument, NULL, OPTION_NEAR},
+    {"method", required_argument, NULL, OPTION_METHOD},
+    {"mask", required_argument, NULL, OPTION_MASK},
+    {"ambient", required_argument, NULL, OPTION_AMBIENT},
+    {"linear", no_argument, NULL, OPTION_LINEAR},
+    {"integrate", required_argument, NULL, OPTION_INTEGRATE},
+    {"mesh", required_argument, NULL, OPTION_MESH},
+    {"model", required_argument, NULL, OPTION_MODEL},
+    {"size", required_argument, NULL, OPTION_SIZE},
+    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
+    {"output", required_argument, NULL, 'o'},
+    {"json", no_argument, NULL, OPTION_JSON},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"help", no_argument, NULL, 'h'},
+    {0},
+};
+
+typedef struct request {
+    const char *input, *output, *weights;
+    stereo_folder folder;
+    merlin_params params;
+    stereo_files files;
+    bool json, quiet, help;
+} request;
+
+/* ---- options ---- */
+
+static status take_method(const char *name, pst_method *method)
+{
+    int m = pst_method_from_name(name);
+    if (m < 0)
+        return fail(ERROR_USAGE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
+    *method = (pst_method)m;
+    return OK;
+}
+
+static status take_integration(const char *name, stereo_folder *f)
+{
+    f->integrate = true;
+    f->preserve_edges = strcmp(name, "edges") == 0;
+    if (!f->preserve_edges && strcmp(name, "ls") != 0)
+        return fail(ERROR_USAGE, "--integrate wants ls or edges, not \"%s\"", name);
+    return OK;
+}
+
+static status take_mesh(const char *path, stereo_files *files)
+{
+    if (files->mesh_count == STEREO_MOST_MESHES)
+        return fail(ERROR_USAGE, "--mesh may be given %d times", STEREO_MOST_MESHES);
+    files->mesh[files->mesh_count++] = path;
+    return pst_mesh_check_name(path);
+}
+
+static status take_flag(int option, request *r)
+{
+    switch (option) {
+    case OPTION_NEAR:
+        r->folder.read.near = true;
+        return OK;
+    case OPTION_LINEAR:
+        r->folder.read.linear = true;
+        return OK;
+    case OPTION_JSON:
+        r->json = true;
+        return OK;
+    case OPTION_QUIET:
+        r->quiet = true;
+        return OK;
+    case 'h':
+        r->help = true;
+        return OK;
+    default:
+        return fail(ERROR_USAGE, "unknown option, or its value is missing");
+    }
+}
+
+static status take_option(int option, const char *value, request *r)
+{
+    switch (option) {
+    case OPTION_LIGHTS:
+        r->folder.read.lights = value;
+        return OK;
+    case OPTION_METHOD:
+        return take_method(value, &r->folder.method);
+    case OPTION_MASK:
+        r->folder.read.mask = value;
+        return OK;
+    case OPTION_AMBIENT:
+        r->folder.read.ambient = value;
+        return OK;
+    case OPTION_INTEGRATE:
+        return take_integration(value, &r->folder);
+    case OPTION_MESH:
+        return take_mesh(value, &r->files);
+    case OPTION_MODEL:
+        r->weights = value;
+        return OK;
+    case OPTION_SIZE:
+        return photo_parse_size(value, &r->params);
+    case OPTION_EXPOSURE:
+        return photo_parse_exposure(value, &r->params);
+    case 'o':
+        r->output = value;
+        return OK;
+    default:
+        return take_flag(option, r);
+    }
+}
+
+static status parse(int argc, char **argv, request *r)
+{
+    int option;
+    opterr = 0;
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
+        status s = take_option(option, optarg, r);
+        if (s != OK || r->help) return s;
+    }
+    if (optind == argc) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
+    if (optind + 1 < argc)
+        return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", argv[optind + 1]);
+    r->input = r->folder.folder = argv[optind];
+    const pst_read_options *o = &r->folder.read;
+    if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
+    if (o->lights && o->unknown_lights) return fail(ERROR_USAGE, "--method uncalibrated takes no --lights");
+    if (file_exists(r->input) && !file_is_folder(r->input) && (o->lights || o->near || o->ambient || o->linear))
+        return fail(ERROR_USAGE, "--lights, --near, --ambient and --linear are for a folder of pictures");
+    return OK;
+}
+
+/* ---- the work ---- */
+
+static char *choose_output(const request *r)
+{
+    if (r->output) return strdup(r->output);
+    char *base = file_is_folder(r->input) ? strdup(r->input) : photo_default_output(r->input);
+    char *out = base ? file_join(base, "stereo") : NULL;
+    free(base);
+    return out;
+}
+
+static status from_photo(const request *r, stereo_result *out, cJSON *report)
+{
+    char *weights;
+    status s = photo_find_model(r->weights, &weights);
+    if (s != OK) return s;
+    stereo_photo p = {.photo = r->input,
+                      .mask = r->folder.read.mask,
+                      .weights = weights,
+                      .params = r->params,
+                      .method = r->folder.method,
+                      .preserve_edges = r->folder.preserve_edges};
+    s = stereo_from_photo(&p, out, report);
+    free(weights);
+    return s;
+}
+
+static void announce(const request *r, const char *output, const cJSON *report, double seconds)
+{
+    if (r->json) {
+        char *text = cJSON_PrintUnformatted(report);
+        puts(text ? text : "{}");
+        free(text);
+    } else if (!r->quiet) {
+        printf("%s: %s (%.2f s)\n", r->input, output, seconds);
+    }
+}
+
+static status work(request *r, const char *output, cJSON *report)
+{
+    double began = clock_seconds();
+    stereo_result result = {0};
+    cJSON_AddStringToObject(report, "input", r->input);
+    status s =
+        file_is_folder(r->input) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    if (s == OK) {
+        cJSON_AddNumberToObject(report, "albedo_scale", (double)stereo_scale_albedo(&result));
+        cJSON_AddStringToObject(report, "error_map", result.error_name);
+        cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
+        cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
+        cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
+        r->files.folder = output;
+        r->files.stop = cli_interrupted;
+        s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&r->files, &result, report);
+    }
+    stereo_result_free(&result);
+    if (s == OK) announce(r, output, report, clock_seconds() - began);
+    return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
+}
+
+static status run(request *r)
+{
+    if (!file_exists(r->input)) return fail(ERROR_INPUT, "there is no folder or photograph %s", r->input);
+    char *output = choose_output(r);
+    cJSON *report = cJSON_CreateObject();
+    status s = output && report ? work(r, output, report) : fail(ERROR_MEMORY, "no memory for a report");
+    cJSON_Delete(report);
+    free(output);
+    return s;
+}
+
+int cmd_stereo(int argc, char **argv)
+{
+    if (argc > 1 && strcmp(argv[1], "calibrate") == 0) return stereo_calibrate(argc - 1, argv + 1);
+    request r = {.params = merlin_params_default()};
+    r.params.stop = cli_interrupted;
+    if (parse(argc, argv, &r) != OK) return cli_usage("stereo", "%s", status_message());
+    if (r.help) {
+        fputs(help, stdout);
+        return 0;
+    }
+    cli_catch_interrupts();
+    status s = run(&r);
+    return s == OK ? 0 : cli_fail("stereo", s);
+}

@@ -1,0 +1,150 @@
+/* merlin stereo calibrate: light directions from pictures of a ball. */
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/progress.h"
+#include "cli/cli.h"
+#include "cli/stereo_commands.h"
+#include "stereo/calibrate.h"
+
+static const char help[] =
+    "usage: merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
+    "Finds the direction of each light from pictures of a ball, one picture a light: from the highlight on a chrome\n"
+    "ball, from the shading of a matte one. The ball is searched for where there is no mask of it.\n\n"
+    "      --sphere KIND  chrome or matte\n"
+    "      --mask FILE    white on the ball (default: mask.png in DIR, else the ball is searched for)\n"
+    "      --linear       8-bit pictures are linear already, not sRGB\n"
+    "      --fov DEG      the camera's horizontal field of view (default: as seen from afar)\n"
+    "  -o, --output DIR   where to (default: DIR itself)\n"
+    "      --json         a report as JSON on standard output\n"
+    "      --quiet        no other output than errors\n"
+    "  -h, --help         this text\n\n"
+    "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names, and\n"
+    "calibration.png, which shows what was found.\n";
+
+enum { OPTION_SPHERE = 256, OPTION_MASK, OPTION_LINEAR, OPTION_FOV, OPTION_JSON, OPTION_QUIET };
+
+static const struct option long_options[] = {
+    {"sphere", required_argument, NULL, OPTION_SPHERE},
+    {"mask", required_argument, NULL, OPTION_MASK},
+    {"linear", no_argument, NULL, OPTION_LINEAR},
+    {"fov", required_argument, NULL, OPTION_FOV},
+    {"output", required_argument, NULL, 'o'},
+    {"json", no_argument, NULL, OPTION_JSON},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"help", no_argument, NULL, 'h'},
+    {0},
+};
+
+typedef struct request {
+    const char *input, *output;
+    pst_calibrate_options options;
+    bool chosen, json, quiet, help;
+} request;
+
+static status take_ball(const char *text, request *r)
+{
+    r->chosen = true;
+    if (strcmp(text, "chrome") == 0)
+        r->options.ball = PST_CHROME;
+    else if (strcmp(text, "matte") == 0)
+        r->options.ball = PST_MATTE;
+    else
+        return fail(ERROR_USAGE, "--sphere wants chrome or matte, not \"%s\"", text);
+    return OK;
+}
+
+static status take_option(int option, const char *value, request *r)
+{
+    double degrees;
+    status s;
+    switch (option) {
+    case OPTION_SPHERE:
+        return take_ball(value, r);
+    case OPTION_MASK:
+        r->options.mask = value;
+        return OK;
+    case OPTION_LINEAR:
+        r->options.linear = true;
+        return OK;
+    case OPTION_FOV:
+        s = cli_float("--fov", value, 1, 170, &degrees);
+        if (s == OK) r->options.field_of_view = (float)degrees;
+        return s;
+    case 'o':
+        r->output = value;
+        return OK;
+    case OPTION_JSON:
+        r->json = true;
+        return OK;
+    case OPTION_QUIET:
+        r->quiet = true;
+        return OK;
+    case 'h':
+        r->help = true;
+        return OK;
+    default:
+        return fail(ERROR_USAGE, "unknown option, or its value is missing");
+    }
+}
+
+static status parse(int argc, char **argv, request *r)
+{
+    int option;
+    opterr = 0;
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
+        status s = take_option(option, optarg, r);
+        if (s != OK || r->help) return s;
+    }
+    if (optind == argc) return fail(ERROR_USAGE, "no folder with pictures of a ball given");
+    if (optind + 1 < argc) return fail(ERROR_USAGE, "one folder at a time, not also %s", argv[optind + 1]);
+    if (!r->chosen) return fail(ERROR_USAGE, "say what the ball is: --sphere chrome or --sphere matte");
+    r->input = argv[optind];
+    if (!r->output) r->output = r->input;
+    return OK;
+}
+
+static void announce(const request *r, const pst_calibration *c, double seconds)
+{
+    if (r->json) {
+        printf("{\"lights\": %d, \"sphere\": \"%s\", \"circle\": [%.3f, %.3f, %.3f], \"from_mask\": %s, "
+               "\"directions\": [",
+               c->count, c->ball == PST_CHROME ? "chrome" : "matte", (double)c->circle.x, (double)c->circle.y,
+               (double)c->circle.radius, c->from_mask ? "true" : "false");
+        for (int i = 0; i < c->count; i++)
+            printf("%s[%.6f, %.6f, %.6f]", i ? ", " : "", (double)c->direction[i].x, (double)c->direction[i].y,
+                   (double)c->direction[i].z);
+        printf("], \"seconds_total\": %.4f}\n", seconds);
+    } else if (!r->quiet) {
+        printf("%s: %d lights in %s/lights.txt; the ball %s at %.1f, %.1f with radius %.1f (%.2f s)\n", r->input,
+               c->count, r->output, c->from_mask ? "of the mask is" : "was found", (double)c->circle.x,
+               (double)c->circle.y, (double)c->circle.radius, seconds);
+    }
+}
+
+static status run(const request *r)
+{
+    double began = clock_seconds();
+    pst_calibration c;
+    status s = pst_calibrate_sphere(r->input, &r->options, &c);
+    if (s != OK) return s;
+    s = pst_calibration_write(&c, r->output);
+    if (s == OK) announce(r, &c, clock_seconds() - began);
+    pst_calibration_free(&c);
+    return s;
+}
+
+int stereo_calibrate(int argc, char **argv)
+{
+    request r = {0};
+    if (parse(argc, argv, &r) != OK) return cli_usage("stereo calibrate", "%s", status_message());
+    if (r.help) {
+        fputs(help, stdout);
+        return 0;
+    }
+    status s = run(&r);
+    return s == OK ? 0 : cli_fail("stereo calibrate", s);
+}

@@ -1,0 +1,140 @@
+#include "cli/stereo_folder.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/progress.h"
+#include "stereo/integrate.h"
+
+static const float RESIDUAL_WHITE = 0.25f, KEEP_DEPTH = 1e-4f;
+static const double DEGREES = 57.29577951308232;
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* "NAME_mean" and "NAME_median" of the values, which get sorted. */
+static void put_statistics(cJSON *report, const char *name, double *values, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i];
+    qsort(values, count, sizeof *values, compare);
+    cJSON *o = cJSON_AddObjectToObject(report, name);
+    cJSON_AddNumberToObject(o, "mean", count ? sum / (double)count : 0);
+    cJSON_AddNumberToObject(o, "median", count ? values[count / 2] : 0);
+    cJSON_AddNumberToObject(o, "pixels", (double)count);
+}
+
+static size_t take_errors(const stereo_result *r, double *values)
+{
+    size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
+    for (size_t i = 0; i < pixels; i++)
+        if (r->mask.data[i] > 0.5f) values[count++] = (double)r->error.data[i];
+    return count;
+}
+
+/* Angles to the true normals in degrees, where both are known. */
+static size_t take_angles(const stereo_result *r, const img *truth, double *values)
+{
+    size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *n = r->normal.data + 3 * i, *t = truth->data + 3 * i;
+        vec3 a = vec3_make(n[0], n[1], n[2]), b = vec3_make(t[0], t[1], t[2]);
+        if (r->mask.data[i] <= 0.5f || !(vec3_dot(b, b) > (real)0.25)) continue;
+        values[count++] = DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
+    }
+    return count;
+}
+
+static void put_lights(cJSON *report, const pst_capture *c, const pst_light *light)
+{
+    cJSON *list = cJSON_AddArrayToObject(report, "lights_found");
+    for (int i = 0; i < c->count; i++) {
+        cJSON *o = cJSON_CreateObject();
+        cJSON_AddItemToArray(list, o);
+        cJSON_AddStringToObject(o, "name", c->name[i]);
+        const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
+        cJSON_AddItemToObject(o, "direction", cJSON_CreateFloatArray(d, 3));
+        cJSON_AddItemToObject(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
+    }
+}
+
+static status put_report(cJSON *report, const pst_capture *c, const pst_surface *s, const stereo_result *r)
+{
+    double *values = malloc((size_t)c->width * (size_t)c->height * sizeof *values);
+    if (!values) return fail(ERROR_MEMORY, "no memory for a report");
+    cJSON_AddStringToObject(report, "method", pst_method_name(s->method));
+    cJSON_AddNumberToObject(report, "pictures", c->count);
+    cJSON_AddNumberToObject(report, "width", c->width);
+    cJSON_AddNumberToObject(report, "height", c->height);
+    cJSON_AddNumberToObject(report, "channels", c->channels);
+    put_statistics(report, "residual", values, take_errors(r, values));
+    if (c->normal_true.data)
+        put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
+    if (s->light) put_lights(report, c, s->light);
+    free(values);
+    return OK;
+}
+
+/* Takes normal and residual over from the surface; a grey albedo becomes three channels. */
+static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *r)
+{
+    *r = (stereo_result){.error_name = "residual", .error_white = RESIDUAL_WHITE, .camera = c->camera};
+    status result = img_copy(&r->mask, &c->mask);
+    if (result == OK) result = img_new(&r->albedo, c->width, c->height, 3);
+    if (result != OK) return result;
+    size_t values = 3 * (size_t)c->width * (size_t)c->height, channels = (size_t)s->albedo.channels;
+    for (size_t i = 0; i < values; i++)
+        r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
+    r->normal = s->normal;
+    r->error = s->residual;
+    s->normal = s->residual = (img){0};
+    return OK;
+}
+
+static status find_depth(const stereo_folder *f, const pst_capture *c, pst_surface *s, stereo_result *r)
+{
+    if (s->depth.data && !f->integrate) {
+        r->depth = s->depth;
+        s->depth = (img){0};
+        return OK;
+    }
+    pst_integration how = {.preserve_edges = f->preserve_edges};
+    if (s->depth.data) {
+        how.prior = &s->depth;
+        how.prior_weight = KEEP_DEPTH;
+    }
+    return pst_integrate(&r->normal, &r->mask, &c->camera, &how, &r->depth);
+}
+
+static status solve(const stereo_folder *f, const pst_capture *c, stereo_result *out, cJSON *report)
+{
+    pst_surface surface;
+    double began = clock_seconds();
+    status s = pst_solve(c, &(pst_options){.method = f->method}, &surface);
+    if (s != OK) return s;
+    double solved = clock_seconds();
+    s = take_surface(c, &surface, out);
+    if (s == OK) s = find_depth(f, c, &surface, out);
+    if (s == OK) s = put_report(report, c, &surface, out);
+    cJSON_AddNumberToObject(report, "seconds_solve", solved - began);
+    cJSON_AddNumberToObject(report, "seconds_integrate", clock_seconds() - solved);
+    pst_surface_free(&surface);
+    return s;
+}
+
+status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *report)
+{
+    *out = (stereo_result){0};
+    pst_capture c;
+    double began = clock_seconds();
+    status s = pst_capture_read(f->folder, &f->read, &c);
+    if (s != OK) return s;
+    cJSON_AddNumberToObject(report, "seconds_read", clock_seconds() - began);
+    s = solve(f, &c, out, report);
+    pst_capture_free(&c);
+    return s;
+}

@@ -1,0 +1,207 @@
+#include "cli/stereo_output.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "estimate/staging.h"
+#include "image/exr.h"
+#include "image/figure.h"
+#include "image/write.h"
+#include "stereo/mesh_write.h"
+
+enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384, MOST_SAMPLES = 1 << 16 };
+static const float BRIGHT = 0.9f; /* where the albedo's 99th percentile goes */
+
+void stereo_result_free(stereo_result *r)
+{
+    img *images[] = {&r->normal, &r->albedo, &r->depth, &r->mask, &r->error};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        img_free(images[i]);
+}
+
+static size_t pixel_count(const stereo_result *r)
+{
+    return (size_t)r->mask.width * (size_t)r->mask.height;
+}
+
+/* ---- albedo's scale ---- */
+
+static int compare(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+float stereo_scale_albedo(stereo_result *r)
+{
+    float *sample = malloc(MOST_SAMPLES * sizeof *sample), scale = 1;
+    if (!sample) return scale;
+    size_t values = 3 * pixel_count(r), step = values / MOST_SAMPLES + 1, count = 0;
+    for (size_t i = 0; i < values; i += step)
+        if (r->mask.data[i / 3] > 0.5f && isfinite(r->albedo.data[i])) sample[count++] = r->albedo.data[i];
+    qsort(sample, count, sizeof *sample, compare);
+    float bright = count ? sample[count * 99 / 100] : 0;
+    if (bright > 0) scale = BRIGHT / bright;
+    for (size_t i = 0; i < values; i++) {
+        float x = r->albedo.data[i] * scale;
+        r->albedo.data[i] = x > 0 ? (x < 1 ? x : 1) : 0;
+    }
+    free(sample);
+    return scale;
+}
+
+/* ---- one file each ---- */
+
+static status write_exr(const stereo_result *r, const char *path)
+{
+    const char *method = r->error_name;
+    const exr_channel channels[] = {
+        {"albedo.R", r->albedo.data, 3}, {"albedo.G", r->albedo.data + 1, 3}, {"albedo.B", r->albedo.data + 2, 3},
+        {"normal.X", r->normal.data, 3}, {"normal.Y", r->normal.data + 1, 3}, {"normal.Z", r->normal.data + 2, 3},
+        {"depth.Z", r->depth.data, 1},   {"mask.A", r->mask.data, 1},         {"error.Y", r->error.data, 1},
+    };
+    const exr_attribute attributes[] = {exr_text("merlinError", method),
+                                        exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0)};
+    return exr_write(path, r->mask.width, r->mask.height, channels, sizeof channels / sizeof channels[0], attributes,
+                     sizeof attributes / sizeof attributes[0]);
+}
+
+static status write_normal(const stereo_result *r, const char *path)
+{
+    img encoded = {0};
+    status s = img_copy(&encoded, &r->normal);
+    if (s != OK) return s;
+    for (size_t i = 0; i < 3 * pixel_count(r); i++)
+        encoded.data[i] = r->mask.data[i / 3] > 0.5f ? 0.5f * encoded.data[i] + 0.5f : 0;
+    s = img_write_png(path, &encoded, IMG_LINEAR16);
+    img_free(&encoded);
+    return s;
+}
+
+static status write_albedo(const stereo_result *r, const char *path)
+{
+    return img_write_png(path, &r->albedo, IMG_SRGB8);
+}
+
+static status write_mask(const stereo_result *r, const char *path)
+{
+    return img_write_png(path, &r->mask, IMG_LINEAR8);
+}
+
+/* Near is bright; the object's depths span 1 down to 0.05. */
+static status write_depth(const stereo_result *r, const char *path)
+{
+    img encoded = {0};
+    status s = img_copy(&encoded, &r->depth);
+    if (s != OK) return s;
+    float near = INFINITY, far = -INFINITY;
+    for (size_t i = 0; i < pixel_count(r); i++) {
+        if (r->mask.data[i] <= 0.5f) continue;
+        near = fminf(near, r->depth.data[i]);
+        far = fmaxf(far, r->depth.data[i]);
+    }
+    for (size_t i = 0; i < pixel_count(r); i++)
+        encoded.data[i] = r->mask.data[i] > 0.5f ? 1 - 0.95f * (encoded.data[i] - near) / (far - near + 1e-9f) : 0;
+    s = img_write_png(path, &encoded, IMG_LINEAR16);
+    img_free(&encoded);
+    return s;
+}
+
+static status error_picture(const stereo_result *r, img *out)
+{
+    status s = img_copy(out, &r->error);
+    for (size_t i = 0; i < pixel_count(r) && s == OK; i++)
+        out->data[i] /= r->error_white;
+    return s;
+}
+
+static status write_error(const stereo_result *r, const char *path)
+{
+    img shown = {0};
+    status s = error_picture(r, &shown);
+    if (s == OK) s = img_write_png(path, &shown, IMG_LINEAR8);
+    img_free(&shown);
+    return s;
+}
+
+static status write_overview(const stereo_result *r, const char *path)
+{
+    img normal = {0}, depth = {0}, error = {0}, side = {0};
+    status s = figure_normals(&r->normal, &r->mask, &normal);
+    if (s == OK) s = figure_depth(&r->depth, &r->mask, &depth);
+    if (s == OK) s = error_picture(r, &error);
+    if (s == OK) s = stereo_side_view(r, TILE_SIZE, &side);
+    const figure_tile tiles[TILES] = {{"normal", &normal}, {"albedo", &r->albedo},  {"depth", &depth},
+                                      {"mask", &r->mask},  {r->error_name, &error}, {"from 45 degrees", &side}};
+    if (s == OK) s = figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
+    img_free(&normal);
+    img_free(&depth);
+    img_free(&error);
+    img_free(&side);
+    return s;
+}
+
+static status write_mesh(const stereo_result *r, const char *path)
+{
+    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, r->camera};
+    return pst_mesh_write(path, &source);
+}
+
+static status write_report(const cJSON *report, const char *path)
+{
+    char *text = cJSON_Print(report);
+    if (!text) return fail(ERROR_MEMORY, "no memory for a report");
+    status s = file_write(path, text, strlen(text));
+    free(text);
+    return s;
+}
+
+/* ---- all of them ---- */
+
+typedef struct output {
+    const char *name;
+    status (*write)(const stereo_result *r, const char *path);
+} output;
+
+static const output outputs[] = {
+    {"maps.exr", write_exr},          {"normal.png", write_normal}, {"albedo.png", write_albedo},
+    {"depth.png", write_depth},       {"mask.png", write_mask},     {"error.png", write_error},
+    {"overview.png", write_overview},
+};
+static const output meshes[] = {{"mesh.ply", write_mesh}, {"mesh.obj", write_mesh}, {"mesh.glb", write_mesh}};
+
+static status write_some(const stereo_files *files, const staging *t, const stereo_result *r, const output *some,
+                         size_t count)
+{
+    status s = OK;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        if (files->stop && files->stop()) return fail(ERROR_STOPPED, "stopped");
+        char *path = staging_path(t, some[i].name);
+        s = path ? some[i].write(r, path) : fail(ERROR_MEMORY, "no memory for a file name");
+        free(path);
+    }
+    return s;
+}
+
+static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
+{
+    status s = write_some(files, t, r, outputs, sizeof outputs / sizeof outputs[0]);
+    if (s == OK && files->mesh_count == 0) s = write_some(files, t, r, meshes, sizeof meshes / sizeof meshes[0]);
+    char *path = s == OK ? staging_path(t, "report.json") : NULL;
+    if (s == OK) s = path ? write_report(report, path) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(path);
+    for (int i = 0; i < files->mesh_count && s == OK; i++)
+        s = write_mesh(r, files->mesh[i]);
+    return s;
+}
+
+status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report)
+{
+    staging *t;
+    status s = staging_begin(files->folder, &t);
+    if (s != OK) return s;
+    s = write_all(files, t, r, report);
+    return s == OK ? staging_commit(t) : staging_abort(t, s);
+}

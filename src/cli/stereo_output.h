@@ -1,0 +1,39 @@
+/* The files of merlin stereo: maps, pictures for people, meshes and a report. */
+#ifndef MERLIN_CLI_STEREO_OUTPUT_H
+#define MERLIN_CLI_STEREO_OUTPUT_H
+
+#include <cJSON.h>
+
+#include "stereo/capture.h"
+
+enum { STEREO_MOST_MESHES = 8 };
+
+typedef struct stereo_result {
+    img normal, albedo, depth, mask; /* 3, 3, 1, 1 channels; albedo in [0, 1] */
+    img error;                       /* 1 */
+    const char *error_name;          /* what error is: the residual, or the spread in degrees */
+    float error_white;               /* shown as white */
+    pst_camera camera;
+} stereo_result;
+
+void stereo_result_free(stereo_result *r);
+
+/* Scales the albedo so that its 99th percentile on the object is 0.9: one without a known exposure has no scale of its
+ * own. Returns the factor. */
+float stereo_scale_albedo(stereo_result *r);
+
+typedef struct stereo_files {
+    const char *folder;
+    const char *mesh[STEREO_MOST_MESHES]; /* none: mesh.ply, mesh.obj and mesh.glb in the folder */
+    int mesh_count;
+    int (*stop)(void);
+} stereo_files;
+
+/* maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json and the meshes:
+ * all or, after a failure, none in the folder. */
+status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report);
+
+/* The surface turned by 45 degrees about the vertical axis and lit from the camera: side × side, 1 channel, linear. */
+status stereo_side_view(const stereo_result *r, int side, img *out);
+
+#endif

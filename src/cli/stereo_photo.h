@@ -1,0 +1,23 @@
+/* Photometric stereo from one photograph: estimate, relight under many known near lights, solve, several times over. */
+#ifndef MERLIN_CLI_STEREO_PHOTO_H
+#define MERLIN_CLI_STEREO_PHOTO_H
+
+#include <stdbool.h>
+
+#include "cli/stereo_output.h"
+#include "merlin/merlin.h"
+#include "stereo/solve.h"
+
+typedef struct stereo_photo {
+    const char *photo, *mask, *weights;
+    merlin_params params;
+    pst_method method; /* PST_AUTO: near */
+    bool preserve_edges;
+} stereo_photo;
+
+/* 50 lights of the frontal hemisphere, five draws of 32 of them, all by a fixed seed. The result is the square around
+ * the object: the draws' mean normal, and as error its spread over the draws in degrees. What was found is added to
+ * the report. */
+status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *report);
+
+#endif

@@ -1,0 +1,175 @@
+#include "stereo/calibrate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "image/read.h"
+#include "stereo/calibrate_parts.h"
+#include "stereo/capture_parts.h"
+
+void pst_calibration_free(pst_calibration *c)
+{
+    for (int i = 0; c->name && i < c->count; i++)
+        free(c->name[i]);
+    free(c->name);
+    free(c->direction);
+    free(c->highlight);
+    free(c->residual);
+    img_free(&c->brightest);
+    *c = (pst_calibration){0};
+}
+
+static float grey(const uint16_t *pixel, int channels)
+{
+    float sum = 0;
+    for (int k = 0; k < channels; k++)
+        sum += pixel[k];
+    return sum / (65535 * (float)channels);
+}
+
+static size_t pixels_of(const pst_capture *c)
+{
+    return (size_t)c->width * (size_t)c->height;
+}
+
+static status find_brightest(const pst_capture *c, img *out)
+{
+    status s = img_new(out, c->width, c->height, 3);
+    for (int i = 0; i < c->count && s == OK; i++)
+        for (size_t p = 0; p < 3 * pixels_of(c); p++) {
+            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            out->data[p] = fmaxf(out->data[p], value);
+        }
+    return s;
+}
+
+/* 3 x 3 binomial means of one channel; the border stays as it is. */
+static status smooth(img *p)
+{
+    img from;
+    status s = img_copy(&from, p);
+    if (s != OK) return s;
+    for (int y = 1; y < p->height - 1; y++)
+        for (int x = 1; x < p->width - 1; x++) {
+            float sum = 0;
+            for (int dy = -1; dy <= 1; dy++)
+                for (int dx = -1; dx <= 1; dx++)
+                    sum += *img_at(&from, x + dx, y + dy) * (float)((2 - dx * dx) * (2 - dy * dy));
+            *img_at(p, x, y) = sum / 16;
+        }
+    img_free(&from);
+    return OK;
+}
+
+/* What the outline is searched in: the logarithm, so that a dark ball before a darker room has an edge as well. */
+static status outline_picture(const img *brightest, img *out)
+{
+    static const float NOISE = 0.002f;
+    status s = img_new(out, brightest->width, brightest->height, 1);
+    if (s != OK) return s;
+    size_t pixels = (size_t)out->width * (size_t)out->height;
+    for (size_t p = 0; p < pixels; p++) {
+        const float *v = brightest->data + 3 * p;
+        out->data[p] = logf((v[0] + v[1] + v[2]) / 3 + NOISE);
+    }
+    s = smooth(out);
+    return s == OK ? smooth(out) : s;
+}
+
+static status find_circle(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
+                          pst_calibration *out)
+{
+    char *mask;
+    status s = pst_find_mask(folder, options->mask, &mask);
+    if (s != OK) return s;
+    img picture = {0};
+    bool found = false;
+    out->from_mask = mask != NULL;
+    s = mask ? img_copy(&picture, &c->mask) : outline_picture(&out->brightest, &picture);
+    if (s == OK && mask) s = smooth(&picture);
+    if (s == OK) s = ball_find(&picture, &out->circle, &found);
+    if (s == OK && !found && mask) s = fail(ERROR_INPUT, "the mask %s is not round", mask);
+    if (s == OK && !found)
+        s = fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline with --mask", folder);
+    img_free(&picture);
+    free(mask);
+    return s;
+}
+
+/* What every picture has, such as a window that mirrors in the ball; zero for fewer than three pictures. */
+static status find_constant(const pst_capture *c, img *out)
+{
+    status s = img_new(out, c->width, c->height, 1);
+    for (int i = 0; i < c->count && s == OK && c->count > 2; i++)
+        for (size_t p = 0; p < pixels_of(c); p++) {
+            float value = grey(c->picture[i] + p * (size_t)c->channels, c->channels);
+            out->data[p] = i ? fminf(out->data[p], value) : value;
+        }
+    return s;
+}
+
+static status find_light(const pst_capture *c, int i, const img *constant, pst_calibration *out)
+{
+    ball_view view = {out->circle, c->camera};
+    img picture;
+    status s = img_new(&picture, c->width, c->height, 1);
+    if (s != OK) return s;
+    for (size_t p = 0; p < pixels_of(c); p++)
+        picture.data[p] = grey(c->picture[i] + p * (size_t)c->channels, c->channels) -
+                          (out->ball == PST_CHROME ? constant->data[p] : 0);
+    s = out->ball == PST_CHROME ? ball_mirror_light(&picture, &view, &out->highlight[i], &out->direction[i])
+                                : ball_shading_light(&picture, &view, &out->residual[i], &out->direction[i]);
+    img_free(&picture);
+    return s == OK ? OK : fail_in(s, "%s", out->name[i]);
+}
+
+static status reserve(pst_capture *c, pst_calibration *out)
+{
+    size_t count = (size_t)c->count;
+    out->count = c->count;
+    out->name = c->name;
+    c->name = NULL;
+    out->direction = calloc(count, sizeof *out->direction);
+    if (out->ball == PST_CHROME)
+        out->highlight = calloc(count, sizeof *out->highlight);
+    else
+        out->residual = calloc(count, sizeof *out->residual);
+    return out->direction && (out->highlight || out->residual) ? OK : fail(ERROR_MEMORY, "no memory for lights");
+}
+
+static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
+{
+    img constant = {0};
+    status s = find_brightest(c, &out->brightest);
+    if (s == OK) s = find_circle(folder, options, c, out);
+    if (s == OK) s = find_constant(c, &constant);
+    if (s == OK) s = reserve(c, out);
+    for (int i = 0; i < c->count && s == OK; i++)
+        s = find_light(c, i, &constant, out);
+    img_free(&constant);
+    return s;
+}
+
+static pst_camera camera_of(const pst_calibrate_options *options, const pst_capture *c)
+{
+    static const float HALF_DEGREE = 3.14159265f / 360;
+    if (!(options->field_of_view > 0)) return (pst_camera){0};
+    return (pst_camera){.perspective = true,
+                        .focal = 0.5f * (float)c->width / tanf(options->field_of_view * HALF_DEGREE),
+                        .center_x = 0.5f * (float)c->width,
+                        .center_y = 0.5f * (float)c->height};
+}
+
+status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
+{
+    *out = (pst_calibration){.ball = options->ball};
+    pst_read_options reading = {.mask = options->mask, .unknown_lights = true, .linear = options->linear};
+    pst_capture c;
+    status s = pst_capture_read(folder, &reading, &c);
+    if (s != OK) return s;
+    c.camera = camera_of(options, &c);
+    s = calibrate(folder, options, &c, out);
+    pst_capture_free(&c);
+    if (s != OK) pst_calibration_free(out);
+    return s;
+}

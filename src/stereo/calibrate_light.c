@@ -1,0 +1,192 @@
+/* One light from one picture of a ball: the mirror direction of a chrome ball's highlight, or the least-squares light
+ * of a matte ball's shading. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/calibrate_parts.h"
+
+static const float INSIDE = 0.97f; /* of the radius: the rim mirrors the world behind and mixes with the background */
+
+/* ---- chrome ---- */
+
+typedef struct blob {
+    double sum, x, y; /* weight and weighted position */
+    size_t area;
+} blob;
+
+static bool inside(const ball_view *view, int x, int y, float share)
+{
+    const pst_circle *c = &view->circle;
+    return hypotf((float)x + 0.5f - c->x, (float)y + 0.5f - c->y) < share * c->radius;
+}
+
+static float brightest_inside(const img *p, const ball_view *view)
+{
+    float most = 0;
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++)
+            if (inside(view, x, y, INSIDE)) most = fmaxf(most, *img_at(p, x, y));
+    return most;
+}
+
+typedef struct flood {
+    img left;   /* copy of the picture; visited pixels become 0 */
+    int *stack; /* pixel indices */
+    float level;
+} flood;
+
+static void visit(flood *f, int at, size_t *depth, blob *b)
+{
+    float value = f->left.data[at] - f->level;
+    if (!(value > 0)) return;
+    f->left.data[at] = 0;
+    b->sum += value;
+    b->x += value * (at % f->left.width + 0.5);
+    b->y += value * (at / f->left.width + 0.5);
+    b->area++;
+    f->stack[(*depth)++] = at;
+}
+
+/* The connected patch above the level around a pixel. */
+static blob grow(flood *f, int start)
+{
+    blob b = {0};
+    size_t depth = 0;
+    int w = f->left.width, h = f->left.height;
+    visit(f, start, &depth, &b);
+    while (depth) {
+        int at = f->stack[--depth], x = at % w, y = at / w;
+        if (x > 0) visit(f, at - 1, &depth, &b);
+        if (x < w - 1) visit(f, at + 1, &depth, &b);
+        if (y > 0) visit(f, at - w, &depth, &b);
+        if (y < h - 1) visit(f, at + w, &depth, &b);
+    }
+    return b;
+}
+
+static status strongest_blob(const img *p, const ball_view *view, float level, blob *out)
+{
+    flood f = {.level = level};
+    status s = img_copy(&f.left, p);
+    if (s != OK) return s;
+    f.stack = malloc((size_t)p->width * (size_t)p->height * sizeof *f.stack);
+    *out = (blob){0};
+    for (int y = 0; y < p->height && f.stack; y++)
+        for (int x = 0; x < p->width; x++) {
+            if (!inside(view, x, y, INSIDE)) continue;
+            blob b = grow(&f, y * p->width + x);
+            if (b.sum > out->sum) *out = b;
+        }
+    s = f.stack ? OK : fail(ERROR_MEMORY, "no memory for a highlight");
+    free(f.stack);
+    img_free(&f.left);
+    return s;
+}
+
+status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *highlight, vec3 *direction)
+{
+    static const float LEVEL = 0.5f;        /* of the peak */
+    static const float LEAST_PEAK = 0.004f; /* of full scale: an 8-bit step */
+    float peak = brightest_inside(picture, view);
+    if (!(peak > LEAST_PEAK)) return fail(ERROR_INPUT, "no highlight on the ball");
+    blob b;
+    status s = strongest_blob(picture, view, LEVEL * peak, &b);
+    if (s != OK) return s;
+    *highlight = (pst_circle){(float)(b.x / b.sum), (float)(b.y / b.sum), sqrtf((float)b.area / 3.14159265f)};
+    if (highlight->radius > 0.5f * view->circle.radius)
+        return fail(ERROR_INPUT, "what is bright covers more than a quarter of the ball: is it chrome?");
+    vec3 n, v;
+    if (!ball_point(view, highlight->x, highlight->y, &n, &v))
+        return fail(ERROR_INPUT, "the highlight is not on the ball");
+    *direction = vec3_normalize(vec3_sub(vec3_scale(n, 2 * vec3_dot(n, v)), v));
+    return OK;
+}
+
+/* ---- matte ---- */
+
+typedef struct shade {
+    vec3 normal;
+    float value;
+    bool used;
+} shade;
+
+static size_t collect_shades(const img *p, const ball_view *view, shade *out)
+{
+    size_t count = 0;
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++) {
+            vec3 n, v;
+            if (!inside(view, x, y, INSIDE) || !ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v)) continue;
+            out[count++] = (shade){n, *img_at(p, x, y), true};
+        }
+    return count;
+}
+
+/* Least squares of value = light · normal over the shades in use; false if they do not span space. */
+static bool solve_light(const shade *at, size_t count, vec3 *light)
+{
+    double m[6] = {0}, v[3] = {0};
+    for (size_t i = 0; i < count; i++) {
+        if (!at[i].used) continue;
+        double x = at[i].normal.x, y = at[i].normal.y, z = at[i].normal.z, value = at[i].value;
+        m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
+        v[0] += x * value, v[1] += y * value, v[2] += z * value;
+    }
+    double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], k = m[1] * m[4] - m[2] * m[3];
+    double det = m[0] * a + m[1] * b + m[2] * k;
+    if (!(det > 1e-12 * pow(m[0] + m[3] + m[5], 3))) return false;
+    double p = m[0] * m[5] - m[2] * m[2], q = m[1] * m[2] - m[0] * m[4], r = m[0] * m[3] - m[1] * m[1];
+    *light = vec3_make((real)((a * v[0] + b * v[1] + k * v[2]) / det), (real)((b * v[0] + p * v[1] + q * v[2]) / det),
+                       (real)((k * v[0] + q * v[1] + r * v[2]) / det));
+    return true;
+}
+
+/* Uses what the light faces and explains; returns the root mean square of what was used, relative to the light. */
+static float select_lit(shade *at, size_t count, vec3 light, float spread)
+{
+    static const float GRAZING = 0.1f; /* cosine: below, roughness and penumbrae matter more than the light */
+    double sum = 0;
+    size_t used = 0;
+    float power = vec3_length(light);
+    for (size_t i = 0; i < count; i++) {
+        float expected = vec3_dot(light, at[i].normal), off = at[i].value - expected;
+        at[i].used = expected > GRAZING * power && at[i].value < 0.98f && fabsf(off) < 3 * spread * power;
+        if (!at[i].used) continue;
+        sum += (double)off * off;
+        used++;
+    }
+    return used && power > 0 ? (float)sqrt(sum / (double)used) / power : 0;
+}
+
+static status fit_light(shade *at, size_t count, float *residual, vec3 *direction)
+{
+    enum { ROUNDS = 15, LEAST_USED = 50 };
+    vec3 light = {0, 0, 0};
+    float most = 0, spread = 1;
+    for (size_t i = 0; i < count; i++)
+        most = fmaxf(most, at[i].value);
+    for (size_t i = 0; i < count; i++)
+        at[i].used = at[i].value > 0.1f * most;
+    for (int round = 0; round < ROUNDS; round++) {
+        if (!solve_light(at, count, &light) || !(vec3_length(light) > 1e-4f))
+            return fail(ERROR_INPUT, "the ball is not lit enough to tell where from");
+        spread = select_lit(at, count, light, fmaxf(spread, 0.01f));
+    }
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++)
+        used += at[i].used;
+    if (used < LEAST_USED) return fail(ERROR_INPUT, "only %zu pixels of the ball are lit as by one light", used);
+    *residual = spread;
+    *direction = vec3_normalize(light);
+    return OK;
+}
+
+status ball_shading_light(const img *picture, const ball_view *view, float *residual, vec3 *direction)
+{
+    shade *at = malloc((size_t)picture->width * (size_t)picture->height * sizeof *at);
+    if (!at) return fail(ERROR_MEMORY, "no memory for a ball's shading");
+    size_t count = collect_shades(picture, view, at);
+    status s = fit_light(at, count, residual, direction);
+    free(at);
+    return s;
+}

@@ -1,0 +1,25 @@
+/* The steps of a calibration: the ball's circle, its shape, and one light from one picture. */
+#ifndef MERLIN_STEREO_CALIBRATE_PARTS_H
+#define MERLIN_STEREO_CALIBRATE_PARTS_H
+
+#include "stereo/calibrate.h"
+
+/* The circle whose edge is seen most completely in a picture of one channel; false if there is none. */
+status ball_find(const img *picture, pst_circle *circle, bool *found);
+
+/* The ball in space, as much as the view tells. */
+typedef struct ball_view {
+    pst_circle circle;
+    pst_camera camera;
+} ball_view;
+
+/* The unit normal of the ball and the unit direction to the camera at a pixel position; false beside the ball. */
+bool ball_point(const ball_view *view, float x, float y, vec3 *normal, vec3 *to_camera);
+
+/* picture: 1 channel, linear, what all pictures share subtracted. */
+status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *highlight, vec3 *direction);
+
+/* picture: 1 channel, linear. */
+status ball_shading_light(const img *picture, const ball_view *view, float *residual, vec3 *direction);
+
+#endif

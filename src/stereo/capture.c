@@ -1,0 +1,116 @@
+#include "stereo/capture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "stereo/capture_parts.h"
+
+typedef enum layout { LAYOUT_PLAIN, LAYOUT_LUCES, LAYOUT_DILIGENT } layout;
+
+status pst_capture_reserve(pst_capture *c, size_t count)
+{
+    if (count < 1 || count > PST_MOST_PICTURES)
+        return fail(ERROR_INPUT, "a capture has 1 to %d pictures, not %zu", PST_MOST_PICTURES, count);
+    c->light = calloc(count, sizeof *c->light);
+    c->name = calloc(count, sizeof *c->name);
+    c->picture = calloc(count, sizeof *c->picture);
+    if (!c->light || !c->name || !c->picture) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    c->count = (int)count;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            c->light[i].intensity[k] = 1;
+    return OK;
+}
+
+status pst_capture_set_name(pst_capture *c, size_t i, const char *name)
+{
+    c->name[i] = strdup(name);
+    return c->name[i] ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+}
+
+void pst_capture_free(pst_capture *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        if (c->picture) free(c->picture[i]);
+        if (c->name) free(c->name[i]);
+    }
+    free(c->picture);
+    free(c->name);
+    free(c->light);
+    img_free(&c->mask);
+    img_free(&c->normal_true);
+    img_free(&c->depth_true);
+    *c = (pst_capture){0};
+}
+
+static bool folder_has(const char *folder, const char *name)
+{
+    char *path = file_join(folder, name);
+    bool there = path && file_exists(path);
+    free(path);
+    return there;
+}
+
+static layout recognize(const char *folder, const pst_read_options *options)
+{
+    if (options->lights) return LAYOUT_PLAIN;
+    if (folder_has(folder, "led_params.txt")) return LAYOUT_LUCES;
+    if (folder_has(folder, "light_directions.txt") && folder_has(folder, "filenames.txt")) return LAYOUT_DILIGENT;
+    return LAYOUT_PLAIN;
+}
+
+static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
+    if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
+    return pst_read_plain(folder, options, c);
+}
+
+static status read_truth(layout kind, const char *folder, pst_capture *c)
+{
+    if (kind == LAYOUT_LUCES) return pst_read_luces_truth(folder, c);
+    if (kind == LAYOUT_DILIGENT) return pst_read_diligent_truth(folder, c);
+    return OK;
+}
+
+static void forget_lights(pst_capture *c)
+{
+    memset(c->light, 0, (size_t)c->count * sizeof *c->light);
+    c->lighting = PST_UNKNOWN_LIGHT;
+    c->intensities_known = false;
+}
+
+/* What the user says of the camera wins; a near capture that says nothing has the project's 60 degrees. */
+static void settle_camera(const pst_read_options *options, pst_capture *c)
+{
+    static const float HALF_WIDTH_TO_FOCAL = 1.7320508f; /* 1 / tan 30° */
+    if (options->camera.focal > 0)
+        c->camera = options->camera;
+    else if (c->lighting == PST_NEAR && !(c->camera.focal > 0))
+        c->camera = (pst_camera){.perspective = true,
+                                 .focal = 0.5f * (float)c->width * HALF_WIDTH_TO_FOCAL,
+                                 .center_x = 0.5f * (float)c->width,
+                                 .center_y = 0.5f * (float)c->height,
+                                 .mean_distance = options->camera.mean_distance};
+}
+
+status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
+{
+    static const pst_read_options defaults = {0};
+    if (!options) options = &defaults;
+    *out = (pst_capture){0};
+    if (!file_is_folder(folder)) return fail(ERROR_INPUT, "there is no folder %s with pictures in it", folder);
+    layout kind = recognize(folder, options);
+    status s = read_layout(kind, folder, options, out);
+    if (s == OK) s = pst_read_pictures(folder, options, out);
+    if (s == OK) s = pst_read_mask(folder, options, out);
+    if (s == OK) s = read_truth(kind, folder, out);
+    if (s != OK) {
+        pst_capture_free(out);
+        return s;
+    }
+    settle_camera(options, out);
+    if (options->unknown_lights) forget_lights(out);
+    return OK;
+}

@@ -1,0 +1,66 @@
+/* A photometric-stereo capture: many pictures of one still object from one camera, each under one light.
+ *
+ *     pst_capture c;
+ *     status s = pst_capture_read("owl", &(pst_read_options){.lights = "owl/lights.txt"}, &c);
+ *     ... solve ...
+ *     pst_capture_free(&c);
+ *
+ * Space as everywhere: x right, y up, z toward the camera; light directions point from the object to the light. */
+#ifndef MERLIN_STEREO_CAPTURE_H
+#define MERLIN_STEREO_CAPTURE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec.h"
+#include "image/image.h"
+
+typedef enum pst_lighting {
+    PST_DISTANT,      /* direction */
+    PST_NEAR,         /* position, attenuation, LED lobe; needs the camera */
+    PST_UNKNOWN_LIGHT /* nothing is known */
+} pst_lighting;
+
+typedef struct pst_light {
+    vec3 direction;     /* distant: unit, to the light. Near: the LED's axis, unit (0, 0, 0: radiates evenly) */
+    vec3 position;      /* near: same unit and axes as the camera's space */
+    float intensity[3]; /* per channel; 1 unless given; 0 everywhere: unknown */
+    float lobe;         /* near: exponent of the LED's angular fall-off, 0 for none */
+} pst_light;
+
+typedef struct pst_camera {
+    bool perspective;
+    float focal;              /* pixels */
+    float center_x, center_y; /* principal point, pixels from the top left corner */
+    float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
+} pst_camera;
+
+/* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (sRGB decoded for 8-bit sources, ambient
+ * subtracted; division by light intensities is left to the solvers so that saturation stays visible at 65535). */
+typedef struct pst_capture {
+    int width, height, channels, count; /* channels 1 or 3 */
+    uint16_t **picture;                 /* count planes of height × width × channels */
+    pst_light *light;                   /* count */
+    char **name;                        /* count file names, for reports */
+    pst_lighting lighting;
+    bool intensities_known;
+    pst_camera camera;
+    img mask;        /* 1 channel; 1 on the object */
+    img normal_true; /* 3, or empty: ground truth where the layout has one */
+    img depth_true;  /* 1, or empty */
+} pst_capture;
+
+typedef struct pst_read_options {
+    const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
+    const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or the pictures' own non-black part */
+    const char *ambient; /* picture to subtract; NULL: ambient.png in the folder if there is one */
+    bool near;           /* lights.txt holds positions */
+    bool unknown_lights; /* ignore lights: uncalibrated */
+    bool linear;         /* 8-bit pictures are linear already */
+    pst_camera camera;   /* focal 0: from the layout, else 60 degrees when near */
+} pst_read_options;
+
+status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
+void pst_capture_free(pst_capture *c);
+
+#endif

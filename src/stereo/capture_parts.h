@@ -1,0 +1,35 @@
+/* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are read
+ * one after another, and last what must have their size. On failure pst_capture_read frees what was filled. */
+#ifndef MERLIN_STEREO_CAPTURE_PARTS_H
+#define MERLIN_STEREO_CAPTURE_PARTS_H
+
+#include "stereo/capture.h"
+
+enum { PST_MOST_PICTURES = 4096 };
+
+/* Room for count lights of intensity 1 and count names. */
+status pst_capture_reserve(pst_capture *c, size_t count);
+status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
+
+/* The file names (without folder, sorted) of the pictures that are part of the capture: not masks, ambient, ground
+ * truth or what merlin itself wrote there. numbered: only names that are a number. Free with file_list_free. */
+status pst_list_pictures(const char *folder, bool numbered, char ***names, size_t *count);
+
+/* Light intensities, one or three numbers a line, for the capture's lights. */
+status pst_read_intensities(const char *path, pst_capture *c);
+
+status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c);
+status pst_read_luces(const char *folder, pst_capture *c);
+status pst_read_luces_truth(const char *folder, pst_capture *c);
+status pst_read_diligent(const char *folder, pst_capture *c);
+status pst_read_diligent_truth(const char *folder, pst_capture *c);
+
+/* Planes from c->name, ambient subtracted. A width and height that a layout has set already must be the pictures'. */
+status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c);
+/* From a file, or the pixels that are not black in any picture. */
+status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c);
+/* The mask's file: the one asked for, mask.png or the first *.mask.png of the folder; *path is NULL if there is none.
+ * Free it. */
+status pst_find_mask(const char *folder, const char *asked, char **path);
+
+#endif

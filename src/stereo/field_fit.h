@@ -1,0 +1,40 @@
+/* The robust fit of pixel_fit.h over many pixels: gathers each pixel's values from the pictures, and its lights where
+ * they are near.
+ *
+ *     pst_field f = {.problem = p, .pixel = p->pixel, .count = p->pixel_count, .out = out};
+ *     double cost;
+ *     status s = pst_field_fit(&f, &cost); */
+#ifndef MERLIN_STEREO_FIELD_FIT_H
+#define MERLIN_STEREO_FIELD_FIT_H
+
+#include "stereo/solve_parts.h"
+
+typedef struct pst_field {
+    const pst_problem *problem;
+    const uint32_t *pixel; /* indices into the pictures */
+    size_t count;
+    const img *depth; /* NULL: distant lights */
+    float scale;      /* of depth */
+    float terminator;
+    pst_surface *out; /* NULL: not asked for */
+    vec3 *b;          /* count: albedo times normal, whichever way it faces; NULL: not asked for */
+} pst_field;
+
+/* cost: the pixels' robust losses, summed in their order whatever the number of threads. */
+status pst_field_fit(const pst_field *f, double *cost);
+
+/* Grey values (the mean of the channels, each under unit intensity) of count pixels and whether they are usable (1, 0):
+ * one pixel's all pictures together, pst_padded(pictures) a pixel, the next pixel's stride behind. */
+void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride);
+
+/* count of the problem's pixels, evenly spread (fewer where there are fewer); malloc'ed. */
+status pst_field_sample(const pst_problem *p, size_t count, uint32_t **pixel, size_t *found);
+
+/* The ray through the middle of a pixel, z = -1. */
+static inline vec3 pst_ray(const pst_camera *camera, int x, int y)
+{
+    return vec3_make(((float)x + 0.5f - camera->center_x) / camera->focal,
+                     (camera->center_y - (float)y - 0.5f) / camera->focal, -1);
+}
+
+#endif

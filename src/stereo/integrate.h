@@ -1,0 +1,22 @@
+/* From normals to a surface over the mask.
+ *
+ *     img depth;
+ *     status s = pst_integrate(&normal, &mask, &camera, &(pst_integration){.preserve_edges = true}, &depth); */
+#ifndef MERLIN_STEREO_INTEGRATE_H
+#define MERLIN_STEREO_INTEGRATE_H
+
+#include "stereo/capture.h"
+
+typedef struct pst_integration {
+    bool preserve_edges; /* discontinuity-preserving variant instead of least squares */
+    const img *prior;    /* 1 channel depth pulled toward weakly, or NULL */
+    float prior_weight;
+} pst_integration;
+
+/* depth: 1 channel, distance along -z, zero outside the mask. Orthographic: in pixels, mean 0 shifted to be positive;
+ * perspective: log-depth is integrated, scaled to the camera's mean_distance (1 if unknown). Each connected piece of the
+ * mask has its own constant. */
+status pst_integrate(const img *normal, const img *mask, const pst_camera *camera, const pst_integration *options,
+                     img *depth);
+
+#endif

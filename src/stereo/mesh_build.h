@@ -1,0 +1,32 @@
+/* A depth map as triangles, before it becomes a file. Internal. */
+#ifndef MERLIN_STEREO_MESH_BUILD_H
+#define MERLIN_STEREO_MESH_BUILD_H
+
+#include <stdint.h>
+
+#include "stereo/mesh_write.h"
+
+typedef struct surface_mesh {
+    size_t vertices, triangles;
+    float *position; /* 3 a vertex, camera space */
+    float *normal;   /* 3, of the triangles around the vertex */
+    float *texture;  /* 2, (0, 0) is the picture's top left corner */
+    int *pixel;      /* the vertex's place in the maps */
+    uint32_t *index; /* 3 a triangle, counter-clockwise from the camera */
+} surface_mesh;
+
+status surface_mesh_new(const pst_mesh_source *from, surface_mesh *out);
+void surface_mesh_free(surface_mesh *m);
+
+/* The vertex's normal: the map's where there is one, else the triangles'. */
+vec3 surface_mesh_normal(const surface_mesh *m, const pst_mesh_source *from, size_t vertex);
+
+/* One file a format. */
+status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+
+/* Albedo as 3 channels in [0, 1]: a single channel is repeated. */
+status mesh_albedo(const img *albedo, img *out);
+
+#endif

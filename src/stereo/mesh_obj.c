@@ -1,0 +1,92 @@
+/* OBJ with texture coordinates, its material beside it, and the material's albedo texture as PNG. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/write.h"
+#include "stereo/mesh_build.h"
+
+/* path with another ending of four characters, malloc'ed. */
+static char *with_ending(const char *path, const char *ending)
+{
+    char *out = strdup(path);
+    if (out) memcpy(out + strlen(out) - 4, ending, 4);
+    return out;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static void print_mesh(FILE *f, const surface_mesh *m, const pst_mesh_source *from, const char *material)
+{
+    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", base_name(material));
+    for (size_t v = 0; v < m->vertices; v++) {
+        const float *p = m->position + 3 * v, *t = m->texture + 2 * v;
+        vec3 n = surface_mesh_normal(m, from, v);
+        fprintf(f, "v %.7g %.7g %.7g\nvt %.7g %.7g\nvn %.5g %.5g %.5g\n", (double)p[0], (double)p[1], (double)p[2],
+                (double)t[0], 1 - (double)t[1], (double)n.x, (double)n.y, (double)n.z);
+    }
+    for (size_t t = 0; t < m->triangles; t++) {
+        fputc('f', f);
+        for (int k = 0; k < 3; k++) {
+            unsigned i = m->index[3 * t + (size_t)k] + 1;
+            fprintf(f, " %u/%u/%u", i, i, i);
+        }
+        fputc('\n', f);
+    }
+}
+
+static status write_mesh(const char *path, const surface_mesh *m, const pst_mesh_source *from, const char *material)
+{
+    char *temporary;
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    bool written = f != NULL;
+    if (f) {
+        print_mesh(f, m, from, material);
+        written = !ferror(f);
+        written &= fclose(f) == 0;
+    }
+    if (written) return file_commit(temporary, path);
+    file_discard(temporary);
+    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+}
+
+static status write_texture(const char *path, const img *albedo)
+{
+    img color = {0};
+    status s = mesh_albedo(albedo, &color);
+    if (s == OK) s = img_write_png(path, &color, IMG_SRGB8);
+    img_free(&color);
+    return s;
+}
+
+static status write_material(const char *path, const char *texture)
+{
+    char *text = NULL;
+    int length = asprintf(&text, "# written by merlin\nnewmtl surface\nKa 0 0 0\n%s\nKs 0 0 0\nillum 1\n%s%s%s",
+                          texture ? "Kd 1 1 1" : "Kd 0.6 0.6 0.6", texture ? "map_Kd " : "",
+                          texture ? base_name(texture) : "", texture ? "\n" : "");
+    if (length < 0) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    status s = file_write(path, text, (size_t)length);
+    free(text);
+    return s;
+}
+
+/* What the OBJ names is there before the OBJ is. */
+status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from)
+{
+    char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png");
+    status s = material && texture ? OK : fail(ERROR_MEMORY, "no memory for file names");
+    if (s == OK && from->albedo) s = write_texture(texture, from->albedo);
+    if (s == OK) s = write_material(material, from->albedo ? texture : NULL);
+    if (s == OK) s = write_mesh(path, m, from, material);
+    free(material);
+    free(texture);
+    return s;
+}

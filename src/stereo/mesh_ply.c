@@ -1,0 +1,66 @@
+/* PLY, binary little-endian, with normals and vertex colours. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "image/color.h"
+#include "stereo/mesh_build.h"
+
+typedef struct __attribute__((packed)) ply_vertex {
+    float position[3], normal[3];
+    uint8_t color[3];
+} ply_vertex;
+
+typedef struct __attribute__((packed)) ply_face {
+    uint8_t count;
+    uint32_t index[3];
+} ply_face;
+
+static void write_header(FILE *f, const surface_mesh *m)
+{
+    fprintf(f,
+            "ply\nformat binary_little_endian 1.0\ncomment written by merlin\nelement vertex %zu\n"
+            "property float x\nproperty float y\nproperty float z\n"
+            "property float nx\nproperty float ny\nproperty float nz\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "element face %zu\nproperty list uchar uint vertex_indices\nend_header\n",
+            m->vertices, m->triangles);
+}
+
+static void write_vertices(FILE *f, const surface_mesh *m, const pst_mesh_source *from)
+{
+    for (size_t v = 0; v < m->vertices; v++) {
+        vec3 n = surface_mesh_normal(m, from, v);
+        const float *p = m->position + 3 * v;
+        ply_vertex out = {{p[0], p[1], p[2]}, {n.x, n.y, n.z}, {200, 200, 200}};
+        for (int c = 0; c < 3 && from->albedo; c++) {
+            int channels = from->albedo->channels;
+            out.color[c] = srgb_code8(
+                from->albedo->data[(size_t)m->pixel[v] * (size_t)channels + (size_t)(channels == 3 ? c : 0)]);
+        }
+        fwrite(&out, sizeof out, 1, f);
+    }
+}
+
+status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from)
+{
+    char *temporary;
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    bool written = f != NULL;
+    if (f) {
+        write_header(f, m);
+        write_vertices(f, m, from);
+        for (size_t t = 0; t < m->triangles; t++) {
+            const uint32_t *i = m->index + 3 * t;
+            ply_face face = {3, {i[0], i[1], i[2]}};
+            fwrite(&face, sizeof face, 1, f);
+        }
+        written = !ferror(f);
+        written &= fclose(f) == 0;
+    }
+    if (written) return file_commit(temporary, path);
+    file_discard(temporary);
+    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+}

@@ -1,0 +1,38 @@
+#include "stereo/mesh_write.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "stereo/mesh_build.h"
+
+typedef struct format {
+    const char *ending;
+    status (*write)(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+} format;
+
+static const format formats[] = {{".ply", mesh_write_ply}, {".obj", mesh_write_obj}, {".glb", mesh_write_glb}};
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+static const format *format_of(const char *path)
+{
+    size_t length = strlen(path);
+    for (int i = 0; i < FORMATS; i++)
+        if (length > 4 && strcasecmp(path + length - 4, formats[i].ending) == 0) return &formats[i];
+    return NULL;
+}
+
+status pst_mesh_check_name(const char *path)
+{
+    return format_of(path) ? OK : fail(ERROR_USAGE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
+}
+
+status pst_mesh_write(const char *path, const pst_mesh_source *from)
+{
+    surface_mesh m;
+    status s = pst_mesh_check_name(path);
+    if (s == OK) s = surface_mesh_new(from, &m);
+    if (s != OK) return s;
+    s = format_of(path)->write(path, &m, from);
+    surface_mesh_free(&m);
+    return s;
+}

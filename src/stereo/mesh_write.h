@@ -1,0 +1,20 @@
+/* A surface as a mesh that opens in Blender and a browser: PLY (vertex colours), OBJ with texture coordinates and MTL,
+ * GLB with albedo and normal map. The file's ending decides. */
+#ifndef MERLIN_STEREO_MESH_WRITE_H
+#define MERLIN_STEREO_MESH_WRITE_H
+
+#include "stereo/capture.h"
+
+typedef struct pst_mesh_source {
+    const img *depth, *mask, *normal, *albedo; /* normal, albedo may be NULL */
+    pst_camera camera;
+} pst_mesh_source;
+
+/* ERROR_USAGE unless the name ends in .ply, .obj or .glb. */
+status pst_mesh_check_name(const char *path);
+
+/* One vertex a pixel inside the mask; triangles that would bridge a depth jump are left out. Camera space. Albedo is
+ * linear in [0, 1]. An OBJ brings NAME.mtl and, with albedo, NAME.png along. */
+status pst_mesh_write(const char *path, const pst_mesh_source *from);
+
+#endif

@@ -1,0 +1,103 @@
+/* Robust regression of Lambert's law on one pixel: iteratively reweighted least squares under the redescending loss of
+ * Geman & McClure (1987), its scale narrowed step by step (graduated non-convexity, Blake & Zisserman 1987), started
+ * from the observations between two ranks of brightness (position thresholding: highlights are the brightest, shadows
+ * the darkest), the best of several starts kept. Observations that the fit turns away from the light do not vote, but a
+ * bright one among them costs. */
+#include "stereo/pixel_fit.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/solve_parts.h"
+
+enum { STEPS = 6, POLISH = 4 };
+
+/* Residuals in units of the pixel's own albedo: from 0.45, where half the object is an inlier, down to 0.05, which
+ * keeps the foot of a highlight out. */
+static const float widest = 0.45f, narrowest = 0.05f, narrowing = 0.6444f; /* (0.05 / 0.45)^(1/5) */
+
+/* Ranks of the starts' darkest and brightest observations: many shadows and highlights, few shadows, few of either. */
+static const float window[][2] = {{0.2f, 0.6f}, {0.3f, 0.8f}, {0.1f, 0.95f}};
+enum { STARTS = sizeof window / sizeof *window };
+
+/* albedo · (n·l − τ) = b · (l − τ n): linear in b for the last n. */
+static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *restrict w)
+{
+    vec3 n = vec3_scale(vec3_normalize(last), o->terminator);
+    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, bx = 0, by = 0, bz = 0;
+#pragma omp simd reduction(+ : xx, xy, xz, yy, yz, zz, bx, by, bz)
+    for (int i = 0; i < o->padded; i++) {
+        float x = o->x[i] - n.x, y = o->y[i] - n.y, z = o->z[i] - n.z, u = w[i], v = u * o->value[i];
+        xx += u * x * x;
+        xy += u * x * y;
+        xz += u * x * z;
+        yy += u * y * y;
+        yz += u * y * z;
+        zz += u * z * z;
+        bx += v * x;
+        by += v * y;
+        bz += v * z;
+    }
+    return pst_solve3((float[6]){xx, xy, xz, yy, yz, zz}, vec3_make(bx, by, bz));
+}
+
+/* Sets the weights for residuals of the given width (in albedos) and returns the loss. */
+static float reweigh(const pst_observations *o, vec3 b, float width, float *restrict w)
+{
+    float albedo = vec3_length(b), sigma = width * albedo, cost = 0, offset = o->terminator * albedo;
+    float inverse = 1 / (sigma * sigma + 1e-20f);
+#pragma omp simd reduction(+ : cost)
+    for (int i = 0; i < o->padded; i++) {
+        float fit = b.x * o->x[i] + b.y * o->y[i] + b.z * o->z[i] - offset;
+        float r = o->value[i] - (fit > 0 ? fit : 0);
+        float t = r * r * inverse, g = 1 / (1 + t);
+        cost += o->usable[i] * t * g;
+        w[i] = fit > 0 ? o->usable[i] * g * g : 0;
+    }
+    return cost;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static pst_pixel fit_from(const pst_observations *o, float low, float high, float *w)
+{
+    for (int i = 0; i < o->padded; i++)
+        w[i] = o->usable[i] > 0 && o->value[i] >= low && o->value[i] <= high ? 1 : 0;
+    vec3 b = weighted_fit(o, (vec3){0, 0, 0}, w);
+    float width = widest;
+    for (int k = 0; k < STEPS; k++, width *= narrowing) {
+        reweigh(o, b, width, w);
+        b = weighted_fit(o, b, w);
+    }
+    return (pst_pixel){b, reweigh(o, b, narrowest, w)};
+}
+
+pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
+{
+    float sorted[PST_MAX_LIGHTS], w[PST_MAX_LIGHTS];
+    size_t n = 0;
+    for (int i = 0; i < o->padded; i++)
+        if (o->usable[i] > 0) sorted[n++] = o->value[i];
+    memset(weight, 0, (size_t)o->padded * sizeof *weight);
+    if (n == 0) return (pst_pixel){{0, 0, 0}, 0};
+    qsort(sorted, n, sizeof *sorted, ascending);
+    pst_pixel best = {{0, 0, 0}, HUGE_VALF};
+    for (int s = 0; s < STARTS; s++) {
+        float last = (float)(n - 1);
+        pst_pixel p = fit_from(o, sorted[(int)(window[s][0] * last)], sorted[(int)(window[s][1] * last + 0.5f)], w);
+        /* a fit that vanishes explains darkness alone; any other is better */
+        if (vec3_dot(p.b, p.b) < 1e-20f) p.cost = (float)o->padded;
+        if (p.cost >= best.cost) continue;
+        best = p;
+        memcpy(weight, w, (size_t)o->padded * sizeof *w);
+    }
+    for (int k = 0; k < POLISH; k++) {
+        best.b = weighted_fit(o, best.b, weight);
+        best.cost = reweigh(o, best.b, narrowest, weight);
+    }
+    return best;
+}

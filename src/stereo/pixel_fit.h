@@ -1,0 +1,37 @@
+/* One pixel's surface from its values under many lights, some of them highlights or cast shadows.
+ *
+ *     pst_observations o = {.padded = pst_padded(count), .x = x, .y = y, .z = z, .value = v, .usable = u};
+ *     float weight[PST_MAX_LIGHTS];
+ *     pst_pixel p = pst_pixel_fit(&o, weight);         p.b / |p.b| the normal, |p.b| the albedo
+ *
+ * Lights are shared between pixels (distant) or a pixel's own (near). */
+#ifndef MERLIN_STEREO_PIXEL_FIT_H
+#define MERLIN_STEREO_PIXEL_FIT_H
+
+#include "base/vec.h"
+
+/* Lengths are rounded up to whole vectors, so that loops over lights have no remainder; the padding is not usable. */
+enum { PST_LANES = 16, PST_MAX_LIGHTS = 1024 };
+
+static inline int pst_padded(int count)
+{
+    return (count + PST_LANES - 1) / PST_LANES * PST_LANES;
+}
+
+typedef struct pst_observations {
+    int padded;
+    const float *x, *y, *z; /* unit, to the light */
+    const float *value;     /* radiance divided by what the light sends here */
+    const float *usable;    /* 1; 0 where the picture has no value (saturated, padding) */
+    float terminator;       /* τ: radiance is albedo · max(0, n·l − τ); 0 by Lambert's law */
+} pst_observations;
+
+typedef struct pst_pixel {
+    vec3 b;     /* albedo times normal; 0 where nothing is usable */
+    float cost; /* sum of the robust loss over the usable observations, each in [0, 1] */
+} pst_pixel;
+
+/* weight gets each observation's share in the fit, in [0, 1]. */
+pst_pixel pst_pixel_fit(const pst_observations *o, float *weight);
+
+#endif

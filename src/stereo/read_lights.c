@@ -1,0 +1,150 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/light_list.h"
+#include "stereo/capture_parts.h"
+#include "stereo/text_numbers.h"
+
+enum { TEXT_MOST = 1 << 22 };
+
+/* lights.txt, else the folder's .lp; *path is NULL if there is neither. */
+static status find_lights(const char *folder, const char *asked, char **path)
+{
+    static const char *const endings[] = {".lp", NULL};
+    *path = asked ? strdup(asked) : file_join(folder, "lights.txt");
+    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (asked || file_exists(*path)) return OK;
+    free(*path);
+    *path = NULL;
+    char **names;
+    size_t count;
+    status s = file_list(folder, endings, &names, &count);
+    if (s != OK || count == 0) return s;
+    if (count > 1)
+        s = fail(ERROR_INPUT, "%s has %zu .lp files; say which with --lights", folder, count);
+    else if (!(*path = strdup(names[0])))
+        s = fail(ERROR_MEMORY, "no memory for a file name");
+    file_list_free(names, count);
+    return s;
+}
+
+/* The name alone of what an .lp line may give with a path from another machine. */
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *backslash = strrchr(path, '\\');
+    const char *last = slash > backslash ? slash : backslash;
+    return last ? last + 1 : path;
+}
+
+static status names_from_folder(const char *folder, const char *lights, size_t wanted, pst_capture *c)
+{
+    char **names;
+    size_t count;
+    status s = pst_list_pictures(folder, false, &names, &count);
+    if (s != OK) return s;
+    if (lights && count != wanted)
+        s = fail(ERROR_INPUT, "%s has %zu pictures, but %s has %zu lights; each picture needs one", folder, count,
+                 lights, wanted);
+    if (s == OK) s = pst_capture_reserve(c, count);
+    for (size_t i = 0; i < count && s == OK; i++)
+        s = pst_capture_set_name(c, i, names[i]);
+    file_list_free(names, count);
+    return s;
+}
+
+static status names_from_list(const char *folder, const char *lights, const light_list *list, pst_capture *c)
+{
+    status s = pst_capture_reserve(c, list->count);
+    for (size_t i = 0; i < list->count && s == OK; i++) {
+        const char *name = base_name(list->name[i]);
+        char *path = file_join(folder, name);
+        if (!path)
+            s = fail(ERROR_MEMORY, "no memory for a file name");
+        else if (!file_exists(path))
+            s = fail(ERROR_INPUT, "%s names %s, but there is no %s", lights, list->name[i], path);
+        else
+            s = pst_capture_set_name(c, i, name);
+        free(path);
+    }
+    return s;
+}
+
+static status set_lights(const char *path, const light_list *list, bool near, pst_capture *c)
+{
+    c->lighting = near ? PST_NEAR : PST_DISTANT;
+    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
+    for (size_t i = 0; i < list->count; i++) {
+        vec3 at = list->at[i];
+        if (near) {
+            c->light[i].position = at;
+            continue;
+        }
+        c->light[i].direction = list->name ? light_list_direction(list, i) : vec3_normalize(at);
+        if (!(vec3_length(c->light[i].direction) > 0.5f))
+            return fail(ERROR_INPUT, "%s: the direction of light %zu has no length", path, i + 1);
+    }
+    return OK;
+}
+
+static status set_one_intensity(const text_numbers *t, float intensity[3])
+{
+    if (t->count != 1 && t->count != 3)
+        return fail(ERROR_INPUT, "%s:%d: expected one or three intensities", t->where, t->line);
+    for (int k = 0; k < 3; k++) {
+        double value = t->value[t->count == 3 ? k : 0];
+        if (!(value > 0 && value < 1e12))
+            return fail(ERROR_INPUT, "%s:%d: an intensity must be above zero, not %g", t->where, t->line, value);
+        intensity[k] = (float)value;
+    }
+    return OK;
+}
+
+status pst_read_intensities(const char *path, pst_capture *c)
+{
+    char *text;
+    size_t size;
+    status s = file_read(path, TEXT_MOST, &text, &size);
+    if (s != OK) return s;
+    text_numbers t = text_numbers_at(text, size, path);
+    int count = 0;
+    bool found = true;
+    while (s == OK && (s = text_numbers_next(&t, &found)) == OK && found) {
+        if (count < c->count) s = set_one_intensity(&t, c->light[count].intensity);
+        count++;
+    }
+    free(text);
+    if (s == OK && count != c->count)
+        s = fail(ERROR_INPUT, "%s has %d intensities for %d lights", path, count, c->count);
+    c->intensities_known = s == OK;
+    return s;
+}
+
+static status read_listed(const char *folder, const char *lights, bool near, pst_capture *c)
+{
+    light_list list;
+    status s = light_list_read(lights, &list);
+    if (s != OK) return s;
+    s = list.name ? names_from_list(folder, lights, &list, c) : names_from_folder(folder, lights, list.count, c);
+    if (s == OK) s = set_lights(lights, &list, near, c);
+    light_list_free(&list);
+    char *intensities = s == OK ? file_join(folder, "light_intensities.txt") : NULL;
+    if (intensities && file_exists(intensities)) s = pst_read_intensities(intensities, c);
+    free(intensities);
+    return s;
+}
+
+status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    if (options->unknown_lights) return names_from_folder(folder, NULL, 0, c);
+    char *lights;
+    status s = find_lights(folder, options->lights, &lights);
+    if (s == OK && !lights)
+        return fail(ERROR_INPUT,
+                    "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); give them "
+                    "with --lights, or use --method uncalibrated",
+                    folder);
+    if (s == OK) s = read_listed(folder, lights, options->near, c);
+    free(lights);
+    return s;
+}

@@ -1,0 +1,206 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/read.h"
+#include "stereo/array_file.h"
+#include "stereo/capture_parts.h"
+#include "stereo/luces.h"
+#include "stereo/text_numbers.h"
+
+enum { TEXT_MOST = 1 << 22, CAMERA_NUMBERS = 7 };
+static const double LARGEST = 1e7; /* mm or pixels: ten kilometres is no desk */
+
+void luces_free(luces_params *p)
+{
+    free(p->light);
+    *p = (luces_params){0};
+}
+
+/* LUCES has y down and z away from the camera. */
+static vec3 turn(const double v[3])
+{
+    return vec3_make((real)v[0], (real)-v[1], (real)-v[2]);
+}
+
+static status check_range(const text_numbers *t)
+{
+    for (int i = 0; i < t->count; i++)
+        if (!(t->value[i] >= -LARGEST && t->value[i] <= LARGEST))
+            return fail(ERROR_INPUT, "%s:%d: %g is out of range", t->where, t->line, t->value[i]);
+    return OK;
+}
+
+static bool is_whole(double x, double low, double high)
+{
+    return x >= low && x <= high && floor(x) == x;
+}
+
+static status parse_camera(const text_numbers *t, luces_params *p)
+{
+    const double *v = t->value;
+    if (t->count != CAMERA_NUMBERS)
+        return fail(ERROR_INPUT, "%s:%d: expected N_img nrows ncols f x0 y0 mean_distance, found %d numbers", t->where,
+                    t->line, t->count);
+    if (!is_whole(v[0], 1, PST_MOST_PICTURES) || !is_whole(v[1], 1, IMAGE_MAX_SIDE) ||
+        !is_whole(v[2], 1, IMAGE_MAX_SIDE) || !(v[3] > 1e-3) || !(v[6] > 1e-3))
+        return fail(ERROR_INPUT,
+                    "%s:%d: not a camera: %g images of %g rows and %g columns, focal length %g, distance %g", t->where,
+                    t->line, v[0], v[1], v[2], v[3], v[6]);
+    p->count = (int)v[0];
+    p->height = (int)v[1];
+    p->width = (int)v[2];
+    p->camera = (pst_camera){true, (float)v[3], (float)v[4], (float)v[5], (float)v[6]};
+    return OK;
+}
+
+/* position, direction, intensity (1 or 3), attenuation */
+static status parse_light(const text_numbers *t, pst_light *out)
+{
+    const double *v = t->value;
+    if (t->count != 8 && t->count != 10)
+        return fail(
+            ERROR_INPUT,
+            "%s:%d: expected a light's position, direction, intensity and attenuation (8 or 10 numbers), found %d",
+            t->where, t->line, t->count);
+    int colours = t->count - 7;
+    *out = (pst_light){.position = turn(v), .direction = vec3_normalize(turn(v + 3)), .lobe = (float)v[t->count - 1]};
+    for (int k = 0; k < 3; k++) {
+        out->intensity[k] = (float)v[6 + (colours == 3 ? k : 0)];
+        if (!(out->intensity[k] > 0))
+            return fail(ERROR_INPUT, "%s:%d: the light's intensity must be above zero", t->where, t->line);
+    }
+    if (!(out->lobe >= 0)) return fail(ERROR_INPUT, "%s:%d: the attenuation must not be negative", t->where, t->line);
+    if (out->lobe > 0 && !(vec3_length(out->direction) > 0.5f))
+        return fail(ERROR_INPUT, "%s:%d: the light's direction has no length", t->where, t->line);
+    return OK;
+}
+
+static status parse_lines(text_numbers *t, luces_params *p)
+{
+    bool found;
+    int lights = 0;
+    status s;
+    while ((s = text_numbers_next(t, &found)) == OK && found) {
+        if (t->count == 0 && lights == 0) continue;
+        if ((s = check_range(t)) != OK) return s;
+        if (!p->light) {
+            if ((s = parse_camera(t, p)) != OK) return s;
+            p->light = calloc((size_t)p->count, sizeof *p->light);
+            if (!p->light) return fail(ERROR_MEMORY, "no memory for %d lights", p->count);
+            continue;
+        }
+        if (lights < p->count && (s = parse_light(t, &p->light[lights])) != OK) return s;
+        lights++;
+    }
+    if (s != OK) return s;
+    if (!p->light) return fail(ERROR_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", t->where);
+    if (lights != p->count) return fail(ERROR_INPUT, "%s: %d lights for %d images", t->where, lights, p->count);
+    return OK;
+}
+
+status luces_parse(const char *text, size_t size, const char *where, luces_params *out)
+{
+    *out = (luces_params){0};
+    text_numbers t = text_numbers_at(text, size, where);
+    status s = parse_lines(&t, out);
+    if (s != OK) luces_free(out);
+    return s;
+}
+
+static status read_params(const char *folder, luces_params *out)
+{
+    char *path = file_join(folder, "led_params.txt"), *text;
+    size_t size;
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = file_read(path, TEXT_MOST, &text, &size);
+    if (s == OK) {
+        s = luces_parse(text, size, path, out);
+        free(text);
+    }
+    free(path);
+    return s;
+}
+
+static status take_pictures(const char *folder, char **names, size_t count, const luces_params *p, pst_capture *c)
+{
+    if (count != (size_t)p->count)
+        return fail(ERROR_INPUT, "%s has %zu numbered pictures, but led_params.txt has %d lights", folder, count,
+                    p->count);
+    status s = pst_capture_reserve(c, count);
+    for (size_t i = 0; i < count && s == OK; i++)
+        s = pst_capture_set_name(c, i, names[i]);
+    return s;
+}
+
+status pst_read_luces(const char *folder, pst_capture *c)
+{
+    luces_params p;
+    status s = read_params(folder, &p);
+    if (s != OK) return s;
+    char **names;
+    size_t count;
+    s = pst_list_pictures(folder, true, &names, &count);
+    if (s == OK) {
+        s = take_pictures(folder, names, count, &p, c);
+        file_list_free(names, count);
+    }
+    if (s == OK) {
+        memcpy(c->light, p.light, count * sizeof *p.light);
+        c->lighting = PST_NEAR;
+        c->intensities_known = true;
+        c->camera = p.camera;
+        c->width = p.width;
+        c->height = p.height;
+    }
+    luces_free(&p);
+    return s;
+}
+
+static status read_normals(const char *path, pst_capture *c)
+{
+    int bits;
+    status s = img_read_samples(path, false, &c->normal_true, &bits);
+    if (s != OK) return s;
+    const img *n = &c->normal_true;
+    if (n->width != c->width || n->height != c->height || n->channels != 3)
+        return fail(ERROR_INPUT, "%s is %d x %d with %d channels; expected %d x %d with 3", path, n->width, n->height,
+                    n->channels, c->width, c->height);
+    size_t pixels = (size_t)c->width * (size_t)c->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *v = n->data + 3 * i;
+        double theirs[3] = {2 * v[0] - 1, 2 * v[1] - 1, 2 * v[2] - 1};
+        vec3 ours = c->mask.data[i] > 0 ? vec3_normalize(turn(theirs)) : vec3_make(0, 0, 0);
+        memcpy(n->data + 3 * i, (float[3]){ours.x, ours.y, ours.z}, 3 * sizeof(float));
+    }
+    return OK;
+}
+
+static status read_depth(const char *path, pst_capture *c)
+{
+    number_array a;
+    status s = npz_read(path, "zgt", &a);
+    if (s != OK) return s;
+    if (a.size[0] != (size_t)c->height || a.size[1] != (size_t)c->width || a.size[2] != 1)
+        s = fail(ERROR_INPUT, "%s holds %zu x %zu depths; expected %d x %d", path, a.size[0], a.size[1], c->height,
+                 c->width);
+    if (s == OK) s = img_new(&c->depth_true, c->width, c->height, 1);
+    for (int y = 0; y < c->height && s == OK; y++)
+        for (int x = 0; x < c->width; x++) {
+            float depth = a.data[array_at(&a, (size_t)y, (size_t)x, 0)];
+            *img_at(&c->depth_true, x, y) = *img_at(&c->mask, x, y) > 0 && isfinite(depth) ? depth : 0;
+        }
+    array_free(&a);
+    return s;
+}
+
+status pst_read_luces_truth(const char *folder, pst_capture *c)
+{
+    char *normals = file_join(folder, "normals.png"), *depth = file_join(folder, "zgt.npz");
+    status s = normals && depth ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    if (s == OK && file_exists(normals)) s = read_normals(normals, c);
+    if (s == OK && file_exists(depth)) s = read_depth(depth, c);
+    free(normals);
+    free(depth);
+    return s;
+}

@@ -1,0 +1,64 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/read.h"
+#include "stereo/capture_parts.h"
+
+/* Of full scale: what no light brings above this is background or never lit. */
+static const float BLACK = 0.004f;
+
+status pst_find_mask(const char *folder, const char *asked, char **path)
+{
+    static const char *const endings[] = {".mask.png", NULL};
+    *path = asked ? strdup(asked) : file_join(folder, "mask.png");
+    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (asked || file_exists(*path)) return OK;
+    free(*path);
+    *path = NULL;
+    char **names;
+    size_t count;
+    status s = file_list(folder, endings, &names, &count);
+    if (s != OK || count == 0) return s;
+    *path = strdup(names[0]);
+    file_list_free(names, count);
+    return *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+}
+
+static status mask_from_pictures(pst_capture *c)
+{
+    status s = img_new(&c->mask, c->width, c->height, 1);
+    if (s != OK) return s;
+    size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    const uint16_t least = (uint16_t)(BLACK * 65535);
+    for (int i = 0; i < c->count; i++)
+        for (size_t p = 0; p < pixels * channels; p++)
+            if (c->picture[i][p] > least) c->mask.data[p / channels] = 1;
+    return OK;
+}
+
+static status check_mask(const char *path, pst_capture *c)
+{
+    if (c->mask.width != c->width || c->mask.height != c->height)
+        return fail(ERROR_INPUT, "the mask %s is %d x %d pixels, but the pictures are %d x %d", path, c->mask.width,
+                    c->mask.height, c->width, c->height);
+    size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
+    for (size_t p = 0; p < pixels; p++)
+        inside += (c->mask.data[p] = c->mask.data[p] >= 0.5f) > 0;
+    return inside ? OK : fail(ERROR_INPUT, "the mask %s is black everywhere", path);
+}
+
+status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    char *path;
+    status s = pst_find_mask(folder, options->mask, &path);
+    if (s != OK) return s;
+    if (path) {
+        s = img_read_mask(path, &c->mask);
+        if (s == OK) s = check_mask(path, c);
+    } else {
+        s = mask_from_pictures(c);
+    }
+    free(path);
+    return s;
+}

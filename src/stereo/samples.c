@@ -1,0 +1,107 @@
+#include "stereo/samples.h"
+
+#include <lapacke.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "stereo/field_fit.h"
+#include "stereo/pixel_fit.h"
+
+/* Fewer lit pixels than this do not span the lights; the shadowed are then taken too. */
+enum { ENOUGH = 24 };
+/* A value below this share of the pixel's brightest is a shadow. */
+static const float dark = 0.02f;
+
+status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
+{
+    *out = (pst_samples){.lights = p->capture->count, .padded = (size_t)pst_padded(p->capture->count)};
+    if (out->lights > PST_MAX_LIGHTS)
+        return fail(ERROR_INPUT, "%d pictures are more than the %d that can be solved without known lights",
+                    out->lights, PST_MAX_LIGHTS);
+    status s = pst_field_sample(p, count, &out->pixel, &out->count);
+    if (s != OK) return s;
+    size_t floats = out->count * out->padded;
+    out->value = malloc(3 * floats * sizeof(float));
+    out->b = calloc(out->count, sizeof *out->b);
+    if (!out->value || !out->b) {
+        pst_samples_free(out);
+        return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", count);
+    }
+    out->usable = out->value + floats;
+    out->weight = out->usable + floats;
+    pst_gather(p, out->pixel, out->count, out->value, out->usable, out->padded);
+    return OK;
+}
+
+void pst_samples_free(pst_samples *m)
+{
+    free(m->pixel);
+    free(m->value);
+    free(m->b);
+    *m = (pst_samples){0};
+}
+
+static bool is_lit(const pst_samples *m, size_t i)
+{
+    const float *v = m->value + i * m->padded, *u = m->usable + i * m->padded;
+    float top = 0, low = v[0];
+    for (int k = 0; k < m->lights; k++) {
+        if (u[k] <= 0) return false;
+        top = v[k] > top ? v[k] : top;
+        low = v[k] < low ? v[k] : low;
+    }
+    return low > dark * top;
+}
+
+status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
+{
+    size_t n = (size_t)m->lights;
+    double *gram = calloc(n * n + n, sizeof *gram);
+    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    *lit = 0;
+    for (size_t i = 0; i < m->count; i++)
+        *lit += is_lit(m, i);
+    for (size_t i = 0; i < m->count; i++) {
+        const float *v = m->value + i * m->padded;
+        if (*lit >= ENOUGH && !is_lit(m, i)) continue;
+        for (size_t j = 0; j < n; j++)
+            for (size_t k = j; k < n; k++)
+                gram[j * n + k] += (double)v[j] * (double)v[k];
+    }
+    double *eigenvalue = gram + n * n;
+    int size = m->lights;
+    lapack_int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', size, gram, size, eigenvalue);
+    double smallest = eigenvalue[n - 3], largest = eigenvalue[n - 1];
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = 0; k < 3; k++)
+            basis[3 * j + k] = gram[j * n + n - 1 - k] * sqrt(eigenvalue[n - 1 - k] > 0 ? eigenvalue[n - 1 - k] : 0);
+    free(gram);
+    if (info != 0 || !(smallest > 1e-9 * largest))
+        return fail(ERROR_INPUT, "the pictures do not differ enough to tell the lights from the surface");
+    return OK;
+}
+
+typedef struct fit_job {
+    pst_samples *m;
+    const float *x, *y, *z;
+} fit_job;
+
+static void fit_one(void *context, size_t i)
+{
+    const fit_job *job = context;
+    pst_samples *m = job->m;
+    pst_observations o = {.padded = (int)m->padded,
+                          .x = job->x,
+                          .y = job->y,
+                          .z = job->z,
+                          .value = m->value + i * m->padded,
+                          .usable = m->usable + i * m->padded};
+    m->b[i] = pst_pixel_fit(&o, m->weight + i * m->padded).b;
+}
+
+void pst_samples_fit(pst_samples *m, const float *x, const float *y, const float *z)
+{
+    fit_job job = {m, x, y, z};
+    parallel_for(m->count, fit_one, &job);
+}

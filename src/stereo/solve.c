@@ -1,0 +1,156 @@
+#include "stereo/solve.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/solve_parts.h"
+
+static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
+enum { METHOD_COUNT = sizeof method_names / sizeof *method_names };
+
+/* A light list flatter than this (its smallest singular value against its largest) leaves the normal's component out of
+ * its plane to the noise. */
+static const float flattest_lights = 0.01f;
+
+int pst_method_from_name(const char *name)
+{
+    for (int i = 0; i < METHOD_COUNT; i++)
+        if (!strcmp(name, method_names[i])) return i;
+    return -1;
+}
+
+const char *pst_method_name(pst_method m)
+{
+    return (int)m >= 0 && (int)m < (int)METHOD_COUNT ? method_names[m] : "unknown";
+}
+
+status pst_check_directions(const pst_light *light, int count)
+{
+    if (count < 3) return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
+    double m[9] = {0}, eigenvalue[3];
+    for (int i = 0; i < count; i++) {
+        double d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
+        for (int j = 0; j < 9; j++)
+            m[j] += d[j / 3] * d[j % 3];
+    }
+    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, m, 3, eigenvalue) != 0)
+        return fail(ERROR_INPUT, "the light directions are not numbers");
+    if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
+        return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
+    return OK;
+}
+
+static pst_method choose(const pst_capture *c)
+{
+    if (c->lighting == PST_UNKNOWN_LIGHT) return PST_UNCALIBRATED;
+    if (c->lighting == PST_NEAR) return PST_NEAR_LIGHTS;
+    if (!c->intensities_known) return PST_SEMI;
+    /* with few lights no observation can be spared as an outlier */
+    return c->count < 8 ? PST_LS : PST_ROBUST;
+}
+
+static status check_method(const pst_capture *c, pst_method m)
+{
+    bool distant = m == PST_LS || m == PST_ROBUST || m == PST_SEMI;
+    if (distant && c->lighting != PST_DISTANT)
+        return fail(ERROR_USAGE, "method %s needs light directions, which this capture does not have; use %s",
+                    pst_method_name(m), c->lighting == PST_NEAR ? "near" : "uncalibrated");
+    if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
+        return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
+                    c->lighting == PST_DISTANT ? "robust" : "uncalibrated");
+    if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
+        return fail(ERROR_USAGE, "method near needs the camera's focal length");
+    if (c->count < 3)
+        return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
+    return distant ? pst_check_directions(c->light, c->count) : OK;
+}
+
+static status list_pixels(const pst_capture *c, pst_problem *p)
+{
+    size_t size = (size_t)c->width * (size_t)c->height, n = 0;
+    if (c->mask.width != c->width || c->mask.height != c->height)
+        return fail(ERROR_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width, c->mask.height,
+                    c->width, c->height);
+    p->pixel = malloc(size * sizeof *p->pixel);
+    if (!p->pixel) return fail(ERROR_MEMORY, "no memory for a list of %zu pixels", size);
+    for (size_t i = 0; i < size; i++)
+        if (c->mask.data[i] > 0.5f) p->pixel[n++] = (uint32_t)i;
+    p->pixel_count = n;
+    return n ? OK : fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
+}
+
+/* Intensities that are not known count as 1; a light of no intensity tells nothing and would divide by zero. */
+static status list_lights(const pst_capture *c, pst_light *light)
+{
+    for (int i = 0; i < c->count; i++) {
+        light[i] = c->light ? c->light[i] : (pst_light){0};
+        float *e = light[i].intensity;
+        bool unknown = !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
+        for (int k = 0; k < 3; k++) {
+            if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
+            if (!(e[k] > 0) || !isfinite(e[k]))
+                return fail(ERROR_INPUT, "light %d has the intensity %g; it must be above 0", i + 1, (double)e[k]);
+        }
+    }
+    return OK;
+}
+
+static status allocate(const pst_capture *c, pst_surface *out)
+{
+    status s = img_new(&out->normal, c->width, c->height, 3);
+    if (s == OK) s = img_new(&out->albedo, c->width, c->height, c->channels);
+    if (s == OK) s = img_new(&out->residual, c->width, c->height, 1);
+    return s;
+}
+
+static status run(const pst_problem *p, pst_surface *out)
+{
+    switch (out->method) {
+    case PST_LS:
+        return pst_solve_ls(p, out);
+    case PST_ROBUST:
+        return pst_solve_robust(p, out);
+    case PST_NEAR_LIGHTS:
+        return pst_solve_near(p, out);
+    case PST_SEMI:
+        return pst_solve_semi(p, out);
+    case PST_UNCALIBRATED:
+        return pst_solve_uncalibrated(p, out);
+    default:
+        return fail(ERROR_USAGE, "there is no such method of photometric stereo");
+    }
+}
+
+status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
+{
+    *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
+    status s = check_method(c, out->method);
+    if (s != OK) return s;
+    pst_light *light = calloc((size_t)c->count, sizeof *light);
+    if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    pst_problem p = {.capture = c,
+                     .light = light,
+                     .shadow = options->shadow,
+                     .saturation = options->saturation > 0 ? options->saturation : 0.98f,
+                     .iterations = options->iterations};
+    s = list_lights(c, light);
+    if (s == OK) s = list_pixels(c, &p);
+    if (s == OK) s = allocate(c, out);
+    if (s == OK) s = run(&p, out);
+    free(p.pixel);
+    free(light);
+    if (s != OK) pst_surface_free(out);
+    return s;
+}
+
+void pst_surface_free(pst_surface *s)
+{
+    img_free(&s->normal);
+    img_free(&s->albedo);
+    img_free(&s->depth);
+    img_free(&s->residual);
+    free(s->light);
+    *s = (pst_surface){0};
+}

@@ -1,0 +1,43 @@
+/* Normals, albedo and depth from a capture.
+ *
+ *     pst_surface surface;
+ *     status s = pst_solve(&capture, &(pst_options){.method = PST_AUTO}, &surface);
+ *     pst_surface_free(&surface); */
+#ifndef MERLIN_STEREO_SOLVE_H
+#define MERLIN_STEREO_SOLVE_H
+
+#include "stereo/capture.h"
+
+typedef enum pst_method {
+    PST_AUTO,
+    PST_LS,           /* Lambertian least squares (Woodham 1980), shadows and saturation left out */
+    PST_ROBUST,       /* highlights and cast shadows as outliers */
+    PST_NEAR_LIGHTS,  /* near point lights, perspective camera, alternating depth and normals */
+    PST_SEMI,         /* directions known, intensities not */
+    PST_UNCALIBRATED  /* lights unknown; bas-relief ambiguity resolved by a stated prior */
+} pst_method;
+
+typedef struct pst_options {
+    pst_method method;
+    float shadow;     /* values at or below this share of full scale are left out; 0: chosen */
+    float saturation; /* values at or above; 0: 0.98 */
+    int iterations;   /* of iterative methods; 0: chosen */
+} pst_options;
+
+typedef struct pst_surface {
+    img normal;   /* 3, unit, z > 0, zero outside the mask */
+    img albedo;   /* capture's channels; relative unless intensities are known */
+    img depth;    /* 1, camera distance along -z; empty unless the method finds it */
+    img residual; /* 1, root mean square over the images used, relative to the fit */
+    pst_method method; /* the one used */
+    pst_light *light;  /* semi, uncalibrated: what was found (count entries); else NULL */
+} pst_surface;
+
+status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);
+void pst_surface_free(pst_surface *s);
+
+/* The name people type ("ls", "robust", "near", "semi", "uncalibrated", "auto"); -1 if unknown. */
+int pst_method_from_name(const char *name);
+const char *pst_method_name(pst_method m);
+
+#endif

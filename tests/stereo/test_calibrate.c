@@ -1,0 +1,205 @@
+/* Balls rendered here under known lights, and the real ones where they are at hand. */
+#include "base/light_list.h"
+#include "scratch.h"
+#include "stereo/calibrate.h"
+
+enum { SIZE = 160, LIGHTS = 7 };
+static const float CENTER_X = 83.3f, CENTER_Y = 76.8f, RADIUS = 58.6f;
+
+static vec3 light(int i)
+{
+    float turn = 0.9f * (float)i, lean = 0.15f + 0.1f * (float)i;
+    return vec3_make(sinf(lean) * cosf(turn), sinf(lean) * sinf(turn), cosf(lean));
+}
+
+static float degrees(vec3 a, vec3 b)
+{
+    return 57.29578f * atan2f(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
+}
+
+/* A narrow highlight, and a window that every picture mirrors. */
+static float chrome(vec3 n, vec3 l)
+{
+    vec3 r = vec3_normalize(vec3_make(2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1));
+    vec3 window = vec3_normalize(vec3_make(-0.6f, 0.2f, 0.5f));
+    return 4 * expf(1500 * (vec3_dot(r, l) - 1)) + 0.8f * expf(80 * (vec3_dot(r, window) - 1)) + 0.002f;
+}
+
+/* Lambert's law with a broad highlight. */
+static float matte(vec3 n, vec3 l)
+{
+    vec3 h = vec3_normalize(vec3_add(l, vec3_make(0, 0, 1)));
+    float shade = vec3_dot(n, l);
+    return shade > 0 ? 0.6f * shade + 0.3f * powf(fmaxf(vec3_dot(n, h), 0), 60) : 0;
+}
+
+/* The mean of 4 x 4 points of a pixel. */
+static float ball_pixel(int x, int y, vec3 l, float shade(vec3, vec3))
+{
+    float sum = 0;
+    for (int i = 0; i < 16; i++) {
+        float u = ((float)x + (0.5f + (float)(i % 4)) / 4 - CENTER_X) / RADIUS;
+        float v = (CENTER_Y - (float)y - (0.5f + (float)(i / 4)) / 4) / RADIUS, rest = 1 - u * u - v * v;
+        sum += rest > 0 ? fminf(shade(vec3_make(u, v, sqrtf(rest)), l), 1) : 0.02f;
+    }
+    return sum / 16;
+}
+
+static void write_balls(float shade(vec3, vec3), img_encoding encoding)
+{
+    img p;
+    assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
+    for (int i = 0; i < LIGHTS; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%02d.png", i);
+        for (int k = 0; k < SIZE * SIZE; k++)
+            p.data[k] = ball_pixel(k % SIZE, k / SIZE, light(i), shade);
+        assert_int_equal(img_write_png(scratch_path(name), &p, encoding), OK);
+    }
+    img_free(&p);
+}
+
+static void write_mask(void)
+{
+    img p;
+    assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
+    for (int k = 0; k < SIZE * SIZE; k++)
+        p.data[k] = hypotf((float)(k % SIZE) + 0.5f - CENTER_X, (float)(k / SIZE) + 0.5f - CENTER_Y) < RADIUS;
+    assert_int_equal(img_write_png(scratch_path("mask.png"), &p, IMG_LINEAR8), OK);
+    img_free(&p);
+}
+
+/* One pixel of the circle or the highlight is 1 / RADIUS = 1 degree of the normal at the middle of the ball and 2 of a
+ * mirrored light; what is asked for is half a pixel. */
+static void assert_lights_found(pst_ball ball, bool from_mask, float pixels, float most_degrees)
+{
+    pst_calibration c;
+    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = ball}, &c), OK);
+    assert_int_equal(c.count, LIGHTS);
+    assert_int_equal(c.from_mask, from_mask);
+    assert_float_equal(c.circle.x, CENTER_X, pixels);
+    assert_float_equal(c.circle.y, CENTER_Y, pixels);
+    assert_float_equal(c.circle.radius, RADIUS, pixels);
+    for (int i = 0; i < LIGHTS; i++) {
+        float off = degrees(c.direction[i], light(i));
+        if (off > most_degrees) fail_msg("light %d is off by %.2f degrees", i, (double)off);
+    }
+    pst_calibration_free(&c);
+}
+
+static void a_chrome_ball_tells_its_lights(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    assert_lights_found(PST_CHROME, false, 0.5f, 1);
+    write_mask();
+    assert_lights_found(PST_CHROME, true, 0.5f, 1);
+}
+
+static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
+{
+    (void)state;
+    write_balls(matte, IMG_LINEAR16);
+    assert_lights_found(PST_MATTE, false, 0.5f, 2);
+    write_mask();
+    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+}
+
+static void what_was_found_is_written(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    pst_calibration c;
+    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = PST_CHROME}, &c), OK);
+    assert_int_equal(pst_calibration_write(&c, scratch), OK);
+    light_list list;
+    assert_int_equal(light_list_read(scratch_path("lights.txt"), &list), OK);
+    assert_int_equal(list.count, LIGHTS);
+    /* six decimals are written */
+    assert_float_equal(vec3_length(vec3_sub(list.at[3], c.direction[3])), 0, 3e-6);
+    assert_true(file_exists(scratch_path("calibration.png")));
+    light_list_free(&list);
+    pst_calibration_free(&c);
+    /* and the folder is a capture now, its own picture left out */
+    pst_capture capture;
+    assert_int_equal(pst_capture_read(scratch, NULL, &capture), OK);
+    assert_int_equal(capture.count, LIGHTS);
+    pst_capture_free(&capture);
+}
+
+static void pictures_without_a_ball_or_its_light_are_refused(void **state)
+{
+    (void)state;
+    pst_calibrate_options options = {.ball = PST_CHROME};
+    pst_calibration c;
+    for (int i = 0; i < 3; i++)
+        write_flat((const char *[]){"0.png", "1.png", "2.png"}[i], 64, 64, 3, 0.5f, IMG_LINEAR16);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_says("no ball is seen");
+    scratch_remove(state);
+    scratch_make(state);
+    write_balls(chrome, IMG_LINEAR16);
+    write_flat("99.png", SIZE, SIZE, 1, 0, IMG_LINEAR16);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_says("99.png: no highlight");
+    options.ball = PST_MATTE;
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_says("99.png: the ball is not lit");
+}
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float median_off(const pst_calibration *c, const light_list *truth)
+{
+    float off[64];
+    assert_int_equal(c->count, truth->count);
+    assert_true(c->count <= 64);
+    for (int i = 0; i < c->count; i++)
+        off[i] = degrees(c->direction[i], truth->at[i]);
+    qsort(off, (size_t)c->count, sizeof *off, ascending);
+    return 0.5f * (off[c->count / 2] + off[(c->count - 1) / 2]);
+}
+
+/* The folder holds lights.txt, chrome/ and gray/: real balls under the same twelve lights, in linear 8-bit pictures. */
+static void real_balls_agree_with_their_published_lights(void **state)
+{
+    (void)state;
+    const char *where = getenv("MERLIN_TEST_PHOTOMETRIC");
+    if (!where || !file_is_folder(where)) {
+        print_message("set MERLIN_TEST_PHOTOMETRIC to a folder with chrome, gray and lights.txt to test them\n");
+        skip();
+    }
+    static const char *const names[] = {"chrome", "gray"};
+    char *lights = file_join(where, "lights.txt");
+    light_list truth;
+    assert_int_equal(light_list_read(lights, &truth), OK);
+    for (int i = 0; i < 2; i++) {
+        char *folder = file_join(where, names[i]);
+        pst_calibrate_options options = {.ball = i == 0 ? PST_CHROME : PST_MATTE, .linear = true};
+        pst_calibration c;
+        assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
+        float off = median_off(&c, &truth);
+        print_message("%s: median %.2f degrees\n", names[i], (double)off);
+        assert_true(off < 3); /* the published directions' own error is about as large: both balls agree better */
+        pst_calibration_free(&c);
+        free(folder);
+    }
+    light_list_free(&truth);
+    free(lights);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        in_scratch(a_chrome_ball_tells_its_lights),
+        in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
+        in_scratch(what_was_found_is_written),
+        in_scratch(pictures_without_a_ball_or_its_light_are_refused),
+        cmocka_unit_test(real_balls_agree_with_their_published_lights),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

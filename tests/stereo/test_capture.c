@@ -1,0 +1,224 @@
+#include "scratch.h"
+#include "stereo/capture.h"
+
+static const pst_read_options PLAIN = {0};
+
+static void three_pictures(img_encoding encoding)
+{
+    write_flat("a.png", 6, 4, 3, 0.25f, encoding);
+    write_flat("b.png", 6, 4, 3, 0.5f, encoding);
+    write_flat("c.png", 6, 4, 3, 0.75f, encoding);
+    write_text("lights.txt", "0 0 2\n3 0 4\n0 -1 0\n");
+}
+
+static void assert_refused(const pst_read_options *options, const char *words)
+{
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, options, &c), ERROR_INPUT);
+    assert_says(words);
+    assert_null(c.picture);
+    assert_null(c.light);
+}
+
+static void sixteen_bit_pictures_are_taken_as_they_are(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_int_equal(c.width, 6);
+    assert_int_equal(c.height, 4);
+    assert_int_equal(c.channels, 3);
+    assert_int_equal(c.lighting, PST_DISTANT);
+    assert_string_equal(c.name[1], "b.png");
+    /* a code's rounding there and back */
+    assert_in_range(c.picture[1][0], 32767, 32769);
+    assert_in_range(c.picture[2][71], 49150, 49152);
+    assert_float_equal(c.light[0].direction.z, 1, 1e-6);
+    assert_float_equal(c.light[1].direction.x, 0.6, 1e-6);
+    assert_float_equal(c.light[2].direction.y, -1, 1e-6);
+    assert_float_equal(c.light[2].intensity[1], 1, 0);
+    assert_float_equal(*img_at(&c.mask, 3, 3), 1, 0);
+    pst_capture_free(&c);
+}
+
+static void eight_bit_pictures_are_decoded_unless_they_are_linear(void **state)
+{
+    (void)state;
+    three_pictures(IMG_SRGB8);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    /* half a step of 8-bit sRGB at 0.5 is 0.0035 */
+    assert_float_equal(c.picture[1][0] / 65535.0, 0.5, 0.0036);
+    pst_capture_free(&c);
+    pst_read_options linear = {.linear = true};
+    assert_int_equal(pst_capture_read(scratch, &linear, &c), OK);
+    assert_float_equal(c.picture[1][0] / 65535.0, srgb_encode(0.5f), 0.002);
+    pst_capture_free(&c);
+}
+
+static void ambient_light_is_subtracted_and_clipping_stays(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_flat("c.png", 6, 4, 3, 1, IMG_LINEAR16);
+    write_flat("ambient.png", 6, 4, 3, 0.3f, IMG_LINEAR16);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_int_equal(c.picture[0][5], 0);
+    assert_float_equal(c.picture[1][5] / 65535.0, 0.2, 2e-5);
+    assert_int_equal(c.picture[2][5], 65535);
+    pst_capture_free(&c);
+    write_flat("ambient.png", 5, 4, 3, 0.3f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "ambient.png is 5 x 4");
+}
+
+static void floats_share_one_scale_below_saturation(void **state)
+{
+    (void)state;
+    static const float value[] = {0.5f, 8, 2};
+    for (int i = 0; i < 3; i++) {
+        img p;
+        char name[] = "0.exr";
+        name[0] = (char)('0' + i);
+        assert_int_equal(img_new(&p, 5, 5, 3), OK);
+        for (int k = 0; k < 75; k++)
+            p.data[k] = value[i];
+        assert_int_equal(img_write_exr(scratch_path(name), &p), OK);
+        img_free(&p);
+    }
+    write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_true(c.picture[1][0] < 0.98 * 65535);
+    /* rounding to codes of at most half a unit in 4000 */
+    assert_float_equal((double)c.picture[1][0] / c.picture[0][0], 16, 0.01);
+    assert_float_equal((double)c.picture[2][0] / c.picture[0][0], 4, 0.01);
+    pst_capture_free(&c);
+}
+
+static void an_lp_file_says_which_picture_has_which_light(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    unlink(scratch_path("lights.txt"));
+    write_text("dome.lp", "2\nphotos/c.png 0 0 1\nD:\\set\\a.png 0 3 4\n");
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 2);
+    assert_string_equal(c.name[0], "c.png");
+    assert_string_equal(c.name[1], "a.png");
+    assert_float_equal(c.light[1].direction.y, 0.6, 1e-6);
+    pst_capture_free(&c);
+    write_text("dome.lp", "2\nc.png 0 0 1\nd.png 0 3 4\n");
+    assert_refused(&PLAIN, "names d.png");
+    write_text("other.lp", "1\nc.png 0 0 1\n");
+    assert_refused(&PLAIN, "2 .lp files");
+}
+
+static void near_lights_have_positions_and_a_camera(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    pst_read_options options = {.near = true};
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_int_equal(c.lighting, PST_NEAR);
+    assert_float_equal(c.light[1].position.z, 4, 0);
+    assert_float_equal(c.light[1].direction.z, 0, 0);
+    assert_true(c.camera.perspective);
+    /* 60 degrees across six pixels: 3 / tan 30° */
+    assert_float_equal(c.camera.focal, 5.19615, 1e-4);
+    assert_float_equal(c.camera.center_y, 2, 0);
+    pst_capture_free(&c);
+}
+
+static void unknown_lights_need_no_list(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    unlink(scratch_path("lights.txt"));
+    assert_refused(&PLAIN, "says nothing of its lights");
+    pst_read_options options = {.unknown_lights = true};
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_int_equal(c.lighting, PST_UNKNOWN_LIGHT);
+    assert_false(c.intensities_known);
+    pst_capture_free(&c);
+}
+
+static void given_intensities_are_kept(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_text("light_intensities.txt", "1 2 3\n4\n5 5 5\n");
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_true(c.intensities_known);
+    assert_float_equal(c.light[0].intensity[2], 3, 0);
+    assert_float_equal(c.light[1].intensity[0], 4, 0);
+    pst_capture_free(&c);
+    write_text("light_intensities.txt", "1\n0\n1\n");
+    assert_refused(&PLAIN, "light_intensities.txt:2");
+    write_text("light_intensities.txt", "1\n1\n");
+    assert_refused(&PLAIN, "2 intensities for 3 lights");
+}
+
+static void a_mask_is_read_and_must_fit(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_flat("owl.mask.png", 6, 4, 1, 1, IMG_LINEAR8);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    pst_capture_free(&c);
+    write_flat("mask.png", 6, 4, 1, 0, IMG_LINEAR8);
+    assert_refused(&PLAIN, "black everywhere");
+    write_flat("mask.png", 4, 6, 1, 1, IMG_LINEAR8);
+    assert_refused(&PLAIN, "mask.png is 4 x 6");
+    assert_refused(&(pst_read_options){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
+}
+
+static void what_does_not_fit_is_refused_in_one_line(void **state)
+{
+    (void)state;
+    pst_capture c;
+    assert_int_equal(pst_capture_read("/nowhere", &PLAIN, &c), ERROR_INPUT);
+    assert_says("/nowhere");
+    write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
+    assert_refused(&PLAIN, "no pictures in");
+    three_pictures(IMG_LINEAR16);
+    write_text("lights.txt", "0 0 1\n0 1 1\n");
+    assert_refused(&PLAIN, "3 pictures, but");
+    write_text("lights.txt", "0 0 1\n0 0 0\n1 0 1\n");
+    assert_refused(&PLAIN, "light 2 has no length");
+    three_pictures(IMG_LINEAR16);
+    write_flat("b.png", 6, 5, 3, 0.5f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "b.png is 6 x 5");
+    write_flat("b.png", 6, 4, 1, 0.5f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "b.png is grey");
+    write_text("b.png", "no picture");
+    assert_refused(&PLAIN, "b.png");
+    assert_refused(&(pst_read_options){.lights = "/nowhere/lights.txt"}, "/nowhere/lights.txt");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        in_scratch(sixteen_bit_pictures_are_taken_as_they_are),
+        in_scratch(eight_bit_pictures_are_decoded_unless_they_are_linear),
+        in_scratch(ambient_light_is_subtracted_and_clipping_stays),
+        in_scratch(floats_share_one_scale_below_saturation),
+        in_scratch(an_lp_file_says_which_picture_has_which_light),
+        in_scratch(near_lights_have_positions_and_a_camera),
+        in_scratch(unknown_lights_need_no_list),
+        in_scratch(given_intensities_are_kept),
+        in_scratch(a_mask_is_read_and_must_fit),
+        in_scratch(what_does_not_fit_is_refused_in_one_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,211 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+#include "relief.h"
+
+static const relief lambert = {.size = 48, .lights = 24, .channels = 1, .exposure = 1.8f};
+static const relief glossy = {.size = 64,
+                              .lights = 50,
+                              .channels = 3,
+                              .bump = 5,
+                              .specular = 4,
+                              .roughness = 0.35f,
+                              .exposure = 0.3f,
+                              .cast_shadows = true};
+
+/* 16 bits leave 1e-4 of a value, 0.01 degrees of its normal. */
+static void least_squares_is_exact_on_lambert(void **state)
+{
+    (void)state;
+    for (int channels = 1; channels <= 3; channels += 2) {
+        relief r = lambert;
+        r.channels = channels;
+        pst_capture c;
+        relief_capture(&r, &c);
+        pst_surface s;
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+        assert_true(mean_angle(&c, &s.normal) < 0.1);
+        size_t middle = 24 * 48 + 24;
+        /* x = 0.5 there */
+        float expected = 1.8f / BRDF_PI * (0.5f + 0.2f * sinf(0.1f));
+        assert_true(fabsf(s.albedo.data[middle * (size_t)channels] - expected) < 1e-3f);
+        assert_true(s.residual.data[middle] < 1e-3f);
+        pst_surface_free(&s);
+        capture_drop(&c);
+    }
+}
+
+static void intensities_are_divided_out(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&lambert, &c);
+    for (int k = 0; k < c.count; k++) {
+        float e = 0.3f + 0.7f * (float)(k % 5) / 4;
+        c.light[k].intensity[0] = e;
+        for (int i = 0; i < c.width * c.height; i++)
+            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * e + 0.5f);
+    }
+    assert_true(solve_angle(&c, PST_LS) < 0.1);
+    assert_true(solve_angle(&c, PST_ROBUST) < 0.1);
+    c.intensities_known = false;
+    /* the alternation stops after a fixed number of rounds */
+    assert_true(solve_angle(&c, PST_SEMI) < 0.5);
+    assert_true(solve_angle(&c, PST_LS) > 2);
+    capture_drop(&c);
+}
+
+/* The bar is a public implementation's 3.38 degrees where least squares has 18.47. */
+static void robust_sees_through_highlights_and_cast_shadows(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&glossy, &c);
+    double ls = solve_angle(&c, PST_LS), robust = solve_angle(&c, PST_ROBUST);
+    print_message("specular relief: ls %.2f, robust %.2f degrees\n", ls, robust);
+    assert_true(ls > 5);
+    assert_true(robust < 2);
+    capture_drop(&c);
+}
+
+static void a_raised_black_level_is_found(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&lambert, &c);
+    for (int k = 0; k < c.count; k++)
+        for (int i = 0; i < c.width * c.height; i++)
+            c.picture[k][i] = c.picture[k][i] > 2000 ? (uint16_t)(c.picture[k][i] - 2000) : 0;
+    assert_true(solve_angle(&c, PST_ROBUST) < 0.7 * solve_angle(&c, PST_LS));
+    capture_drop(&c);
+}
+
+static void lights_of_unknown_strength_are_found_despite_highlights(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&glossy, &c);
+    for (int k = 0; k < c.count; k++)
+        for (int i = 0; i < c.width * c.height * 3; i++)
+            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.5f + 0.5f * (float)(k % 3) / 2));
+    c.intensities_known = false;
+    pst_surface s;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
+    assert_int_equal(s.method, PST_SEMI);
+    double angle = mean_angle(&c, &s.normal);
+    print_message("semi on the specular relief: %.2f degrees\n", angle);
+    assert_true(angle < 3);
+    /* strengths of 1, 0.75, 0.5 */
+    assert_true(fabsf(s.light[3].intensity[1] / s.light[5].intensity[1] - 0.5f) < 0.05f);
+    pst_surface_free(&s);
+    capture_drop(&c);
+}
+
+static void unknown_lights_of_equal_strength_are_found(void **state)
+{
+    (void)state;
+    relief r = lambert;
+    r.lights = 30;
+    pst_capture c;
+    relief_capture(&r, &c);
+    c.lighting = PST_UNKNOWN_LIGHT;
+    double angle = solve_angle(&c, PST_AUTO);
+    print_message("uncalibrated sphere: %.2f degrees\n", angle);
+    assert_true(angle < 3);
+    capture_drop(&c);
+}
+
+static void all_values_are_numbers(const pst_surface *s)
+{
+    size_t pixels = (size_t)s->normal.width * (size_t)s->normal.height;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *n = s->normal.data + 3 * i;
+        float length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        assert_true(length == 0 || (fabsf(length - 1) < 1e-3f && n[2] > 0));
+        assert_true(isfinite(s->residual.data[i]));
+        for (size_t ch = 0; ch < (size_t)s->albedo.channels; ch++)
+            assert_true(isfinite(s->albedo.data[i * (size_t)s->albedo.channels + ch]));
+    }
+}
+
+static void darkness_and_saturation_leave_numbers(void **state)
+{
+    (void)state;
+    static const pst_method method[] = {PST_LS, PST_ROBUST, PST_SEMI};
+    for (int code = 0; code <= 65535; code += 65535) {
+        pst_capture c;
+        relief_capture(&lambert, &c);
+        for (int k = 0; k < c.count; k++)
+            for (int i = 0; i < c.width * c.height; i++)
+                c.picture[k][i] = (uint16_t)code;
+        for (size_t m = 0; m < sizeof method / sizeof *method; m++) {
+            pst_surface s;
+            if (pst_solve(&c, &(pst_options){.method = method[m]}, &s) != OK) continue;
+            all_values_are_numbers(&s);
+            pst_surface_free(&s);
+        }
+        capture_drop(&c);
+    }
+}
+
+static void refused(const pst_capture *c, pst_method method, const char *because)
+{
+    pst_surface s;
+    assert_true(pst_solve(c, &(pst_options){.method = method}, &s) != OK);
+    assert_non_null(strstr(status_message(), because));
+    assert_null(s.normal.data);
+}
+
+static void impossible_captures_are_refused_in_one_line(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&lambert, &c);
+    refused(&c, PST_NEAR_LIGHTS, "positions");
+    int count = c.count;
+    c.count = 2;
+    refused(&c, PST_LS, "3 or more");
+    c.count = count;
+    float kept = c.light[3].intensity[0];
+    c.light[3].intensity[0] = -1;
+    refused(&c, PST_ROBUST, "light 4");
+    c.light[3].intensity[0] = kept;
+    for (int k = 0; k < c.count; k++)
+        c.light[k].direction = vec3_normalize(vec3_make((float)k, 0, 5));
+    refused(&c, PST_ROBUST, "one plane");
+    c.lighting = PST_UNKNOWN_LIGHT;
+    refused(&c, PST_LS, "light directions");
+    memset(c.mask.data, 0, (size_t)c.width * (size_t)c.height * sizeof(float));
+    refused(&c, PST_UNCALIBRATED, "mask is empty");
+    capture_drop(&c);
+}
+
+static void methods_are_named(void **state)
+{
+    (void)state;
+    for (int m = PST_AUTO; m <= PST_UNCALIBRATED; m++)
+        assert_int_equal(pst_method_from_name(pst_method_name((pst_method)m)), m);
+    assert_int_equal(pst_method_from_name("magic"), -1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(least_squares_is_exact_on_lambert),
+        cmocka_unit_test(intensities_are_divided_out),
+        cmocka_unit_test(robust_sees_through_highlights_and_cast_shadows),
+        cmocka_unit_test(a_raised_black_level_is_found),
+        cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
+        cmocka_unit_test(unknown_lights_of_equal_strength_are_found),
+        cmocka_unit_test(darkness_and_saturation_leave_numbers),
+        cmocka_unit_test(impossible_captures_are_refused_in_one_line),
+        cmocka_unit_test(methods_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

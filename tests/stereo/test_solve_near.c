@@ -1,0 +1,144 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+#include "relief.h"
+
+enum { SIZE = 48, LIGHTS = 32 };
+static const float radius = 0.3f; /* of the ball at (0, 0, -1) */
+
+/* Positions on two rings about the camera, one to two diameters from the ball. */
+static vec3 led_position(int i)
+{
+    float phi = 6.2831853f * (float)i / (LIGHTS / 2.0f), ring = i % 2 ? 0.3f : 0.65f;
+    return vec3_make(ring * cosf(phi), ring * sinf(phi), i % 2 ? -0.15f : -0.4f);
+}
+
+static float led_radiance(const pst_light *led, vec3 at, vec3 n, float specular)
+{
+    vec3 to = vec3_sub(led->position, at), l = vec3_normalize(to), v = vec3_normalize(vec3_scale(at, -1));
+    float n_l = vec3_dot(n, l);
+    if (n_l <= 0) return 0;
+    float lobe = powf(fmaxf(-vec3_dot(l, led->direction), 0), led->lobe);
+    float f = 0.6f / BRDF_PI + (specular > 0 ? specular * brdf_specular(0.3f, n, l, v) : 0);
+    return f * n_l * lobe / vec3_dot(to, to);
+}
+
+static void ball_pixel(pst_capture *c, int i, int j, float specular)
+{
+    vec3 ray = vec3_normalize(vec3_make(((float)i + 0.5f - c->camera.center_x) / c->camera.focal,
+                                        (c->camera.center_y - (float)j - 0.5f) / c->camera.focal, -1));
+    float along = -ray.z, inside = along * along - 1 + radius * radius;
+    if (inside < 0.12f * radius * radius) return; /* up to 70 degrees */
+    vec3 at = vec3_scale(ray, along - sqrtf(inside)), n = vec3_scale(vec3_make(at.x, at.y, at.z + 1), 1 / radius);
+    size_t pixel = (size_t)j * SIZE + (size_t)i;
+    c->mask.data[pixel] = 1;
+    c->depth_true.data[pixel] = -at.z;
+    memcpy(c->normal_true.data + 3 * pixel, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
+    for (int k = 0; k < LIGHTS; k++)
+        c->picture[k][pixel] = relief_code(0.6f * led_radiance(&c->light[k], at, n, specular));
+}
+
+/* Returns the ball's mean distance. */
+static float ball_capture(pst_capture *c, float specular)
+{
+    capture_new(c, SIZE, LIGHTS, 1);
+    c->lighting = PST_NEAR;
+    c->camera =
+        (pst_camera){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
+    for (int k = 0; k < LIGHTS; k++) {
+        c->light[k].position = led_position(k);
+        c->light[k].direction = vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k)));
+        c->light[k].lobe = 1.5f;
+    }
+    double sum = 0, count = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        ball_pixel(c, i % SIZE, i / SIZE, specular);
+        sum += c->depth_true.data[i];
+        count += c->mask.data[i];
+    }
+    return (float)(sum / count);
+}
+
+/* Largest error of the depth against its truth, once the scale is aligned; *scale is what was left to align. */
+static double depth_error(const pst_capture *c, const img *depth, double *scale)
+{
+    double product = 0, square = 0, most = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        if (c->mask.data[i] < 0.5f) continue;
+        product += (double)depth->data[i] * c->depth_true.data[i];
+        square += (double)depth->data[i] * depth->data[i];
+    }
+    *scale = product / square;
+    for (int i = 0; i < SIZE * SIZE; i++)
+        if (c->mask.data[i] > 0.5f)
+            most = fmax(most, fabs(depth->data[i] * *scale / (double)c->depth_true.data[i] - 1));
+    return most;
+}
+
+static void check_ball(float specular, bool distance_known, double angle_bound, double scale_bound)
+{
+    pst_capture c;
+    pst_surface s;
+    double scale;
+    float mean = ball_capture(&c, specular);
+    if (distance_known) c.camera.mean_distance = mean;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
+    assert_int_equal(s.method, PST_NEAR_LIGHTS);
+    double angle = mean_angle(&c, &s.normal), error = depth_error(&c, &s.depth, &scale);
+    print_message("near, specular %.0f, distance %s: %.2f degrees, depth %.2f %%, scale %.3f\n", (double)specular,
+                  distance_known ? "known" : "from the lights", angle, 100 * error, scale);
+    assert_true(angle < angle_bound);
+    assert_true(error < 0.02);
+    assert_true(fabs(scale - 1) < scale_bound);
+    pst_surface_free(&s);
+    capture_drop(&c);
+}
+
+/* The bounds are the issue's. */
+static void near_lights_give_normals_and_depth(void **state)
+{
+    (void)state;
+    check_ball(0, true, 2, 0.02);
+}
+
+static void near_lights_see_through_highlights(void **state)
+{
+    (void)state;
+    check_ball(4, true, 5, 0.02);
+}
+
+/* Without a known distance the inverse-square law gives it, to a few percent. */
+static void near_lights_give_the_distance_too(void **state)
+{
+    (void)state;
+    check_ball(0, false, 2, 0.05);
+}
+
+static void a_near_capture_without_focal_length_is_refused(void **state)
+{
+    (void)state;
+    pst_capture c;
+    pst_surface s;
+    ball_capture(&c, 0);
+    c.camera.focal = 0;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "focal length"));
+    capture_drop(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(near_lights_give_normals_and_depth),
+        cmocka_unit_test(near_lights_see_through_highlights),
+        cmocka_unit_test(near_lights_give_the_distance_too),
+        cmocka_unit_test(a_near_capture_without_focal_length_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
