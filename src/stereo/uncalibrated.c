@@ -266,7 +266,7 @@ static double outwardness(const pseudo *f, const double surface[9], double *towa
 /* The pseudo lights become directions: l = G A^-T l', b = G^-T A b'. */
 static status resolve(const pseudo *f, lights3 *l)
 {
-    double minor[6], a[9], g[3], cofactor[9], toward;
+    double minor[6], a[9] = {0}, g[3], cofactor[9], toward;
     status s = minors(f, minor);
     if (s == OK) s = matrix_of(minor, a);
     if (s != OK) return s;
