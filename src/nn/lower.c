@@ -49,7 +49,7 @@ static void find_live(lowering *l)
         value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
         v->live = v->is_output = true;
     }
-    for (int i = g->count - 1; i >= 0; i--) {
+    for (int i = g->count; i-- > 0;) {
         value *v = &l->values[i];
         if (op_is_loss(v->node->op)) v->live = true;
         for (int k = 0; v->live && k < v->node->inputs; k++) {
@@ -71,7 +71,7 @@ static void find_differentiable(lowering *l)
         for (int k = 0; k < v->node->inputs; k++)
             if (lower_passes_gradient(v->node, k) && l->values[v->in[k]].differentiable) v->differentiable = true;
     }
-    for (int i = count - 1; i >= 0; i--) { /* and a loss depends on it */
+    for (int i = count; i-- > 0;) { /* and a loss depends on it */
         value *v = &l->values[i];
         if (op_is_loss(v->node->op)) v->reaches_loss = true;
         for (int k = 0; v->reaches_loss && k < v->node->inputs; k++)
@@ -125,7 +125,8 @@ static void make_steps(lowering *l)
 
 status lower_graph(const nn_graph *g, const nn_options *options, lowering *out)
 {
-    *out = (lowering){.graph = g, .options = *options};
+    *out = (lowering){.options = *options};
+    out->graph = g;
     status s = graph_check(g);
     if (s == OK) s = check_options(options);
     if (s != OK) return s;
