@@ -1,6 +1,7 @@
 /* PLY, binary little-endian, with normals and vertex colours. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "image/color.h"
@@ -27,6 +28,17 @@ static void write_header(FILE *f, const surface_mesh *m)
             m->vertices, m->triangles);
 }
 
+/* Some readers (assimp 5.2 among them) skip all white space behind the header, and with it a first byte that looks like
+ * it: sixteen units in the last place away it does not. */
+static float not_white(float x)
+{
+    unsigned char bytes[sizeof x];
+    memcpy(bytes, &x, sizeof x);
+    if (bytes[0] == ' ' || (bytes[0] >= '\t' && bytes[0] <= '\r')) bytes[0] ^= 0x10;
+    memcpy(&x, bytes, sizeof x);
+    return x;
+}
+
 static void write_vertices(FILE *f, const surface_mesh *m, const pst_mesh_source *from)
 {
     for (size_t v = 0; v < m->vertices; v++) {
@@ -38,6 +50,7 @@ static void write_vertices(FILE *f, const surface_mesh *m, const pst_mesh_source
             out.color[c] = srgb_code8(
                 from->albedo->data[(size_t)m->pixel[v] * (size_t)channels + (size_t)(channels == 3 ? c : 0)]);
         }
+        if (v == 0) out.position[0] = not_white(out.position[0]);
         fwrite(&out, sizeof out, 1, f);
     }
 }

@@ -94,7 +94,7 @@ enum { VERTICES = 71 + 36, TRIANGLES = 2 * 56 - 1 + 2 * 24 };
 static void check_mesh(const char *path, bool colors, bool texture)
 {
     const struct aiScene *scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_JoinIdenticalVertices);
-    if (!scene) print_error("%s\n", aiGetErrorString());
+    if (!scene) print_error("%s: %s\n", path, aiGetErrorString());
     assert_non_null(scene);
     assert_int_equal(scene->mNumMeshes, 1);
     const struct aiMesh *m = scene->mMeshes[0];
