@@ -33,6 +33,9 @@ static inline crop_square crop_of(const merlin_maps *maps)
     return (crop_square){maps->crop.x, maps->crop.y, maps->crop.side};
 }
 
+/* ERROR_USAGE if the maps are not what merlin_estimate or merlin_maps_read gave. */
+status maps_check(const merlin_maps *maps);
+
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {
     surface full, low;

@@ -1,5 +1,6 @@
 /* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -52,6 +53,9 @@ static status check_photo(const img *photo)
     if ((size_t)photo->width * (size_t)photo->height > MOST_PIXELS)
         return fail(ERROR_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
                     photo->width, photo->height);
+    size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(photo->data[i])) return fail(ERROR_INPUT, "the photograph has values that are not finite");
     return OK;
 }
 

@@ -24,6 +24,18 @@ void stage_free(stage *s)
     img_free(&s->low_photo);
 }
 
+status maps_check(const merlin_maps *maps)
+{
+    const merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                    &maps->depth,  &maps->mask,   &maps->photo};
+    const int channels[] = {3, 3, 1, 1, 1, 3};
+    bool sound = maps->crop.side > 0 && maps->size >= NETWORK_LEAST_SIZE && maps->gain > 0;
+    for (int i = 0; i < 6; i++)
+        sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
+                 images[i]->height == maps->albedo.height;
+    return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");
+}
+
 static status crop_surface(const merlin_maps *maps, surface *out)
 {
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
@@ -64,7 +76,8 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
 {
     *out = (stage){.how = how, .white = maps->gain};
     surface whole = {0};
-    status s = crop_surface(maps, &whole);
+    status s = maps_check(maps);
+    if (s == OK) s = crop_surface(maps, &whole);
     if (s == OK) s = surface_at(&whole, maps->size, true, &out->low);
     if (s == OK && side != 0 && side != maps->crop.side) {
         s = surface_at(&whole, side, false, &out->full);

@@ -203,6 +203,27 @@ static void tiny_photographs_and_odd_sizes_are_refused(void **state)
     assert_non_null(strstr(merlin_error(), "multiple of 32"));
 }
 
+static void photographs_with_infinities_are_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    float kept = f->photo.data[77];
+    f->photo.data[77] = INFINITY;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, NULL, &maps), MERLIN_BAD_INPUT);
+    f->photo.data[77] = kept;
+}
+
+static void empty_maps_are_neither_relit_nor_written(void **state)
+{
+    const fixture *f = *state;
+    const float light[3] = {0};
+    merlin_maps maps = {0};
+    merlin_image image;
+    assert_int_equal(merlin_relight(f->model, &maps, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_WRONG_USE);
+    assert_false(file_exists(f->output));
+}
+
 static int stop_now(void)
 {
     return 1;
@@ -358,6 +379,8 @@ int main(void)
         cmocka_unit_test(empty_masks_are_refused),
         cmocka_unit_test(photographs_without_an_object_are_refused),
         cmocka_unit_test(tiny_photographs_and_odd_sizes_are_refused),
+        cmocka_unit_test(photographs_with_infinities_are_refused),
+        cmocka_unit_test(empty_maps_are_neither_relit_nor_written),
         cmocka_unit_test(work_stops_when_told_to),
         cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
         cmocka_unit_test(written_maps_are_read_back),
