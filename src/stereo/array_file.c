@@ -68,9 +68,10 @@ status array_fill(number_array *a, const unsigned char *bytes, size_t available,
 
 bool array_inflate(const unsigned char *from, size_t size, int window_bits, unsigned char *out, size_t wanted)
 {
-    z_stream z = {.next_in = (unsigned char *)from, .next_out = out};
+    z_stream z = {.next_in = (unsigned char *)from};
     if (size > UINT_MAX || wanted > UINT_MAX || inflateInit2(&z, window_bits) != Z_OK) return false;
     z.avail_in = (uInt)size;
+    z.next_out = out;
     z.avail_out = (uInt)wanted;
     inflate(&z, Z_SYNC_FLUSH);
     bool whole = z.avail_out == 0;

@@ -40,9 +40,10 @@ static void visit(flood *f, int at, size_t *depth, blob *b)
     float value = f->left.data[at] - f->level;
     if (!(value > 0)) return;
     f->left.data[at] = 0;
+    int column = at % f->left.width, row = at / f->left.width;
     b->sum += value;
-    b->x += value * (at % f->left.width + 0.5);
-    b->y += value * (at / f->left.width + 0.5);
+    b->x += value * (column + 0.5);
+    b->y += value * (row + 0.5);
     b->area++;
     f->stack[(*depth)++] = at;
 }

@@ -17,7 +17,7 @@ typedef struct fit_job {
 } fit_job;
 
 typedef struct gathered {
-    float value[BLOCK][PST_MAX_LIGHTS], usable[BLOCK][PST_MAX_LIGHTS];
+    float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) a pixel */
 } gathered;
 
 void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride)
@@ -50,8 +50,10 @@ typedef struct near_lights {
 
 /* Directions from the point at(0..count) and what arrives there: a point source falls off with the squared distance,
  * an LED also with the lobe's power of the cosine to its axis. */
-static void point_lights(const pst_problem *p, vec3 at, near_lights *out)
+static void point_lights(const pst_problem *p, vec3 at, int padded, near_lights *out)
 {
+    for (int k = 0; k < padded; k++)
+        out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
     int count = p->capture->count;
     for (int k = 0; k < count; k++) {
         const pst_light *from = &p->light[k];
@@ -66,8 +68,6 @@ static void point_lights(const pst_problem *p, vec3 at, near_lights *out)
         out->z[k] = l.z;
         out->power[k] = power;
     }
-    for (int k = count; k < pst_padded(count); k++)
-        out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
 }
 
 static void divide_by_power(const near_lights *l, int padded, float *value, float *usable)
@@ -117,7 +117,7 @@ static pst_pixel fit_pixel(const fit_job *job, size_t at, float *value, float *u
     pst_observations o = {padded, job->x, job->y, job->z, value, usable, f->terminator};
     if (f->depth) {
         int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width);
-        point_lights(f->problem, vec3_scale(pst_ray(&c->camera, x, y), f->scale * f->depth->data[at]), &lights);
+        point_lights(f->problem, vec3_scale(pst_ray(&c->camera, x, y), f->scale * f->depth->data[at]), padded, &lights);
         divide_by_power(&lights, padded, value, usable);
         o.x = lights.x;
         o.y = lights.y;
@@ -134,11 +134,14 @@ static void fit_block(void *context, size_t block)
     const pst_field *f = job->field;
     size_t first = block * BLOCK, left = f->count - first;
     int count = (int)(left < BLOCK ? left : BLOCK);
+    size_t stride = (size_t)pst_padded(f->problem->capture->count);
     gathered g;
-    pst_gather(f->problem, f->pixel + first, (size_t)count, g.value[0], g.usable[0], PST_MAX_LIGHTS);
+    memset(g.value, 0, (size_t)count * stride * sizeof *g.value);
+    memset(g.usable, 0, (size_t)count * stride * sizeof *g.usable);
+    pst_gather(f->problem, f->pixel + first, (size_t)count, g.value, g.usable, stride);
     for (int j = 0; j < count; j++) {
         size_t i = first + (size_t)j;
-        pst_pixel p = fit_pixel(job, f->pixel[i], g.value[j], g.usable[j]);
+        pst_pixel p = fit_pixel(job, f->pixel[i], g.value + (size_t)j * stride, g.usable + (size_t)j * stride);
         job->cost[i] = p.cost;
         if (f->b) f->b[i] = p.b;
     }

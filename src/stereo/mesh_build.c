@@ -21,7 +21,8 @@ static float pixel_size(const pst_mesh_source *from, float depth)
 static void place(const pst_mesh_source *from, size_t pixel, float *position, float *texture)
 {
     int width = from->depth->width, height = from->depth->height;
-    float x = (float)(pixel % (size_t)width) + 0.5f, y = (float)(pixel / (size_t)width) + 0.5f;
+    size_t column = pixel % (size_t)width, row = pixel / (size_t)width;
+    float x = (float)column + 0.5f, y = (float)row + 0.5f;
     float depth = from->depth->data[pixel], size = pixel_size(from, depth);
     const pst_camera *c = &from->camera;
     position[0] = (x - (c->perspective ? c->center_x : (float)width / 2)) * size;
@@ -141,14 +142,14 @@ status surface_mesh_new(const pst_mesh_source *from, surface_mesh *out)
     for (size_t p = 0; p < pixels; p++)
         out->vertices += inside(from, p);
     size_t n = out->vertices;
-    if (n == 0) return fail(ERROR_INPUT, "the mask is empty: there is no mesh to write");
-    uint32_t *vertex = malloc(pixels * sizeof *vertex);
-    out->position = malloc(3 * n * sizeof *out->position);
+    if (pixels == 0 || n == 0) return fail(ERROR_INPUT, "the mask is empty: there is no mesh to write");
+    uint32_t *vertex = calloc(pixels, sizeof *vertex);
+    out->position = calloc(3 * n, sizeof *out->position);
     out->normal = calloc(3 * n, sizeof *out->normal);
     out->texture = malloc(2 * n * sizeof *out->texture);
     out->pixel = malloc(n * sizeof *out->pixel);
     /* a vertex is a corner of at most four squares, and a square has a triangle per two of its corners at most */
-    out->index = malloc(6 * n * sizeof *out->index);
+    out->index = calloc(6 * n, sizeof *out->index);
     if (vertex && out->position && out->normal && out->texture && out->pixel && out->index)
         build(&(builder){from, out, vertex}, vertex);
     else

@@ -7,13 +7,13 @@
 static status allocate(poisson_grid *g)
 {
     size_t n = (size_t)g->count;
-    g->pixel = malloc(n * sizeof *g->pixel);
+    g->pixel = calloc(n, sizeof *g->pixel);
     g->pull = calloc(n, sizeof *g->pull);
     g->pulled_to = calloc(n, sizeof *g->pulled_to);
     bool complete = g->pixel && g->pull && g->pulled_to;
     for (int k = 0; k < 2; k++) {
-        g->next[k] = malloc(n * sizeof **g->next);
-        g->previous[k] = malloc(n * sizeof **g->previous);
+        g->next[k] = calloc(n, sizeof **g->next);
+        g->previous[k] = calloc(n, sizeof **g->previous);
         g->weight[k] = malloc(n * sizeof **g->weight);
         g->target[k] = calloc(n, sizeof **g->target);
         complete = complete && g->next[k] && g->previous[k] && g->weight[k] && g->target[k];
@@ -54,7 +54,7 @@ status poisson_grid_new(const img *mask, poisson_grid *g)
 {
     *g = (poisson_grid){.width = mask->width, .height = mask->height};
     size_t pixels = (size_t)mask->width * (size_t)mask->height;
-    g->node = malloc(pixels * sizeof *g->node);
+    g->node = calloc(pixels, sizeof *g->node);
     if (!g->node) return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", pixels);
     for (size_t p = 0; p < pixels; p++) {
         bool inside = mask->data[p * (size_t)mask->channels] > 0.5f;

@@ -96,7 +96,7 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
         /* what the sensor clipped stays recognizable after the subtraction */
         bool clipped = value >= 1;
         if (ambient) value -= ambient[i];
-        codes[i] = clipped ? 65535 : (uint16_t)(fminf(fmaxf(value, 0), 1) * 65535 + 0.5f);
+        codes[i] = clipped ? 65535 : (uint16_t)lroundf(fminf(fmaxf(value, 0), 1) * 65535);
     }
     *out = codes;
     return OK;

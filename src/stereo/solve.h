@@ -10,11 +10,11 @@
 
 typedef enum pst_method {
     PST_AUTO,
-    PST_LS,           /* Lambertian least squares (Woodham 1980), shadows and saturation left out */
-    PST_ROBUST,       /* highlights and cast shadows as outliers */
-    PST_NEAR_LIGHTS,  /* near point lights, perspective camera, alternating depth and normals */
-    PST_SEMI,         /* directions known, intensities not */
-    PST_UNCALIBRATED  /* lights unknown; bas-relief ambiguity resolved by a stated prior */
+    PST_LS,          /* Lambertian least squares (Woodham 1980), shadows and saturation left out */
+    PST_ROBUST,      /* highlights and cast shadows as outliers */
+    PST_NEAR_LIGHTS, /* near point lights, perspective camera, alternating depth and normals */
+    PST_SEMI,        /* directions known, intensities not */
+    PST_UNCALIBRATED /* lights unknown; bas-relief ambiguity resolved by a stated prior */
 } pst_method;
 
 typedef struct pst_options {
@@ -25,10 +25,10 @@ typedef struct pst_options {
 } pst_options;
 
 typedef struct pst_surface {
-    img normal;   /* 3, unit, z > 0, zero outside the mask */
-    img albedo;   /* capture's channels; relative unless intensities are known */
-    img depth;    /* 1, camera distance along -z; empty unless the method finds it */
-    img residual; /* 1, root mean square over the images used, relative to the fit */
+    img normal;        /* 3, unit, z > 0, zero outside the mask */
+    img albedo;        /* capture's channels; relative unless intensities are known */
+    img depth;         /* 1, camera distance along -z; empty unless the method finds it */
+    img residual;      /* 1, root mean square over the images used, relative to the fit */
     pst_method method; /* the one used */
     pst_light *light;  /* semi, uncalibrated: what was found (count entries); else NULL */
 } pst_surface;

@@ -251,13 +251,15 @@ static double outwardness(const pseudo *f, const double surface[9], double *towa
     size_t width = (size_t)p->capture->width;
     double cx = 0, cy = 0, sum = 0;
     for (size_t i = 0; i < p->pixel_count; i++) {
-        cx += (double)(p->pixel[i] % width) / (double)p->pixel_count;
-        cy += (double)(p->pixel[i] / width) / (double)p->pixel_count;
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        cx += (double)column / (double)p->pixel_count;
+        cy += (double)row / (double)p->pixel_count;
     }
     *toward = 0;
     for (size_t i = 0; i < p->pixel_count; i++) {
         vec3 n = vec3_normalize(transform(surface, f->b[i]));
-        sum += n.x * ((double)(p->pixel[i] % width) - cx) - n.y * ((double)(p->pixel[i] / width) - cy);
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        sum += n.x * ((double)column - cx) - n.y * ((double)row - cy);
         *toward += n.z;
     }
     return sum;
