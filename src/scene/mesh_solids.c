@@ -108,7 +108,7 @@ static void join_rings(scn_mesh *mesh, const uint32_t *below, const uint32_t *ab
 
 void mesh_add_lathe(scn_mesh *mesh, const profile *p, int segments, uint8_t part)
 {
-    uint32_t *rings = malloc((size_t)segments * (size_t)(p->count + 1) * sizeof *rings);
+    uint32_t *rings = calloc((size_t)segments * (size_t)(p->count + 1), sizeof *rings);
     if (!rings) {
         mesh->failed = true;
         return;

@@ -111,7 +111,8 @@ static void vehicle(rng *r, scn_mesh *mesh, shape_traits *traits)
         place_box(mesh, vec3_make(0.4f * length, 0.1f, 0.7f * width), round, vec3_make(0.6f * length, height, 0), 3);
     int axles = rng_uniform(r) < 0.8f ? 2 : 3;
     for (int i = 0; i < 2 * axles; i++) {
-        float x = length * (1.3f * (float)(i / 2) / (float)(axles - 1) - 0.65f), side = i % 2 ? -1 : 1;
+        int axle = i / 2;
+        float x = length * (1.3f * (float)axle / (float)(axles - 1) - 0.65f), side = i % 2 ? -1 : 1;
         place_wheel(mesh, wheel, thick, vec3_make(x, -0.85f * height, side * width), 2);
     }
     float dents = rng_uniform(r) < 0.4f ? rng_range(r, 0.01f, 0.06f) : 0;

@@ -81,7 +81,7 @@ static packed *pack(const sample *s, size_t pixels)
     size_t count = 0;
     for (size_t i = 0; i < pixels; i++)
         count += s->mask.data[i] > 0;
-    packed *p = malloc(sizeof *p + count * (VALUES + 2) * sizeof(uint16_t));
+    packed *p = calloc(1, sizeof *p + count * (VALUES + 2) * sizeof(uint16_t));
     if (!p) return NULL;
     p->count = (uint32_t)count;
     uint16_t *place = p->data, *value = p->data + 2 * count;

@@ -60,7 +60,7 @@ status train_export(const char *path, nn_params *params, const trn_provenance *f
 {
     size_t count = nn_params_count(params);
     st_tensor *tensors = calloc(count, sizeof *tensors);
-    uint16_t *halves = malloc(halves_needed(params) * sizeof *halves);
+    uint16_t *halves = malloc((halves_needed(params) + 1) * sizeof *halves);
     status s = tensors && halves ? OK : fail(ERROR_MEMORY, "out of memory writing %s", path);
     if (s == OK) {
         convert(params, tensors, halves);

@@ -41,7 +41,8 @@ size_t trn_order_at(trn_order *o, uint64_t p)
 
 double trn_learning_rate(const train_config *c, size_t epoch, uint64_t presentation)
 {
-    double step = (double)(presentation / (uint64_t)c->batch) + 1, epochs = (double)presentation / (double)epoch;
+    uint64_t steps_done = presentation / (uint64_t)c->batch;
+    double step = (double)steps_done + 1, epochs = (double)presentation / (double)epoch;
     double warm = c->warmup_steps ? fmin(1, step / c->warmup_steps) : 1;
     double halvings = c->halve_every_epochs > 0 ? floor(epochs / c->halve_every_epochs) : 0;
     return c->learning_rate * warm * exp2(-halvings);
