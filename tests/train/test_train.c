@@ -35,7 +35,8 @@ static void write_config(const fixture *f, int presentations, int batch, int val
                  "\"global_illumination\": true, \"lighting\": \"point\", \"widths\": [16, 16, 16, 16, 16], "
                  "\"gi_widths\": [8, 8, 8, 8, 8]}, \"training\": {\"size\": %d, \"batch\": %d, \"presentations\": %d, "
                  "\"learning_rate\": 3e-3, \"encoder_rate_scale\": 1, \"halve_every_epochs\": 30, "
-                 "\"warmup_steps\": 2, \"beta1\": 0.9, \"beta2\": 0.99, \"clip_norm\": 5, \"depth_weight\": 2, \"type\": \"f32\", "
+                 "\"warmup_steps\": 2, \"beta1\": 0.9, \"beta2\": 0.99, \"clip_norm\": 5, \"depth_weight\": 2, "
+                 "\"type\": \"f32\", "
                  "\"seed\": 1, %s, \"memory_gib\": 1, \"validation_count\": %d, "
                  "\"validation_steps\": 2, \"curve_steps\": 4, \"checkpoint_minutes\": 100}}",
                  SIZE, batch, presentations, more, validation);
