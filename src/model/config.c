@@ -20,10 +20,19 @@ static status check_widths(const char *where, const char *key, const int *widths
     return OK;
 }
 
+/* A name stands in messages, reports and JSON as it is. */
+static status check_name(const char *name, const char *where)
+{
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+    if (strspn(name, allowed) == strlen(name)) return OK;
+    return fail(ERROR_INPUT, "%s: \"name\" may have letters, digits, '.', '_' and '-'", where);
+}
+
 static status read_keys(json_object *o, const char *where, model_config *out)
 {
     int relight = 0, lighting = 0;
     status s = json_text(o, "name", out->name, sizeof out->name);
+    if (s == OK) s = check_name(out->name, where);
     if (s == OK) s = json_bool(o, "input_global", &out->input_global);
     if (s == OK) s = json_int(o, "material_decoders", 1, 4, &out->material_decoders);
     if (s == OK && out->material_decoders != 1 && out->material_decoders != 4)
@@ -75,28 +84,18 @@ static const char *word(bool yes)
     return yes ? "true" : "false";
 }
 
-/* Quotes and control characters do not survive: a name is a word. */
-static void plain_name(const char *name, char *out, size_t capacity)
-{
-    size_t n = 0;
-    for (; *name && n + 1 < capacity; name++)
-        if ((unsigned char)*name >= ' ' && *name != '"' && *name != '\\') out[n++] = *name;
-    out[n] = 0;
-}
-
 char *model_config_write(const model_config *c)
 {
-    char name[sizeof c->name], *text = NULL;
-    plain_name(c->name, name, sizeof name);
+    char *text = NULL;
     const int *w = c->widths, *gi = c->gi_widths;
     int length =
         asprintf(&text,
                  "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
                  "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
                  "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d]}",
-                 name, word(c->input_global), c->material_decoders, word(c->feature_sharing), word(c->gated_attention),
-                 relight_words[c->relight], word(c->global_illumination), lighting_words[c->lighting], w[0], w[1], w[2],
-                 w[3], w[4], gi[0], gi[1], gi[2], gi[3], gi[4]);
+                 c->name, word(c->input_global), c->material_decoders, word(c->feature_sharing),
+                 word(c->gated_attention), relight_words[c->relight], word(c->global_illumination),
+                 lighting_words[c->lighting], w[0], w[1], w[2], w[3], w[4], gi[0], gi[1], gi[2], gi[3], gi[4]);
     return length < 0 ? NULL : text;
 }
 

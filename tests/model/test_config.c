@@ -76,6 +76,7 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("[32, 64", "[64", "widths");
     refuses("[32, 64", "[1e30, 64", "widths");
     refuses("\"name\": \"m\"", "\"name\": \"\"", "name");
+    refuses("\"name\": \"m\"", "\"name\": \"a b\"", "name");
 }
 
 static void text_that_is_not_one_object_is_refused(void **unused)
