@@ -12,12 +12,20 @@ enum { MESSAGE_SIZE = 1024 };
 
 static _Thread_local char message[MESSAGE_SIZE];
 
+/* A message is one line, whatever names a damaged file brought into it. */
+static void keep_one_line(void)
+{
+    for (char *c = message; *c; c++)
+        if ((unsigned char)*c < ' ') *c = '?';
+}
+
 status fail(status s, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
+    keep_one_line();
     return s;
 }
 
@@ -33,6 +41,7 @@ status fail_in(status s, const char *format, ...)
     /* a message too long for the place loses its end */
     int room = MESSAGE_SIZE - 3 - used;
     snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
+    keep_one_line();
     return s;
 }
 
