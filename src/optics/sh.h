@@ -36,18 +36,33 @@ static inline void sh_accumulate(real sh[9][3], vec3 d, vec3 weighted_radiance)
     }
 }
 
+/* What the clamped cosine keeps of the band that coefficient i belongs to. */
+static inline real sh_cosine_band(int i)
+{
+    return i == 0 ? (real)3.14159265358979324 : i < 4 ? (real)2.09439510239319549 : (real)0.78539816339744831;
+}
+
 /* Irradiance on a surface of unit normal n; a Lambertian surface reflects albedo/π of it. */
 static inline vec3 sh_irradiance(const real sh[9][3], vec3 n)
 {
-    static const double band[9] = {3.14159265358979324, 2.09439510239319549, 2.09439510239319549,
-                                   2.09439510239319549, 0.78539816339744831, 0.78539816339744831,
-                                   0.78539816339744831, 0.78539816339744831, 0.78539816339744831};
     real basis[9];
     sh_basis(n, basis);
     vec3 e = {0, 0, 0};
     for (int i = 0; i < 9; i++)
-        e = vec3_fma(e, (real)band[i] * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
+        e = vec3_fma(e, sh_cosine_band(i) * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
     return e;
+}
+
+/* Gradient of weight · sh_irradiance(sh, n) by n, whose components count as three free numbers. */
+static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weight)
+{
+    real s[9];
+    for (int i = 0; i < 9; i++)
+        s[i] = sh_cosine_band(i) * vec3_dot(weight, vec3_make(sh[i][0], sh[i][1], sh[i][2]));
+    const real first = (real)0.48860251190291992, second = (real)1.0925484305920792;
+    return vec3_make(first * s[3] + second * (s[4] * n.y + s[7] * n.z + s[8] * n.x),
+                     first * s[1] + second * (s[4] * n.x + s[5] * n.z - s[8] * n.y),
+                     first * s[2] + second * (s[5] * n.y + s[7] * n.x) + (real)1.8923493915151202 * s[6] * n.z);
 }
 
 #endif

@@ -77,12 +77,31 @@ static void constant_radiance_gives_pi_irradiance(void **state)
     assert_true(fabs(e.x - pi) < 1e-12 && fabs(e.z - pi) < 1e-12);
 }
 
+static void gradient_is_that_of_central_differences(void **state)
+{
+    (void)state;
+    real sh[9][3];
+    for (int i = 0; i < 27; i++)
+        sh[i / 3][i % 3] = sin(3.7 * i + 1);
+    const real(*c)[3] = (const real(*)[3])sh;
+    const vec3 n = {0.48, -0.6, 0.64}, weight = {0.7, -0.2, 1.1}, axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    vec3 g = sh_irradiance_gradient(c, n, weight);
+    const double found[3] = {g.x, g.y, g.z}, h = 1e-4;
+    for (int k = 0; k < 3; k++) {
+        double up = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, h, axes[k])));
+        double down = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, -h, axes[k])));
+        /* irradiance is a quadratic in n, for which central differences are exact but for rounding, 1e-16 / 1e-4 */
+        assert_true(fabs(found[k] - (up - down) / (2 * h)) < 1e-10);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(basis_is_orthonormal),
         cmocka_unit_test(irradiance_from_coefficients_matches_quadrature),
         cmocka_unit_test(constant_radiance_gives_pi_irradiance),
+        cmocka_unit_test(gradient_is_that_of_central_differences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
