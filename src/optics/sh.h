@@ -65,4 +65,47 @@ static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weig
                      first * s[2] + second * (s[5] * n.y + s[7] * n.x) + (real)1.8923493915151202 * s[6] * n.z);
 }
 
+/* One channel's band 2 as the symmetric matrix q of dᵀ q d, and back. */
+static inline void sh_band2_matrix(const real sh[9][3], int channel, real q[3][3])
+{
+    const real pair = (real)0.5462742152960396, squares = (real)0.54627421529603959, polar = (real)0.31539156525252005;
+    q[0][0] = squares * sh[8][channel] - polar * sh[6][channel];
+    q[1][1] = -squares * sh[8][channel] - polar * sh[6][channel];
+    q[2][2] = 2 * polar * sh[6][channel];
+    q[0][1] = q[1][0] = pair * sh[4][channel];
+    q[1][2] = q[2][1] = pair * sh[5][channel];
+    q[0][2] = q[2][0] = pair * sh[7][channel];
+}
+
+static inline void sh_band2_from_matrix(real q[3][3], int channel, real sh[9][3])
+{
+    const real pair = (real)0.5462742152960396, polar = (real)0.31539156525252005;
+    sh[4][channel] = q[0][1] / pair;
+    sh[5][channel] = q[1][2] / pair;
+    sh[6][channel] = q[2][2] / (2 * polar);
+    sh[7][channel] = q[0][2] / pair;
+    sh[8][channel] = (q[0][0] - q[1][1]) / (2 * pair);
+}
+
+/* The coefficients of the environment turned by the orthogonal matrix m (rotation, reflection or both): what came from
+ * d comes from m d. */
+static inline void sh_turn(real sh[9][3], const real m[3][3])
+{
+    for (int c = 0; c < 3; c++) {
+        const real line[3] = {sh[3][c], sh[1][c], sh[2][c]};
+        real q[3][3], turned[3] = {0, 0, 0}, both[3][3] = {{0}};
+        sh_band2_matrix((const real(*)[3])sh, c, q);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                turned[i] += m[i][j] * line[j];
+                for (int k = 0; k < 9; k++)
+                    both[i][j] += m[i][k / 3] * q[k / 3][k % 3] * m[j][k % 3];
+            }
+        sh[3][c] = turned[0];
+        sh[1][c] = turned[1];
+        sh[2][c] = turned[2];
+        sh_band2_from_matrix(both, c, sh);
+    }
+}
+
 #endif

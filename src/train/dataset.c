@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/half.h"
+#include "optics/sh.h"
 #include "render/sample.h"
 
 enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
@@ -168,22 +169,15 @@ static void turn_normal(int orientation, float n[3])
     }
 }
 
-/* The same for the coefficients of bands 1 and 2; a turned sky, seen in a turned direction, is the sky. */
 void trn_turn_sh(int orientation, float sh[9][3])
 {
-    for (int c = 0; c < 3; c++) {
-        /* y, x; xy, yz, xz, x² - y² */
-        float x = sh[3][c], y = sh[1][c], xy = sh[4][c], yz = sh[5][c], xz = sh[7][c], squares = sh[8][c];
-        float sign_x = orientation & TRN_FLIP_X ? -1.0f : 1.0f, sign_y = orientation & TRN_FLIP_Y ? -1.0f : 1.0f;
-        bool swap = orientation & TRN_TRANSPOSE;
-        x *= sign_x, y *= sign_y, xz *= sign_x, yz *= sign_y;
-        sh[3][c] = swap ? -y : x;
-        sh[1][c] = swap ? -x : y;
-        sh[4][c] = sign_x * sign_y * xy;
-        sh[5][c] = swap ? -xz : yz;
-        sh[7][c] = swap ? -yz : xz;
-        sh[8][c] = swap ? -squares : squares;
+    float columns[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, matrix[3][3];
+    for (int j = 0; j < 3; j++) {
+        turn_normal(orientation, columns[j]);
+        for (int i = 0; i < 3; i++)
+            matrix[i][j] = columns[j][i];
     }
+    sh_turn(sh, (const float(*)[3])matrix);
 }
 
 static const uint16_t *get3(const uint16_t *from, float *to)

@@ -95,6 +95,27 @@ static void gradient_is_that_of_central_differences(void **state)
     }
 }
 
+static void turned_environment_in_a_turned_direction_is_the_environment(void **state)
+{
+    (void)state;
+    /* a rotation about an axis of no symmetry, and the same with a reflection */
+    const vec3 x = vec3_normalize(vec3_make(0.6, -0.5, 0.3)), y = vec3_normalize(vec3_cross(x, vec3_make(0, 0, 1)));
+    const vec3 z = vec3_cross(x, y);
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        double sign = mirrored ? -1 : 1, before[9][3], after[9][3];
+        const real m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {sign * z.x, sign * z.y, sign * z.z}};
+        for (int i = 0; i < 27; i++)
+            before[i / 3][i % 3] = after[i / 3][i % 3] = sin(1.9 * i + 2);
+        sh_turn(after, m);
+        for (int i = 0; i < 20; i++) {
+            vec3 d = direction(20 * i + 3, 37 * i);
+            vec3 turned = vec3_make(vec3_dot(x, d), vec3_dot(y, d), sign * vec3_dot(z, d));
+            vec3 a = sh_irradiance((const real(*)[3])before, d), b = sh_irradiance((const real(*)[3])after, turned);
+            assert_true(vec3_length(vec3_sub(a, b)) < 1e-9);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -102,6 +123,7 @@ int main(void)
         cmocka_unit_test(irradiance_from_coefficients_matches_quadrature),
         cmocka_unit_test(constant_radiance_gives_pi_irradiance),
         cmocka_unit_test(gradient_is_that_of_central_differences),
+        cmocka_unit_test(turned_environment_in_a_turned_direction_is_the_environment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
