@@ -19,6 +19,10 @@ _merlin() {
         mapfile -t COMPREPLY < <(compgen -W "${!options[*]} --help --version" -- "$current")
         return
     fi
+    if [[ $command == eval ]] && ((COMP_CWORD == 2)) && [[ $current != -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "stereo" -- "$current")
+        return
+    fi
     case $previous in
     --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
     --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi uncalibrated auto" -- "$current") ;;
