@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/progress.h"
 #include "estimate/smooth.h"
 
 typedef struct compiled {
@@ -17,6 +18,7 @@ struct network {
     nn_params *params;
     pthread_mutex_t lock; /* of the programs: a run uses their buffers */
     compiled maps, relit, indirect;
+    double compile_seconds;
 };
 
 /* What each program is made for; the rest of the whole network is left out of it. */
@@ -77,8 +79,10 @@ static status compile(network *n, model_part part, const char *const *outputs, i
     compiled_free(c);
     nn_options options = {
         .batch = 1, .height = size, .width = size, .type = best_type(), .purpose = NN_INFER, .outputs = outputs};
+    double began = clock_seconds();
     status s = model_build(&n->config, part, &c->graph);
     if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);
+    n->compile_seconds += clock_seconds() - began;
     if (s != OK)
         compiled_free(c);
     else
@@ -95,6 +99,15 @@ status network_prepare(network *n, int size)
     status s = compile(n, MODEL_WHOLE, maps_outputs, size, &n->maps);
     pthread_mutex_unlock(&n->lock);
     return s;
+}
+
+double network_take_compile_seconds(network *n)
+{
+    pthread_mutex_lock(&n->lock);
+    double seconds = n->compile_seconds;
+    n->compile_seconds = 0;
+    pthread_mutex_unlock(&n->lock);
+    return seconds;
 }
 
 /* ---- between images and the program's buffers ---- */
