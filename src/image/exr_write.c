@@ -129,9 +129,10 @@ static exr_result_t write_pixels(writer *w)
     if (r != EXR_ERR_SUCCESS) return r;
     enum { LEVEL = 3 };
     w->chunk_bytes = (size_t)lines * (size_t)w->width * w->channel_count * sizeof *w->halves;
-    w->halves = malloc(w->chunk_bytes);
-    w->shuffled = malloc(w->chunk_bytes);
-    w->zipped = malloc(w->chunk_bytes);
+    size_t room = w->chunk_bytes > 0 ? w->chunk_bytes : 1;
+    w->halves = malloc(room);
+    w->shuffled = malloc(room);
+    w->zipped = malloc(room);
     w->packer = libdeflate_alloc_compressor(LEVEL);
     bool enough = w->halves && w->shuffled && w->zipped && w->packer;
     r = enough ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
