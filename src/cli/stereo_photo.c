@@ -44,7 +44,7 @@ static status open_photo(work *w)
     merlin_image_free(&mask);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
-    s = stage_new(&w->maps, side, MERLIN_BY_BRDF, &w->stage);
+    s = stage_new(&w->maps, side, MERLIN_BY_BRDF_UNSHADOWED, &w->stage);
     w->stage.white = WHITE;
     return s;
 }
