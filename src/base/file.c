@@ -165,27 +165,37 @@ static bool append(char ***names, size_t *count, size_t *room, char *path)
     return true;
 }
 
-status file_list(const char *folder, const char *const *endings, char ***names, size_t *count)
+/* The folder's files, and with `deep` those of the folders in it. */
+static status list_into(const char *folder, const char *const *endings, bool deep, char ***names, size_t *count,
+                        size_t *room)
 {
-    *names = NULL;
-    *count = 0;
     DIR *d = opendir(folder);
     if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
-    size_t room = 0;
     for (struct dirent *e; s == OK && (e = readdir(d));) {
-        if (e->d_name[0] == '.' || strchr(e->d_name, '~') || !has_ending(e->d_name, endings)) continue;
+        if (e->d_name[0] == '.' || strchr(e->d_name, '~')) continue;
         char *path = file_join(folder, e->d_name);
-        if (path && file_is_folder(path)) {
+        bool below = path && file_is_folder(path);
+        if (below && deep) s = list_into(path, endings, false, names, count, room);
+        if (path && (below || !has_ending(e->d_name, endings))) {
             free(path);
             continue;
         }
-        if (!path || !append(names, count, &room, path)) {
+        if (!path || !append(names, count, room, path)) {
             free(path);
             s = fail(ERROR_MEMORY, "no memory for the names in %s", folder);
         }
     }
     closedir(d);
+    return s;
+}
+
+static status list(const char *folder, const char *const *endings, bool deep, char ***names, size_t *count)
+{
+    *names = NULL;
+    *count = 0;
+    size_t room = 0;
+    status s = list_into(folder, endings, deep, names, count, &room);
     if (s != OK) {
         file_list_free(*names, *count);
         *names = NULL;
@@ -194,6 +204,16 @@ status file_list(const char *folder, const char *const *endings, char ***names, 
         qsort(*names, *count, sizeof **names, compare_names);
     }
     return s;
+}
+
+status file_list(const char *folder, const char *const *endings, char ***names, size_t *count)
+{
+    return list(folder, endings, false, names, count);
+}
+
+status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count)
+{
+    return list(folder, endings, true, names, count);
 }
 
 void file_list_free(char **names, size_t count)

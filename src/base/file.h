@@ -33,6 +33,8 @@ char *file_join(const char *folder, const char *name);
 /* The plain files of a folder whose names end in one of the endings (NULL-terminated, each with its dot, any case),
  * sorted by name, each joined to the folder; *names and its entries are malloc'ed. endings NULL means all. */
 status file_list(const char *folder, const char *const *endings, char ***names, size_t *count);
+/* The same with the files of the folders in it. */
+status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count);
 void file_list_free(char **names, size_t count);
 
 #endif
