@@ -34,8 +34,9 @@ static const char help[] =
     "      --env-exposure EV\n"
     "                       makes them brighter or darker (default 0: mean luminance 1)\n"
     "                       with --orbit they go round once, and the light stays\n"
-    "      --by WAY         brdf (default): the maps' BRDF and the network's global illumination; network: the\n"
-    "                       relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
+    "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --no-shadows     brdf without cast shadows, as in the paper\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
     "      --mask FILE, --size N, --exposure EV\n"
@@ -56,6 +57,7 @@ enum {
     OPTION_ROTATE,
     OPTION_ENV_EXPOSURE,
     OPTION_BY,
+    OPTION_NO_SHADOWS,
     OPTION_FRAME,
     OPTION_MASK,
     OPTION_SIZE,
@@ -75,6 +77,7 @@ static const struct option long_options[] = {
     {"rotate", required_argument, NULL, OPTION_ROTATE},
     {"env-exposure", required_argument, NULL, OPTION_ENV_EXPOSURE},
     {"by", required_argument, NULL, OPTION_BY},
+    {"no-shadows", no_argument, NULL, OPTION_NO_SHADOWS},
     {"frame", required_argument, NULL, OPTION_FRAME},
     {"mask", required_argument, NULL, OPTION_MASK},
     {"size", required_argument, NULL, OPTION_SIZE},
@@ -94,7 +97,7 @@ typedef struct request {
     merlin_params params;
     merlin_relighting how;
     long orbit, frame, dome;
-    bool lp, json, quiet, help;
+    bool lp, no_shadows, json, quiet, help;
 } request;
 
 static status take_light(const char *text, light_list *lights)
@@ -135,6 +138,9 @@ static status take_text(int option, const char *value, request *r)
         return OK;
     case OPTION_LP:
         r->lp = true;
+        return OK;
+    case OPTION_NO_SHADOWS:
+        r->no_shadows = true;
         return OK;
     case OPTION_JSON:
         r->json = true;
@@ -194,6 +200,7 @@ static status parse(int argc, char **argv, request *r)
     if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
         return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
     if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
+    if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
 }

@@ -5,6 +5,7 @@
 #include "estimate/crop.h"
 #include "estimate/env_map.h"
 #include "estimate/network.h"
+#include "estimate/shadow.h"
 #include "estimate/surface.h"
 #include "image/image.h"
 #include "merlin/merlin.h"
@@ -45,6 +46,7 @@ status maps_check(const merlin_maps *maps);
 typedef struct stage {
     surface full, low;
     img low_photo;              /* radiance */
+    shadow_caster caster;       /* empty unless shadows are cast */
     const env_map *environment; /* lights beside the point light, or NULL; borrowed */
     float white;                /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;

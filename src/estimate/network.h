@@ -25,6 +25,8 @@ const model_config *network_config(const network *n);
 
 /* Makes the programs for this size now, so that the time is seen apart. */
 status network_prepare(network *n, int size);
+/* Seconds spent on making programs since the last call. */
+double network_take_compile_seconds(network *n);
 
 typedef struct network_estimation {
     surface maps;

@@ -6,8 +6,6 @@
 #include "optics/ambient.h"
 #include "optics/camera.h"
 
-static const float FIELD_OF_VIEW = 60.0f;
-
 enum { SAMPLES = 64 };
 /* What a sample averages over, in parts of the solid angle that it stands for: neighbours that overlap leave no pattern
  * where a lamp falls between them. */
@@ -60,7 +58,7 @@ static void add_rows(void *context, size_t begin, size_t end)
 
 static void add(job *j)
 {
-    j->eye = (camera){j->s->mask.width, j->s->mask.height, FIELD_OF_VIEW};
+    j->eye = (camera){j->s->mask.width, j->s->mask.height, SURFACE_FOV};
     parallel_blocks((size_t)j->s->mask.height, add_rows, j);
 }
 
