@@ -1,4 +1,4 @@
-/* The files of merlin relight: a picture a light or an environment, frames and animations of an orbit, contact sheets. */
+/* The files of merlin relight: a picture a light or environment, frames and animations of an orbit, contact sheets. */
 #ifndef MERLIN_CLI_RELIGHT_OUTPUT_H
 #define MERLIN_CLI_RELIGHT_OUTPUT_H
 
@@ -13,8 +13,8 @@ enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 typedef struct relight_job {
     merlin_model *model;
     const merlin_maps *maps;
-    const char *output; /* folder */
-    light_list lights;  /* relit_000.png …, of the photograph's size */
+    const char *output;                    /* folder */
+    light_list lights;                     /* relit_000.png …, of the photograph's size */
     const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
     merlin_relighting how;
     int dome;  /* pictures under a dome of lights, of the photograph's size; 0: none */

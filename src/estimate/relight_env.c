@@ -46,7 +46,8 @@ static void add_rows(void *context, size_t begin, size_t end)
     for (size_t i = begin * width; i < end * width; i++) {
         float coverage = s->mask.data[i];
         if (!(coverage > 0)) continue;
-        vec3 ray = camera_ray(&j->eye, (float)(i % width) + 0.5f, (float)(i / width) + 0.5f);
+        size_t x = i % width, y = i / width;
+        vec3 ray = camera_ray(&j->eye, (float)x + 0.5f, (float)y + 0.5f);
         pixel p = {at3(&s->albedo, i), at3(&s->normal, i), vec3_scale(ray, -1), s->roughness.data[i]};
         vec3 radiance = j->shade(j, &p);
         float *out = j->image->data + 3 * i;
