@@ -7,8 +7,9 @@
 /* The sharpness k of the paper, per square pixel of misfit. The paper holds it at 2 from the first round on, where the
  * least-squares surface has spread every jump over its surroundings: no pair is off by much, both sides of a pixel
  * look alike, and the weights stay where they were. A sharpness that grows slowly lets the first faint differences
- * gather along the jump before any pair is given up for good (graduated non-convexity, Blake & Zisserman 1987). */
-static const double FIRST_SHARPNESS = 2, LAST_SHARPNESS = 1000, GROWTH = 1.08;
+ * gather along the jump before any pair is given up for good (graduated non-convexity, Blake & Zisserman 1987). It ends
+ * where a tenth of a pixel still counts as noise: real normals do not fit together better than that. */
+static const double FIRST_SHARPNESS = 2, LAST_SHARPNESS = 100, GROWTH = 1.08;
 static const double TOLERANCE = 1e-6;
 static const float LEAST_WEIGHT = 1e-6f; /* keeps the system definite where both sides of a pair are given up */
 
