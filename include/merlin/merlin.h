@@ -118,9 +118,10 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
 /* ---- from maps to new light ---- */
 
 typedef enum merlin_relighting {
-    MERLIN_BY_BRDF, /* the maps' microfacet BRDF, plus the network's global illumination */
+    MERLIN_BY_BRDF, /* the maps' microfacet BRDF with cast shadows, plus the network's global illumination */
     MERLIN_BY_NETWORK, /* the relighting decoder, for lights on the frontal hemisphere: (sinθ cosφ, sinθ sinφ, cosθ - 1)
                         */
+    MERLIN_BY_BRDF_UNSHADOWED, /* by the BRDF without cast shadows, as in the paper */
 } merlin_relighting;
 
 /* The object under one point light at this place instead of the flash, of the flash's power (5.95): the photograph's

@@ -27,8 +27,9 @@ static const char help[] =
     "and "
     "mask.png\n"
     "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo\n"
-    "      --by WAY         brdf (default): the maps' BRDF and the network's global illumination; network: the\n"
-    "                       relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
+    "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --no-shadows     brdf without cast shadows, as in the paper\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
     "      --mask FILE, --size N, --exposure EV\n"
@@ -46,6 +47,7 @@ enum {
     OPTION_DOME,
     OPTION_LP,
     OPTION_BY,
+    OPTION_NO_SHADOWS,
     OPTION_FRAME,
     OPTION_MASK,
     OPTION_SIZE,
@@ -62,6 +64,7 @@ static const struct option long_options[] = {
     {"dome", required_argument, NULL, OPTION_DOME},
     {"lp", no_argument, NULL, OPTION_LP},
     {"by", required_argument, NULL, OPTION_BY},
+    {"no-shadows", no_argument, NULL, OPTION_NO_SHADOWS},
     {"frame", required_argument, NULL, OPTION_FRAME},
     {"mask", required_argument, NULL, OPTION_MASK},
     {"size", required_argument, NULL, OPTION_SIZE},
@@ -80,7 +83,7 @@ typedef struct request {
     merlin_params params;
     merlin_relighting how;
     long orbit, frame, dome;
-    bool lp, json, quiet, help;
+    bool lp, no_shadows, json, quiet, help;
 } request;
 
 static status take_light(const char *text, light_list *lights)
@@ -118,6 +121,9 @@ static status take_text(int option, const char *value, request *r)
         return OK;
     case OPTION_LP:
         r->lp = true;
+        return OK;
+    case OPTION_NO_SHADOWS:
+        r->no_shadows = true;
         return OK;
     case OPTION_JSON:
         r->json = true;
@@ -170,6 +176,7 @@ static status parse(int argc, char **argv, request *r)
     r->input = argv[optind];
     if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0)
         return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit or --dome");
+    if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
 }

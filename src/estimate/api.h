@@ -4,6 +4,7 @@
 
 #include "estimate/crop.h"
 #include "estimate/network.h"
+#include "estimate/shadow.h"
 #include "estimate/surface.h"
 #include "image/image.h"
 #include "merlin/merlin.h"
@@ -39,8 +40,9 @@ status maps_check(const merlin_maps *maps);
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {
     surface full, low;
-    img low_photo; /* radiance */
-    float white;   /* the radiance that becomes 1: the photograph's, unless changed */
+    img low_photo;        /* radiance */
+    shadow_caster caster; /* empty unless shadows are cast */
+    float white;          /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;
 } stage;
 

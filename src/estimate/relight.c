@@ -4,6 +4,10 @@
 #include "estimate/api.h"
 #include "image/resize.h"
 
+/* Shadows are cast by maps of at most this side and looked for at this many points a side; a light costs a few
+ * hundredths of a second then. */
+enum { SHADOW_SIDE = 512 };
+
 static size_t value_count(const img *image)
 {
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
@@ -22,6 +26,7 @@ void stage_free(stage *s)
     surface_free(&s->full);
     surface_free(&s->low);
     img_free(&s->low_photo);
+    shadow_caster_free(&s->caster);
 }
 
 status maps_check(const merlin_maps *maps)
@@ -72,6 +77,18 @@ static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
     return OK;
 }
 
+/* Of the maps as the network gave them: the photograph's resolution adds nothing to their shape. */
+static status caster_of(const surface *low, shadow_caster *out)
+{
+    surface less = {0};
+    bool large = low->mask.width > SHADOW_SIDE;
+    status s = large ? surface_at(low, SHADOW_SIDE, true, &less) : OK;
+    const surface *from = large ? &less : low;
+    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, SURFACE_FOV, out);
+    surface_free(&less);
+    return s;
+}
+
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how, .white = maps->gain};
@@ -86,17 +103,37 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
         out->full = whole;
     }
     if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
+    if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
     if (s != OK) stage_free(out);
     return s;
 }
 
 /* ---- light ---- */
 
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* From twice as many points a side as the caster has, as long as the picture shows them. */
+static status cast_shadows(const stage *s, vec3 light, img *full, img *low)
+{
+    int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
+    img seen = {0};
+    status result = shadow_cast(&s->caster, light, side, side, &seen);
+    if (result != OK) return result;
+    shadow_darken(&seen, full);
+    shadow_darken(&seen, low);
+    img_free(&seen);
+    return OK;
+}
+
 /* Bounce 1 at both sizes. */
 static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
 {
     status result = surface_shade(&s->full, light, full);
     if (result == OK) result = surface_shade(&s->low, light, low);
+    if (result == OK && s->how == MERLIN_BY_BRDF) result = cast_shadows(s, light, full, low);
     return result;
 }
 

@@ -20,6 +20,8 @@ cmp -s disc.merlin/relit/relit_000.png disc.merlin/relit/relit_001.png && compla
 succeeds network relight disc.merlin --light 0.5,0.2,-0.4 --by network -o network
 present network/relit_000.png
 cmp -s network/relit_000.png disc.merlin/relit/relit_000.png && complain "network and BRDF give the same bits"
+succeeds plain relight disc.merlin --light 0.5,0.2,-0.4 --no-shadows -o plain
+present plain/relit_000.png
 
 echo "the same light gives the same picture"
 succeeds again relight disc.merlin --light 0.5,0.2,-0.4 -o again
