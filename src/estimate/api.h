@@ -41,6 +41,7 @@ status maps_check(const merlin_maps *maps);
 typedef struct stage {
     surface full, low;
     img low_photo;        /* radiance */
+    img flash;            /* `low` under it, bounce 1 */
     shadow_caster caster; /* empty unless shadows are cast */
     float white;          /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;
