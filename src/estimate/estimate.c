@@ -160,7 +160,9 @@ static status estimate(merlin_model *model, work *w, const merlin_image *mask, m
     if (s == OK) s = choose_mask(w, mask, maps);
     if (s == OK) s = lap(w, &t->mask);
     if (s == OK) s = network_prepare(n, w->params->size);
+    /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
+    t->compile = network_take_compile_seconds(n);
     if (s == OK) s = make_input(w, &maps->gain);
     if (s == OK) s = lap(w, &t->prepare);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->low, &w->low_indirect);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/progress.h"
 #include "estimate/smooth.h"
 
 typedef struct compiled {
@@ -16,8 +17,13 @@ struct network {
     model_config config;
     nn_params *params;
     pthread_mutex_t lock; /* of the programs: a run uses their buffers */
-    compiled whole, indirect;
+    compiled maps, relit, indirect;
+    double compile_seconds;
 };
+
+/* What each program is made for; the rest of the whole network is left out of it. */
+static const char *const maps_outputs[] = {"albedo", "normal", "roughness", "depth", "indirect", NULL};
+static const char *const relit_outputs[] = {"relit_direct", NULL};
 
 static nn_type best_type(void)
 {
@@ -54,7 +60,8 @@ static void compiled_free(compiled *c)
 void network_close(network *n)
 {
     if (!n) return;
-    compiled_free(&n->whole);
+    compiled_free(&n->maps);
+    compiled_free(&n->relit);
     compiled_free(&n->indirect);
     nn_params_free(n->params);
     pthread_mutex_destroy(&n->lock);
@@ -66,13 +73,16 @@ const model_config *network_config(const network *n)
     return &n->config;
 }
 
-static status compile(network *n, model_part part, int size, compiled *c)
+static status compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
 {
     if (c->program && c->size == size) return OK;
     compiled_free(c);
-    nn_options options = {.batch = 1, .height = size, .width = size, .type = best_type(), .purpose = NN_INFER};
+    nn_options options = {
+        .batch = 1, .height = size, .width = size, .type = best_type(), .purpose = NN_INFER, .outputs = outputs};
+    double began = clock_seconds();
     status s = model_build(&n->config, part, &c->graph);
     if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);
+    n->compile_seconds += clock_seconds() - began;
     if (s != OK)
         compiled_free(c);
     else
@@ -86,9 +96,18 @@ status network_prepare(network *n, int size)
         return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
                     MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, size);
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_WHOLE, size, &n->whole);
+    status s = compile(n, MODEL_WHOLE, maps_outputs, size, &n->maps);
     pthread_mutex_unlock(&n->lock);
     return s;
+}
+
+double network_take_compile_seconds(network *n)
+{
+    pthread_mutex_lock(&n->lock);
+    double seconds = n->compile_seconds;
+    n->compile_seconds = 0;
+    pthread_mutex_unlock(&n->lock);
+    return seconds;
 }
 
 /* ---- between images and the program's buffers ---- */
@@ -121,11 +140,12 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
 }
 
 /* Every value of the photograph passes through once, so a fresh image and light are put in for each run. */
-static status run_whole(network *n, const img *photo, const img *mask, vec3 light)
+static status run_whole(network *n, const img *photo, const img *mask, vec3 light, const char *const *outputs,
+                        compiled *c)
 {
-    status s = compile(n, MODEL_WHOLE, photo->width, &n->whole);
+    status s = compile(n, MODEL_WHOLE, outputs, photo->width, c);
     if (s != OK) return s;
-    nn_program *p = n->whole.program;
+    nn_program *p = c->program;
     model_encode_image(photo->data, nn_input_data(p, "image"), value_count(photo));
     put(p, "mask", mask, 1, 0);
     float position[3] = {light.x, light.y, light.z};
@@ -160,10 +180,10 @@ status network_estimate(network *n, const img *photo, const img *mask, surface *
     *maps = (surface){0};
     *indirect = (img){0};
     pthread_mutex_lock(&n->lock);
-    status s = run_whole(n, photo, mask, vec3_make(0, 0, 0));
-    if (s == OK) s = take_maps(n->whole.program, mask, maps);
+    status s = run_whole(n, photo, mask, vec3_make(0, 0, 0), maps_outputs, &n->maps);
+    if (s == OK) s = take_maps(n->maps.program, mask, maps);
     if (s == OK && n->config.global_illumination)
-        s = take(n->whole.program, "indirect", photo->width, 3, 1, 0, indirect);
+        s = take(n->maps.program, "indirect", photo->width, 3, 1, 0, indirect);
     else if (s == OK)
         s = img_new(indirect, photo->width, photo->height, 3);
     pthread_mutex_unlock(&n->lock);
@@ -182,8 +202,8 @@ status network_relight(network *n, const img *photo, const img *mask, vec3 light
     if (n->config.lighting == MODEL_LIGHT_SH)
         return fail(ERROR_USAGE, "model \"%s\" relights by environments only, not by point lights", n->config.name);
     pthread_mutex_lock(&n->lock);
-    status s = run_whole(n, photo, mask, light);
-    if (s == OK) s = take(n->whole.program, "relit_direct", photo->width, 3, 1, 0, direct);
+    status s = run_whole(n, photo, mask, light, relit_outputs, &n->relit);
+    if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, direct);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -198,7 +218,7 @@ static void put_clipped(nn_program *p, const img *direct)
 
 static status run_indirect(network *n, const surface *maps, const img *direct, img *indirect)
 {
-    status s = compile(n, MODEL_INDIRECT, direct->width, &n->indirect);
+    status s = compile(n, MODEL_INDIRECT, NULL, direct->width, &n->indirect);
     if (s != OK) return s;
     nn_program *p = n->indirect.program;
     put_clipped(p, direct);

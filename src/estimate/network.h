@@ -25,6 +25,8 @@ const model_config *network_config(const network *n);
 
 /* Makes the programs for this size now, so that the time is seen apart. */
 status network_prepare(network *n, int size);
+/* Seconds spent on making programs since the last call. */
+double network_take_compile_seconds(network *n);
 
 /* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. *indirect: the light
  * of bounces 2 and up under the flash; zero for a model without global illumination. */

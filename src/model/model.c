@@ -218,35 +218,36 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     return OK;
 }
 
-static status read_config(const char *weights, model_config *config)
+static status read_config(const st_file *file, const char *weights, model_config *config)
 {
-    st_file *file;
-    status s = st_open(weights, &file);
-    if (s != OK) return s;
     const char *json = st_metadata(file, "config");
-    if (json)
-        s = model_config_parse(json, strlen(json), weights, config);
+    if (json) return model_config_parse(json, strlen(json), weights, config);
+    return fail(ERROR_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
+}
+
+static status load(const st_file *file, const char *weights, model_config *config, nn_params **params)
+{
+    nn_graph *g = NULL;
+    nn_params *p = NULL;
+    status s = read_config(file, weights, config);
+    if (s == OK) s = model_build(config, MODEL_WHOLE, &g);
+    if (s == OK) s = nn_params_zero(g, &p);
+    if (s == OK) s = nn_params_take(p, file, weights);
+    nn_graph_free(g);
+    if (s != OK)
+        nn_params_free(p);
     else
-        s = fail(ERROR_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
-    st_close(file);
+        *params = p;
     return s;
 }
 
 status model_load(const char *weights, model_config *config, nn_params **params)
 {
     *params = NULL;
-    status s = read_config(weights, config);
+    st_file *file;
+    status s = st_open(weights, &file);
     if (s != OK) return s;
-    nn_graph *g = NULL;
-    nn_params *p = NULL;
-    s = model_build(config, MODEL_WHOLE, &g);
-    if (s == OK) s = nn_params_zero(g, &p);
-    if (s == OK) s = nn_params_load(p, weights);
-    nn_graph_free(g);
-    if (s != OK) {
-        nn_params_free(p);
-        return s;
-    }
-    *params = p;
-    return OK;
+    s = load(file, weights, config, params);
+    st_close(file);
+    return s;
 }

@@ -216,6 +216,7 @@ static status make_ports(compilation *c)
         if (g->nodes[i]->op == OP_INPUT)
             s = make_port(c, &p->inputs[p->input_count++], g->nodes[i]->name, &c->low.values[i]);
     for (int i = 0; s == OK && i < g->output_count; i++) {
+        if (!lower_wants_output(&c->low.options, g->outputs[i].name)) continue;
         int node = lower_resolve(c->low.options.type, g->outputs[i].node);
         s = make_port(c, &p->outputs[p->output_count++], g->outputs[i].name, &c->low.values[node]);
     }

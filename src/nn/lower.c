@@ -2,6 +2,7 @@
 #include "nn/lower.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { SIZE_LIMIT = 1 << 15 };
 
@@ -42,10 +43,19 @@ bool lower_passes_gradient(const nn_node *node, int input)
     return node->op != OP_RENDER || input < 4;
 }
 
+bool lower_wants_output(const nn_options *o, const char *name)
+{
+    if (!o->outputs) return true;
+    for (const char *const *wanted = o->outputs; *wanted; wanted++)
+        if (strcmp(*wanted, name) == 0) return true;
+    return false;
+}
+
 static void find_live(lowering *l)
 {
     const nn_graph *g = l->graph;
     for (int i = 0; i < g->output_count; i++) {
+        if (!lower_wants_output(&l->options, g->outputs[i].name)) continue;
         value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
         v->live = v->is_output = true;
     }

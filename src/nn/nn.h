@@ -98,6 +98,8 @@ void nn_masked_gradient_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn
 
 /* ---- parameters ---- */
 
+struct st_file; /* nn/safetensors.h */
+
 /* Fresh parameters for a graph: convolutions He 2015, gamma 1, beta 0, biases 0. Deterministic from seed. */
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out);
 /* The same with zeros where nn_params_new draws random numbers: for nn_params_load, which then starts sooner. */
@@ -123,6 +125,8 @@ void nn_params_touch(nn_params *params);
 /* Copies the tensors of a safetensors file (nn/safetensors.h; F32, F16 or BF16) into same-named parameters. Missing,
  * extra or differently shaped tensors are an error that names one. */
 status nn_params_load(nn_params *params, const char *path);
+/* The same from a file that is open already; path for messages. */
+status nn_params_take(nn_params *params, const struct st_file *f, const char *path);
 
 /* ---- programs ---- */
 
@@ -135,6 +139,7 @@ typedef struct nn_options {
     int batch, height, width;
     nn_type type;
     nn_purpose purpose;
+    const char *const *outputs; /* names that end with NULL: these alone are computed; NULL: all */
 } nn_options;
 
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out);
