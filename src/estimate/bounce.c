@@ -7,7 +7,7 @@ static const int FRAME_BY_RADIUS = 32;
 static const float DARK = 1e-6f;
 
 /* Both lights' brightness. */
-static status brightness(const img *direct_by_flash, const img *direct, img *out)
+static status brightness(const img *direct_by_flash, const img *direct, const img *ambient, img *out)
 {
     status s = img_new(out, direct->width, direct->height, PLANES);
     if (s != OK) return s;
@@ -15,15 +15,15 @@ static status brightness(const img *direct_by_flash, const img *direct, img *out
     for (size_t i = 0; i < count; i++)
         for (size_t c = 3 * i; c < 3 * i + 3; c++) {
             out->data[PLANES * i + FLASH] += direct_by_flash->data[c];
-            out->data[PLANES * i + LIGHT] += direct->data[c];
+            out->data[PLANES * i + LIGHT] += direct->data[c] + (ambient ? ambient->data[c] : 0);
         }
     return OK;
 }
 
-status bounce_follow(const img *direct_by_flash, const img *direct, img *indirect)
+status bounce_follow(const img *direct_by_flash, const img *direct, const img *ambient, img *indirect)
 {
     img sums = {0}, scratch = {0};
-    status s = brightness(direct_by_flash, direct, &sums);
+    status s = brightness(direct_by_flash, direct, ambient, &sums);
     if (s == OK) s = img_new(&scratch, sums.width, sums.height, PLANES);
     if (s == OK) s = img_box_sums(&sums, &scratch, sums.width / FRAME_BY_RADIUS);
     size_t count = s == OK ? (size_t)indirect->width * (size_t)indirect->height : 0;

@@ -171,7 +171,7 @@ static status add_bounces(eval_model *m, const img *flash, const img direct[EVAL
     if (s == OK) s = img_new(&bounces, m->size, m->size, 3);
     for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
         if (indirect) memcpy(bounces.data, indirect + i * values, values * sizeof *indirect);
-        s = bounce_follow(flash, &direct[i], &bounces);
+        s = bounce_follow(flash, &direct[i], NULL, &bounces);
         if (s == OK) add_indirect(&direct[i], bounces.data, &full[i]);
     }
     img_free(&bounces);
