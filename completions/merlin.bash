@@ -4,10 +4,10 @@ _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local -A options=(
         [estimate]="--mask --output --model --size --exposure --json --quiet --help"
-        [relight]="--light --lights --orbit --dome --lp --by --frame --mask --output --model --size --exposure --json --quiet --help"
+        [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --exposure --json --quiet --help"
         [stereo]="--lights --near --method --mask --ambient --linear --integrate --mesh --output --model --size --exposure
             --sphere --json --quiet --help"
-        [render]="--count --output --seed --first --size --fov --mesh --env-dir --no-env --targets --bounces --spp --paths
+        [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
@@ -19,13 +19,17 @@ _merlin() {
         mapfile -t COMPREPLY < <(compgen -W "${!options[*]} --help --version" -- "$current")
         return
     fi
+    if [[ $command == eval ]] && ((COMP_CWORD == 2)) && [[ $current != -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "stereo" -- "$current")
+        return
+    fi
     case $previous in
     --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
     --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi uncalibrated auto" -- "$current") ;;
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
     --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
-    --data | --means | --env-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
+    --data | --means | --env-dir | --material-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     *)
         if [[ $current == -* ]]; then
             mapfile -t COMPREPLY < <(compgen -W "${options[$command]}" -- "$current")

@@ -2,10 +2,13 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,17 +24,25 @@ bool file_is_folder(const char *path)
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
 }
 
-static status read_open(FILE *f, const char *path, size_t limit, char **data, size_t *size)
+/* A plain file's size. */
+static status check_size(int descriptor, const char *path, size_t limit, size_t *size)
 {
     struct stat s;
-    if (fstat(fileno(f), &s) != 0 || !S_ISREG(s.st_mode)) return fail(ERROR_INPUT, "%s is not a plain file", path);
-    if ((size_t)s.st_size > limit)
-        return fail(ERROR_INPUT, "%s is %lld bytes, more than the %zu expected at most", path, (long long)s.st_size,
-                    limit);
-    char *buffer = malloc((size_t)s.st_size + 1);
-    if (!buffer) return fail(ERROR_MEMORY, "no memory to read %s (%lld bytes)", path, (long long)s.st_size);
-    size_t got = fread(buffer, 1, (size_t)s.st_size, f);
-    if (got != (size_t)s.st_size) {
+    if (fstat(descriptor, &s) != 0 || !S_ISREG(s.st_mode)) return fail(ERROR_INPUT, "%s is not a plain file", path);
+    *size = (size_t)s.st_size;
+    if (*size <= limit) return OK;
+    return fail(ERROR_INPUT, "%s is %zu bytes, more than the %zu expected at most", path, *size, limit);
+}
+
+static status read_open(FILE *f, const char *path, size_t limit, char **data, size_t *size)
+{
+    size_t expected;
+    status s = check_size(fileno(f), path, limit, &expected);
+    if (s != OK) return s;
+    char *buffer = malloc(expected + 1);
+    if (!buffer) return fail(ERROR_MEMORY, "no memory to read %s (%zu bytes)", path, expected);
+    size_t got = fread(buffer, 1, expected, f);
+    if (got != expected) {
         free(buffer);
         return fail(ERROR_INPUT, "cannot read all of %s", path);
     }
@@ -48,6 +59,34 @@ status file_read(const char *path, size_t limit, char **data, size_t *size)
     status s = read_open(f, path, limit, data, size);
     fclose(f);
     return s;
+}
+
+static status map_open(int descriptor, const char *path, size_t limit, file_view *out)
+{
+    size_t size;
+    status s = check_size(descriptor, path, limit, &size);
+    if (s != OK || size == 0) return s;
+    void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
+    if (data == MAP_FAILED) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
+    *out = (file_view){data, size};
+    return OK;
+}
+
+status file_map(const char *path, size_t limit, file_view *out)
+{
+    *out = (file_view){0};
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
+    status s = map_open(descriptor, path, limit, out);
+    close(descriptor);
+    return s;
+}
+
+void file_unmap(file_view *view)
+{
+    /* what was mapped was given as const to the reader only */
+    if (view->data) munmap((void *)(uintptr_t)view->data, view->size);
+    *view = (file_view){0};
 }
 
 status file_temporary(const char *path, char **temporary)
@@ -165,27 +204,37 @@ static bool append(char ***names, size_t *count, size_t *room, char *path)
     return true;
 }
 
-status file_list(const char *folder, const char *const *endings, char ***names, size_t *count)
+/* The folder's files, and with `deep` those of the folders in it. */
+static status list_into(const char *folder, const char *const *endings, bool deep, char ***names, size_t *count,
+                        size_t *room)
 {
-    *names = NULL;
-    *count = 0;
     DIR *d = opendir(folder);
     if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
-    size_t room = 0;
     for (struct dirent *e; s == OK && (e = readdir(d));) {
-        if (e->d_name[0] == '.' || strchr(e->d_name, '~') || !has_ending(e->d_name, endings)) continue;
+        if (e->d_name[0] == '.' || strchr(e->d_name, '~')) continue;
         char *path = file_join(folder, e->d_name);
-        if (path && file_is_folder(path)) {
+        bool below = path && file_is_folder(path);
+        if (below && deep) s = list_into(path, endings, false, names, count, room);
+        if (path && (below || !has_ending(e->d_name, endings))) {
             free(path);
             continue;
         }
-        if (!path || !append(names, count, &room, path)) {
+        if (!path || !append(names, count, room, path)) {
             free(path);
             s = fail(ERROR_MEMORY, "no memory for the names in %s", folder);
         }
     }
     closedir(d);
+    return s;
+}
+
+static status list(const char *folder, const char *const *endings, bool deep, char ***names, size_t *count)
+{
+    *names = NULL;
+    *count = 0;
+    size_t room = 0;
+    status s = list_into(folder, endings, deep, names, count, &room);
     if (s != OK) {
         file_list_free(*names, *count);
         *names = NULL;
@@ -194,6 +243,16 @@ status file_list(const char *folder, const char *const *endings, char ***names, 
         qsort(*names, *count, sizeof **names, compare_names);
     }
     return s;
+}
+
+status file_list(const char *folder, const char *const *endings, char ***names, size_t *count)
+{
+    return list(folder, endings, false, names, count);
+}
+
+status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count)
+{
+    return list(folder, endings, true, names, count);
 }
 
 void file_list_free(char **names, size_t count)

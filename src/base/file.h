@@ -11,6 +11,16 @@
  * limit bytes. */
 status file_read(const char *path, size_t limit, char **data, size_t *size);
 
+/* A file's bytes without a copy, for reading; zero-initialized is none. The file must not shrink while it is mapped:
+ * for files that are replaced as wholes, as all that this project writes are. */
+typedef struct file_view {
+    const void *data;
+    size_t size;
+} file_view;
+/* The same refusals as file_read. */
+status file_map(const char *path, size_t limit, file_view *out);
+void file_unmap(file_view *view);
+
 /* Writes all of a file through a temporary name beside it and rename: a killed process or a full disk leaves the old
  * file. file_write_durable also waits for the disk, so that a power cut does too: for what took hours to make. */
 status file_write(const char *path, const void *data, size_t size);
@@ -33,6 +43,8 @@ char *file_join(const char *folder, const char *name);
 /* The plain files of a folder whose names end in one of the endings (NULL-terminated, each with its dot, any case),
  * sorted by name, each joined to the folder; *names and its entries are malloc'ed. endings NULL means all. */
 status file_list(const char *folder, const char *const *endings, char ***names, size_t *count);
+/* The same with the files of the folders in it. */
+status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count);
 void file_list_free(char **names, size_t count);
 
 #endif

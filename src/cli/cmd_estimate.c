@@ -3,9 +3,11 @@
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
 
@@ -91,13 +93,23 @@ static status parse(int argc, char **argv, request *r)
     return optind < argc ? OK : fail(ERROR_USAGE, "no photograph given");
 }
 
-static void print_json(const photo_job *job, const merlin_maps *maps, double seconds)
+/* What the report of a photograph's folder cannot know yet, in seconds. */
+typedef struct lap_times {
+    double start, model; /* of the program: loading it, and its weights; the first photograph's alone */
+    double read, write, total;
+} lap_times;
+
+static void print_json(const photo_job *job, const merlin_maps *maps, const lap_times *laps)
 {
     char *text = maps_report(maps);
-    cJSON *report = text ? cJSON_Parse(text) : NULL;
+    cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
     cJSON_AddStringToObject(report, "photo", job->photo);
     cJSON_AddStringToObject(report, "output", job->output);
-    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    cJSON_AddNumberToObject(seconds, "start", laps->start);
+    cJSON_AddNumberToObject(seconds, "model", laps->model);
+    cJSON_AddNumberToObject(seconds, "read", laps->read);
+    cJSON_AddNumberToObject(seconds, "write", laps->write);
+    cJSON_AddNumberToObject(report, "seconds_total", laps->total);
     char *line = cJSON_PrintUnformatted(report);
     if (line) puts(line);
     cJSON_free(line);
@@ -105,46 +117,91 @@ static void print_json(const photo_job *job, const merlin_maps *maps, double sec
     free(text);
 }
 
-static void announce(const request *r, const photo_job *job, const merlin_maps *maps, double seconds)
+static void announce(const request *r, const photo_job *job, const merlin_maps *maps, const lap_times *laps)
 {
     if (r->json)
-        print_json(job, maps, seconds);
+        print_json(job, maps, laps);
     else if (!r->quiet)
-        printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, seconds);
+        printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
     if (!r->quiet && maps->mask_confidence < 0.6f)
         fprintf(stderr,
                 "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
                 job->photo, (double)maps->mask_confidence, job->output);
 }
 
-static status estimate_one(const request *r, const photo_job *job)
+/* Seconds since *clock, which moves on to now. */
+static double lap(double *clock)
 {
-    double began = clock_seconds();
-    merlin_image photo = {0}, mask = {0};
+    double now = clock_seconds(), passed = now - *clock;
+    *clock = now;
+    return passed;
+}
+
+/* From the photograph in memory to files; both images are freed. */
+static status take_apart(const request *r, const photo_job *job, merlin_image *photo, merlin_image *mask,
+                         lap_times *laps)
+{
+    double began = clock_seconds(), clock = began;
     merlin_maps maps = {0};
-    status s = photo_read(job, &photo, &mask);
-    if (s == OK) {
-        s = (status)merlin_estimate(r->model, &photo, &mask, &r->params, &maps);
-        if (s != OK) s = fail_in(s, "%s", job->photo);
-    }
-    merlin_image_free(&photo);
-    merlin_image_free(&mask);
+    status s = (status)merlin_estimate(r->model, photo, mask, &r->params, &maps);
+    if (s != OK) s = fail_in(s, "%s", job->photo);
+    merlin_image_free(photo);
+    merlin_image_free(mask);
+    lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
-    if (s == OK) announce(r, job, &maps, clock_seconds() - began);
+    laps->write = lap(&clock);
+    laps->total = laps->start + laps->model + laps->read + clock - began;
+    if (s == OK) announce(r, job, &maps, laps);
     merlin_maps_free(&maps);
     return s;
 }
 
-static int estimate_all(const request *r, const photo_list *photos)
+static status estimate_one(const request *r, const photo_job *job)
+{
+    merlin_image photo = {0}, mask = {0};
+    lap_times laps = {0};
+    double clock = clock_seconds();
+    status s = photo_read(job, &photo, &mask);
+    laps.read = lap(&clock);
+    return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
+}
+
+/* The first photograph is read while the weights are, and the network made ready. */
+static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready)
+{
+    merlin_image photo, mask;
+    lap_times laps = {.start = (double)clock() / CLOCKS_PER_SEC};
+    double now = clock_seconds();
+    photo_ahead first;
+    photo_begin(&first, job);
+    status opened = (status)merlin_model_open(weights, &r->model), s = OK;
+    if (opened == OK) opened = network_prepare(r->model->network, r->params.size);
+    *ready = opened == OK;
+    laps.model = lap(&now);
+    char words[1024];
+    if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
+    s = photo_finish(&first, &photo, &mask);
+    laps.read = lap(&now);
+    if (opened == OK) return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
+    merlin_image_free(&photo);
+    merlin_image_free(&mask);
+    return fail(opened, "%s", words);
+}
+
+static int estimate_all(request *r, const photo_list *photos, const char *weights)
 {
     int code = 0;
+    bool ready = false;
     for (size_t i = 0; i < photos->count; i++) {
         const photo_job *job = &photos->at[i];
-        status s = cli_interrupted() ? ERROR_STOPPED : estimate_one(r, job);
+        status s = cli_interrupted() ? ERROR_STOPPED
+                   : ready           ? estimate_one(r, job)
+                                     : estimate_first(r, job, weights, &ready);
         if (s == ERROR_STOPPED)
             return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
         if (s == OK) continue;
-        cli_fail("estimate", s);
+        int failed = cli_fail("estimate", s);
+        if (!ready) return failed;
         code = 1;
     }
     return code;
@@ -165,8 +222,7 @@ int cmd_estimate(int argc, char **argv)
     status s = photo_list_make(argv + optind, argc - optind, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     s = photo_find_model(r.weights, &weights);
-    if (s == OK) s = (status)merlin_model_open(weights, &r.model);
-    int code = s == OK ? estimate_all(&r, &photos) : cli_fail("estimate", s);
+    int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
     merlin_model_close(r.model);
     free(weights);
     photo_list_free(&photos);

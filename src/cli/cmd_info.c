@@ -34,8 +34,8 @@ typedef struct weights_info {
 } weights_info;
 
 /* What merlin train writes beside the configuration. */
-static const char *const provenance[] = {"presentations",    "samples",         "size", "generator_version",
-                                         "training_seconds", "validation_loss", "note", "training"};
+static const char *const provenance[] = {"presentations",   "samples", "size",    "generator_version",
+                                         "validation_loss", "note",    "training"};
 enum { PROVENANCE = sizeof provenance / sizeof provenance[0] };
 
 static status measure_cost(const model_config *config, nn_params *params, double *gmac)

@@ -22,6 +22,7 @@ static const char help[] =
     "  --fov DEG       horizontal field of view (default 60)\n"
     "  --mesh F        this OBJ, PLY or glTF object, with procedural materials, instead of procedural shapes\n"
     "  --env-dir D     environment maps from this folder instead of procedural ones\n"
+    "  --material-dir D  photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
     "  --no-env        no environment image\n"
     "  --targets K     also K images under random lights in front, with cast shadows\n"
     "  --bounces       also keep bounce 2 and bounce 3 apart\n"
@@ -96,6 +97,9 @@ static status take_option(int option, const char *text, request *r)
     case 'd':
         r->options.environment_folder = text;
         return OK;
+    case 'w':
+        r->options.material_folder = text;
+        return OK;
     case 'e':
         r->options.environment = false;
         return OK;
@@ -121,15 +125,25 @@ static status take_option(int option, const char *text, request *r)
 static status parse(int argc, char **argv, request *r)
 {
     static const struct option options[] = {
-        {"count", required_argument, NULL, 'n'}, {"output", required_argument, NULL, 'o'},
-        {"seed", required_argument, NULL, 's'},  {"first", required_argument, NULL, 'f'},
-        {"size", required_argument, NULL, 'p'},  {"fov", required_argument, NULL, 'v'},
-        {"mesh", required_argument, NULL, 'm'},  {"env-dir", required_argument, NULL, 'd'},
-        {"no-env", no_argument, NULL, 'e'},      {"targets", required_argument, NULL, 'k'},
-        {"bounces", no_argument, NULL, 'b'},     {"spp", required_argument, NULL, 'r'},
-        {"paths", required_argument, NULL, 'a'}, {"threads", required_argument, NULL, 't'},
-        {"quiet", no_argument, NULL, 'q'},       {"json", no_argument, NULL, 'j'},
-        {"help", no_argument, NULL, 'h'},        {0},
+        {"count", required_argument, NULL, 'n'},
+        {"output", required_argument, NULL, 'o'},
+        {"seed", required_argument, NULL, 's'},
+        {"first", required_argument, NULL, 'f'},
+        {"size", required_argument, NULL, 'p'},
+        {"fov", required_argument, NULL, 'v'},
+        {"mesh", required_argument, NULL, 'm'},
+        {"env-dir", required_argument, NULL, 'd'},
+        {"material-dir", required_argument, NULL, 'w'},
+        {"no-env", no_argument, NULL, 'e'},
+        {"targets", required_argument, NULL, 'k'},
+        {"bounces", no_argument, NULL, 'b'},
+        {"spp", required_argument, NULL, 'r'},
+        {"paths", required_argument, NULL, 'a'},
+        {"threads", required_argument, NULL, 't'},
+        {"quiet", no_argument, NULL, 'q'},
+        {"json", no_argument, NULL, 'j'},
+        {"help", no_argument, NULL, 'h'},
+        {0},
     };
     int option;
     opterr = 0;

@@ -13,7 +13,7 @@ static void help(void)
          "\n"
          "  -d, --data DIR      folder of samples, all of the configuration's size\n"
          "  -o, --output DIR    receives weights.safetensors, checkpoint.safetensors, curves.csv,\n"
-         "                      validation.csv and curves.png\n"
+         "                      validation.csv, curves.png and seconds.txt\n"
          "  -r, --resume        go on from DIR's checkpoint\n"
          "  -i, --init W        start from these weights (to fine-tune them)\n"
          "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"

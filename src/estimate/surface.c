@@ -8,7 +8,6 @@
 #include "optics/camera.h"
 #include "optics/light.h"
 
-static const float FIELD_OF_VIEW = 60.0f;
 static const float LEAST_ROUGHNESS = 0.03f, LEAST_DEPTH = 0.05f, LARGEST_DEPTH = 20.0f;
 /* Normals at the very silhouette are grazing, not behind it. */
 static const float LEAST_NORMAL_Z = 0.02f;
@@ -210,7 +209,7 @@ status surface_shade(const surface *s, vec3 light, img *out)
 {
     status result = img_new(out, s->mask.width, s->mask.height, 3);
     if (result != OK) return result;
-    shading job = {s, {s->mask.width, s->mask.height, FIELD_OF_VIEW}, light, out};
+    shading job = {s, {s->mask.width, s->mask.height, SURFACE_FOV}, light, out};
     parallel_blocks((size_t)s->mask.height, shade_rows, &job);
     return OK;
 }

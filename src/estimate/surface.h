@@ -13,6 +13,9 @@
 #include "base/vec.h"
 #include "image/image.h"
 
+/* Degrees. */
+#define SURFACE_FOV 60.0f
+
 typedef struct surface {
     img albedo;    /* 3 */
     img normal;    /* 3 */

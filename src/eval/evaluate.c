@@ -212,12 +212,34 @@ static status score_traced_targets(evaluation *e, subject *on)
     return s;
 }
 
+/* The middle, by the logarithm, of what training adds of a sample's environment. */
+static const float ENVIRONMENT_STRENGTH = 0.316f;
+
+/* What the network is shown: the flash picture, for models of setting B in the sample's environment. */
+static status take_photograph(const evaluation *e, subject *on)
+{
+    const sample *s = on->sample;
+    const model_config *config = eval_model_config(e->model);
+    img more = {0};
+    if (config->lighting != MODEL_LIGHT_BOTH)
+        return eval_picture(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, &on->image);
+    if (!s->env.data)
+        return fail(ERROR_INPUT, "model \"%s\" is for photographs in surroundings: render samples without --no-env",
+                    config->name);
+    status st = img_copy(&more, &s->env);
+    if (st != OK) return st;
+    for (size_t i = 0, n = 3 * (size_t)more.width * (size_t)more.height; i < n; i++)
+        more.data[i] = ENVIRONMENT_STRENGTH * more.data[i] + (config->input_global ? s->indirect.data[i] : 0);
+    st = eval_picture(&s->direct, &more, &on->mask, &on->image);
+    img_free(&more);
+    return st;
+}
+
 static status score_sample(evaluation *e, const sample *s, eval_scores *scores)
 {
     subject on = {.sample = s};
-    bool global = eval_model_config(e->model)->input_global;
     status st = eval_binary_mask(&s->mask, &on.mask);
-    if (st == OK) st = eval_picture(&s->direct, global ? &s->indirect : NULL, &on.mask, &on.image);
+    if (st == OK) st = take_photograph(e, &on);
     if (st == OK) st = eval_maps_of_sample(s, &on.truth);
     if (st == OK) st = eval_inflate(&on.image, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
     if (st == OK) st = score_brdf_targets(e, &on);

@@ -1,3 +1,4 @@
+#include <libdeflate.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,6 +19,9 @@ typedef struct writer {
     const exr_channel *channels;
     size_t channel_count;
     uint16_t *halves; /* one chunk: channel × line × pixel */
+    size_t chunk_bytes;
+    struct libdeflate_compressor *packer;
+    uint8_t *shuffled, *zipped; /* a chunk each, on its way to the file */
 } writer;
 
 static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
@@ -76,6 +80,26 @@ static void fill_chunk(const writer *w, exr_encode_pipeline_t *encoder)
     }
 }
 
+/* The format's ZIP: even bytes before odd ones, each less the one before, then a zlib stream; or the chunk as it is
+ * where that is no longer. The library's own does the same with zlib, in three times the time. */
+static exr_result_t zip_chunk(exr_encode_pipeline_t *encoder)
+{
+    const writer *w = encoder->encoding_user_data;
+    const uint8_t *from = encoder->packed_buffer;
+    size_t size = encoder->packed_bytes, half = (size + 1) / 2;
+    if (size > w->chunk_bytes) return EXR_ERR_INVALID_ARGUMENT;
+    for (size_t i = 0; i < size; i++)
+        w->shuffled[i % 2 ? half + i / 2 : i / 2] = from[i];
+    for (size_t i = size; i-- > 1;)
+        w->shuffled[i] = (uint8_t)(w->shuffled[i] - w->shuffled[i - 1] + 128);
+    size_t zipped = libdeflate_zlib_compress(w->packer, w->shuffled, size, w->zipped, size - 1);
+    if (zipped == 0) memcpy(w->zipped, from, size);
+    encoder->compressed_buffer = w->zipped;
+    encoder->compressed_alloc_size = w->chunk_bytes;
+    encoder->compressed_bytes = zipped ? zipped : size;
+    return EXR_ERR_SUCCESS;
+}
+
 static exr_result_t write_chunks(writer *w, int lines_per_chunk)
 {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
@@ -89,8 +113,11 @@ static exr_result_t write_chunks(writer *w, int lines_per_chunk)
         if (r != EXR_ERR_SUCCESS) break;
         fill_chunk(w, &encoder);
         if (y == 0) r = exr_encoding_choose_default_routines(w->context, 0, &encoder);
+        encoder.encoding_user_data = w;
+        encoder.compress_fn = zip_chunk;
         if (r == EXR_ERR_SUCCESS) r = exr_encoding_run(w->context, 0, &encoder);
     }
+    encoder.compressed_buffer = NULL; /* ours */
     exr_encoding_destroy(w->context, &encoder);
     return r;
 }
@@ -100,10 +127,19 @@ static exr_result_t write_pixels(writer *w)
     int32_t lines = 0;
     exr_result_t r = exr_get_scanlines_per_chunk(w->context, 0, &lines);
     if (r != EXR_ERR_SUCCESS) return r;
-    w->halves = malloc((size_t)lines * (size_t)w->width * w->channel_count * sizeof *w->halves);
-    if (!w->halves) return EXR_ERR_OUT_OF_MEMORY;
-    r = write_chunks(w, lines);
+    enum { LEVEL = 3 };
+    w->chunk_bytes = (size_t)lines * (size_t)w->width * w->channel_count * sizeof *w->halves;
+    size_t room = w->chunk_bytes > 0 ? w->chunk_bytes : 1;
+    w->halves = malloc(room);
+    w->shuffled = malloc(room);
+    w->zipped = malloc(room);
+    w->packer = libdeflate_alloc_compressor(LEVEL);
+    bool enough = w->halves && w->shuffled && w->zipped && w->packer;
+    r = enough ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
     free(w->halves);
+    free(w->shuffled);
+    free(w->zipped);
+    libdeflate_free_compressor(w->packer);
     return r;
 }
 

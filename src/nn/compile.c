@@ -103,7 +103,8 @@ static void use_buffer(compilation *c, int *buffer, size_t bytes, int time)
 
 static bool backward_needs_input(nn_op op)
 {
-    return op_is_conv(op) || op_is_loss(op) || op == OP_NORM || op == OP_GATE || op == OP_NORMALIZE || op == OP_RENDER;
+    return op_is_conv(op) || op_is_loss(op) || op == OP_NORM || op == OP_GATE || op == OP_NORMALIZE ||
+           op == OP_RENDER || op == OP_ENVIRONMENT;
 }
 
 static bool backward_needs_output(const nn_step *step)
@@ -216,6 +217,7 @@ static status make_ports(compilation *c)
         if (g->nodes[i]->op == OP_INPUT)
             s = make_port(c, &p->inputs[p->input_count++], g->nodes[i]->name, &c->low.values[i]);
     for (int i = 0; s == OK && i < g->output_count; i++) {
+        if (!lower_wants_output(&c->low.options, g->outputs[i].name)) continue;
         int node = lower_resolve(c->low.options.type, g->outputs[i].node);
         s = make_port(c, &p->outputs[p->output_count++], g->outputs[i].name, &c->low.values[node]);
     }

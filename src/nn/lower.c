@@ -2,6 +2,7 @@
 #include "nn/lower.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { SIZE_LIMIT = 1 << 15 };
 
@@ -39,13 +40,23 @@ static status infer_shape(const nn_options *o, value *v)
 bool lower_passes_gradient(const nn_node *node, int input)
 {
     if (op_is_loss(node->op)) return input == 0;
+    if (node->op == OP_ENVIRONMENT) return input < 3;
     return node->op != OP_RENDER || input < 4;
+}
+
+bool lower_wants_output(const nn_options *o, const char *name)
+{
+    if (!o->outputs) return true;
+    for (const char *const *wanted = o->outputs; *wanted; wanted++)
+        if (strcmp(*wanted, name) == 0) return true;
+    return false;
 }
 
 static void find_live(lowering *l)
 {
     const nn_graph *g = l->graph;
     for (int i = 0; i < g->output_count; i++) {
+        if (!lower_wants_output(&l->options, g->outputs[i].name)) continue;
         value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
         v->live = v->is_output = true;
     }

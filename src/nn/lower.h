@@ -39,6 +39,8 @@ typedef struct lowering {
 status lower_graph(const nn_graph *g, const nn_options *options, lowering *out);
 void lowering_free(lowering *l);
 
+/* Whether options->outputs asks for this one. */
+bool lower_wants_output(const nn_options *options, const char *name);
 /* The index of the node that stands for x: conversions between equal types are skipped. */
 int lower_resolve(nn_type compute, const nn_node *x);
 /* Whether a gradient flows from a node to its k-th input. */

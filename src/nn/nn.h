@@ -76,6 +76,8 @@ nn_node *nn_space_to_depth(nn_graph *g, nn_node *x, int block);
 nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block);
 /* Mean over channels: C to 1. */
 nn_node *nn_channel_mean(nn_graph *g, nn_node *x);
+/* Mean over rows and columns: a vector. */
+nn_node *nn_spatial_mean(nn_graph *g, nn_node *x);
 /* Unit 3-vectors per pixel: x / sqrt(|x|² + 1e-12). */
 nn_node *nn_normalize(nn_graph *g, nn_node *x);
 /* 1 / (scale·x + shift): depth from the network's range by (0.4, 0.65). */
@@ -88,6 +90,11 @@ typedef struct nn_render_inputs {
     nn_node *albedo, *normal, *roughness, *depth, *mask, *light;
 } nn_render_inputs;
 nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float light_power);
+/* What the diffuse part of the same maps reflects of an environment known by their spherical harmonics
+ * (src/optics/sh.h): albedo/π · irradiance, times the mask, not clipped: three bands of a bright spot ring below zero a
+ * little, and the layer stays linear in sh. sh: vector of 27, coefficient by coefficient, three channels each. No
+ * gradient flows to mask. */
+nn_node *nn_environment(nn_graph *g, nn_node *albedo, nn_node *normal, nn_node *mask, nn_node *sh);
 
 /* Losses: scalars, summed with their weights into the program's total. mask has one channel.
  * (1/ΣM) Σ ((prediction - target) M)², summed over channels: the paper's Eq. 6. */
@@ -97,6 +104,8 @@ void nn_masked_gradient_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn
                            float weight);
 
 /* ---- parameters ---- */
+
+struct st_file; /* nn/safetensors.h */
 
 /* Fresh parameters for a graph: convolutions He 2015, gamma 1, beta 0, biases 0. Deterministic from seed. */
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out);
@@ -123,6 +132,8 @@ void nn_params_touch(nn_params *params);
 /* Copies the tensors of a safetensors file (nn/safetensors.h; F32, F16 or BF16) into same-named parameters. Missing,
  * extra or differently shaped tensors are an error that names one. */
 status nn_params_load(nn_params *params, const char *path);
+/* The same from a file that is open already; path for messages. */
+status nn_params_take(nn_params *params, const struct st_file *f, const char *path);
 
 /* ---- programs ---- */
 
@@ -135,6 +146,7 @@ typedef struct nn_options {
     int batch, height, width;
     nn_type type;
     nn_purpose purpose;
+    const char *const *outputs; /* names that end with NULL: these alone are computed; NULL: all */
 } nn_options;
 
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out);

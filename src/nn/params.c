@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/rng.h"
 
 enum { PARAMS_PER_NODE = 4, NAME_LIMIT = 256 };
@@ -66,16 +67,20 @@ static uint64_t hash_name(const char *name)
     return hash;
 }
 
-static float *new_floats(size_t count)
+enum { LINE_FLOATS = MEMORY_ALIGNMENT / sizeof(float) };
+
+/* Floats with room to start the next parameter on a cache line. */
+static size_t padded(size_t count)
 {
-    size_t bytes = (count * sizeof(float) + 63) / 64 * 64;
-    float *x = aligned_alloc(64, bytes);
-    if (x) memset(x, 0, bytes);
-    return x;
+    return (count + LINE_FLOATS - 1) / LINE_FLOATS * LINE_FLOATS;
 }
 
-/* seed NULL: zeros instead of random numbers. */
-static status add_param(nn_params *params, const param_spec *spec, const uint64_t *seed)
+/* How many floats all parameters' values and gradients take, or where the next one's begin. */
+typedef struct room {
+    size_t values, gradients;
+} room;
+
+static status add_param(nn_params *params, const param_spec *spec, room *needed)
 {
     nn_param *p = &params->items[params->count++];
     *p = (nn_param){.rank = spec->rank, .count = 1, .learning_rate_scale = 1};
@@ -83,15 +88,42 @@ static status add_param(nn_params *params, const param_spec *spec, const uint64_
     for (int i = 0; i < p->rank; i++)
         p->count *= (size_t)p->shape[i];
     p->name = strdup(spec->name);
-    p->value = new_floats(p->count);
-    if (spec->trained) p->gradient = new_floats(p->count);
-    if (!p->name || !p->value || (spec->trained && !p->gradient))
-        return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
-    if (!seed && spec->fan_in > 0) return OK;
+    if (!p->name) return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
+    needed->values += padded(p->count);
+    if (spec->trained) needed->gradients += padded(p->count);
+    return OK;
+}
+
+/* seed NULL: zeros instead of random numbers. */
+static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed)
+{
+    if (!seed && spec->fan_in > 0) return;
     rng random = rng_at(seed ? *seed : 0, hash_name(spec->name), 0);
     float deviation = spec->fan_in > 0 ? (float)sqrt(2 / spec->fan_in) : 0;
     for (size_t i = 0; i < p->count; i++)
         p->value[i] = spec->fan_in > 0 ? deviation * rng_normal(&random) : spec->constant;
+}
+
+static status fill_params(nn_params *params, const nn_graph *g, const uint64_t *seed, const room *needed)
+{
+    /* the gradients of a model that is not trained are pages that nobody touches */
+    float *values = params->values = memory_new(needed->values * sizeof *values);
+    float *gradients = params->gradients = memory_new(needed->gradients * sizeof *gradients);
+    if (!values || !gradients) return fail(ERROR_MEMORY, "no memory for parameters");
+    nn_param *p = params->items;
+    for (int i = 0; i < g->count; i++) {
+        param_spec specs[PARAMS_PER_NODE];
+        int count = node_specs(g->nodes[i], specs);
+        for (int k = 0; k < count; k++, p++) {
+            p->value = values;
+            values += padded(p->count);
+            if (specs[k].trained) {
+                p->gradient = gradients;
+                gradients += padded(p->count);
+            }
+            fill_param(p, &specs[k], seed);
+        }
+    }
     return OK;
 }
 
@@ -107,12 +139,14 @@ static status make_params(const nn_graph *g, const uint64_t *seed, nn_params **o
         return fail(ERROR_MEMORY, "no memory for parameters");
     }
     params->version = 1;
+    room needed = {0};
     for (int i = 0; i < g->count; i++) {
         param_spec specs[PARAMS_PER_NODE];
         int count = node_specs(g->nodes[i], specs);
         for (int k = 0; k < count && s == OK; k++)
-            s = add_param(params, &specs[k], seed);
+            s = add_param(params, &specs[k], &needed);
     }
+    if (s == OK) s = fill_params(params, g, seed, &needed);
     if (s == OK)
         *out = params;
     else
@@ -133,11 +167,10 @@ status nn_params_zero(const nn_graph *g, nn_params **out)
 void nn_params_free(nn_params *params)
 {
     if (!params) return;
-    for (size_t i = 0; params->items && i < params->count; i++) {
+    for (size_t i = 0; params->items && i < params->count; i++)
         free((void *)params->items[i].name);
-        free(params->items[i].value);
-        free(params->items[i].gradient);
-    }
+    memory_free(params->values);
+    memory_free(params->gradients);
     free(params->items);
     free(params);
 }

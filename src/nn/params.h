@@ -7,7 +7,8 @@
 struct nn_params {
     nn_param *items;
     size_t count;
-    uint64_t version; /* grows whenever values change */
+    uint64_t version;          /* grows whenever values change */
+    float *values, *gradients; /* what the items point into */
 };
 
 /* The parameters an operation may have; absent ones are NULL. */

@@ -13,7 +13,7 @@ static status check_tensor(const nn_param *p, const st_tensor *t, const char *pa
     return OK;
 }
 
-static status load_tensors(nn_params *params, const st_file *f, const char *path)
+status nn_params_take(nn_params *params, const st_file *f, const char *path)
 {
     for (size_t i = 0; i < params->count; i++) {
         status s = check_tensor(&params->items[i], st_find(f, params->items[i].name), path);
@@ -37,7 +37,7 @@ status nn_params_load(nn_params *params, const char *path)
     st_file *f;
     status s = st_open(path, &f);
     if (s != OK) return s;
-    s = load_tensors(params, f, path);
+    s = nn_params_take(params, f, path);
     st_close(f);
     return s;
 }

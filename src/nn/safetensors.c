@@ -15,7 +15,7 @@
 enum { FILE_LIMIT = 1 << 30 };
 
 struct st_file {
-    char *owned; /* the bytes, if st_open read them */
+    file_view view; /* the bytes, if st_open looked at them */
     cJSON *header;
     st_tensor *tensors;
     size_t count;
@@ -223,15 +223,15 @@ static status read_header(st_file *f, const unsigned char *bytes, size_t size)
     return s == OK ? check_sum(f) : s;
 }
 
-/* Takes over `owned`. */
-static status parse(const char *where, char *owned, const void *bytes, size_t size, st_file **out)
+/* Takes over `view`. */
+static status parse(const char *where, file_view view, const void *bytes, size_t size, st_file **out)
 {
     st_file *f = calloc(1, sizeof *f);
     if (!f) {
-        free(owned);
+        file_unmap(&view);
         return fail(ERROR_MEMORY, "no memory to read %s", where);
     }
-    f->owned = owned;
+    f->view = view;
     f->where = where;
     status s = read_header(f, bytes, size);
     f->where = NULL;
@@ -245,15 +245,14 @@ static status parse(const char *where, char *owned, const void *bytes, size_t si
 
 status st_parse(const void *bytes, size_t size, st_file **out)
 {
-    return parse("the weights", NULL, bytes, size, out);
+    return parse("the weights", (file_view){0}, bytes, size, out);
 }
 
 status st_open(const char *path, st_file **out)
 {
-    char *bytes = NULL;
-    size_t size = 0;
-    status s = file_read(path, FILE_LIMIT, &bytes, &size);
-    return s == OK ? parse(path, bytes, bytes, size, out) : s;
+    file_view view;
+    status s = file_map(path, FILE_LIMIT, &view);
+    return s == OK ? parse(path, view, view.data, view.size, out) : s;
 }
 
 void st_close(st_file *f)
@@ -261,7 +260,7 @@ void st_close(st_file *f)
     if (!f) return;
     cJSON_Delete(f->header);
     free(f->tensors);
-    free(f->owned);
+    file_unmap(&f->view);
     free(f);
 }
 

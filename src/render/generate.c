@@ -9,12 +9,14 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "render/streams.h"
+#include "scene/texture.h"
 
 /* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
 typedef struct run {
     const render_options *options;
     trace_device *device;
     environment_folder maps;
+    scn_textures textures;
     render_stats *stats;
     progress bar;
     status failed;
@@ -36,10 +38,13 @@ static status make_environment(const run *r, uint64_t index, environment *out)
     return environment_from_map(&r->maps.maps[chosen], &generator, out);
 }
 
-static status make_object(const render_options *o, uint64_t index, scn_object *out)
+static status make_object(const run *r, uint64_t index, scn_object *out)
 {
-    if (o->mesh) return scn_object_from_mesh(o->mesh, o->seed, index, o->image.fov, out);
-    return scn_object_generate(o->seed, index, o->image.fov, out);
+    const render_options *o = r->options;
+    status s = o->mesh ? scn_object_from_mesh(o->mesh, o->seed, index, o->image.fov, out)
+                       : scn_object_generate(o->seed, index, o->image.fov, out);
+    if (s == OK && r->textures.count) scn_object_wear(out, &r->textures, o->seed, index);
+    return s;
 }
 
 static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *rays)
@@ -48,7 +53,7 @@ static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *r
     scn_object object;
     environment env;
     trace_scene scene = {0};
-    status s = make_object(o, index, &object);
+    status s = make_object(r, index, &object);
     if (s != OK) return s;
     s = make_environment(r, index, &env);
     if (s == OK) s = trace_scene_new(r->device, &object, scn_surface_eval, &scene);
@@ -119,12 +124,13 @@ static void describe(const render_options *o, char *out, size_t size)
     const image_settings *m = &o->image;
     snprintf(out, size,
              "generator %d\nseed %" PRIu64 "\nsize %d\nfov %g\nstrata %d\npaths %d\ntargets %d\nbounces %d\n"
-             "environment %s\nobjects %s\n",
+             "environment %s\nobjects %s\n%s%s%s",
              SAMPLE_GENERATOR_VERSION, o->seed, m->size, (double)m->fov, m->strata, m->paths, m->targets, m->bounces,
              !o->environment         ? "none"
              : o->environment_folder ? o->environment_folder
                                      : "procedural",
-             o->mesh ? o->mesh : "procedural");
+             o->mesh ? o->mesh : "procedural", o->material_folder ? "materials " : "",
+             o->material_folder ? o->material_folder : "", o->material_folder ? "\n" : "");
 }
 
 static status claim_folder(const render_options *o)
@@ -163,6 +169,13 @@ static status check_options(const render_options *o)
     return OK;
 }
 
+static void close_run(run *r)
+{
+    scn_textures_free(&r->textures);
+    environment_folder_free(&r->maps);
+    trace_device_free(r->device);
+}
+
 static status open_run(const render_options *o, run *r)
 {
     *r = (run){.options = o};
@@ -170,14 +183,9 @@ static status open_run(const render_options *o, run *r)
     if (s == OK) s = trace_device_new(&r->device);
     if (s == OK && o->environment && o->environment_folder)
         s = environment_folder_read(o->environment_folder, &r->maps);
-    if (s != OK) trace_device_free(r->device);
+    if (s == OK && o->material_folder) s = scn_textures_read(o->material_folder, &r->textures);
+    if (s != OK) close_run(r);
     return s;
-}
-
-static void close_run(run *r)
-{
-    environment_folder_free(&r->maps);
-    trace_device_free(r->device);
 }
 
 status render_samples(const render_options *options, render_stats *stats)

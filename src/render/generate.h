@@ -24,6 +24,7 @@ typedef struct render_options {
     image_settings image;
     bool environment;               /* an environment image and its SH coefficients as well */
     const char *environment_folder; /* maps from files instead of procedural ones; or NULL */
+    const char *material_folder;    /* photographed materials on most objects; or NULL */
     const char *mesh;               /* a mesh file instead of procedural objects; or NULL */
     bool quiet;                     /* no progress bar */
     int (*interrupted)(void);       /* polled between samples; may be NULL */

@@ -5,13 +5,15 @@
 #include "scene/pattern.h"
 #include "scene/scene.h"
 #include "scene/shape.h"
+#include "scene/texture.h"
 
 /* One stuff: up to three colours mixed by a pattern, and a roughness that may follow it. */
 typedef struct paint {
     int colours;
     vec3 colour[3];
-    pattern mix;             /* used with two or three colours, or where roughness varies */
-    float roughness, spread; /* at the middle of the mix; added over its whole range */
+    pattern mix;                /* used with two or three colours, or where roughness varies */
+    float roughness, spread;    /* at the middle of the mix; added over its whole range */
+    texture_place photographed; /* takes the colours' place, and the roughness's where it has a map of it */
 } paint;
 
 typedef struct layer {
@@ -35,13 +37,17 @@ struct scn_material {
     int layers, bumps;
     layer layer[LAYERS];
     bump bump[BUMPS];
-    bool smudged; /* roughness varies by itself */
+    bool embossed; /* a photographed ground has normal detail */
+    bool smudged;  /* roughness varies by itself */
     pattern smudge;
     float smudge_amount;
 };
 
 /* A random material for this mesh (its parts and references). NULL when memory ran out. */
 scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *traits);
+
+/* Lays photographed textures on some of the material's grounds, or on none. They must outlive it. */
+void material_wear(scn_material *material, const scn_textures *textures, rng *r);
 
 /* Albedo and roughness at a reference point; facing is the reference surface's normal. */
 void material_eval(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, vec3 *albedo,

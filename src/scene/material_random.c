@@ -258,3 +258,19 @@ scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *
     make_material(&m);
     return m.out;
 }
+
+void material_wear(scn_material *material, const scn_textures *textures, rng *r)
+{
+    bool worn = rng_uniform(r) < 0.75f; /* the rest stay procedural */
+    for (int i = 0; worn && i < material->layers; i++) {
+        layer *l = &material->layer[i];
+        if (!l->everywhere || (i > 0 && rng_uniform(r) < 0.3f)) continue;
+        bool turned = rng_uniform(r) < 0.5f;
+        l->paint.photographed =
+            (texture_place){.texture = &textures->texture[rng_below(r, (int)textures->count)],
+                            .turn = turned ? random_rotation(r) : (mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                            .scale = 0.4f * powf(5, rng_uniform(r)),
+                            .offset = random_between(r, 0, 1)};
+        if (l->paint.photographed.texture->slope.data) material->embossed = true;
+    }
+}

@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 
 /* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
-enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL };
+enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE };
 
 static status check_fov(float fov)
 {
@@ -75,6 +75,12 @@ status scn_object_from_mesh(const char *path, uint64_t seed, uint64_t index, flo
     return s == OK ? OK : fail_in(s, "%s", path);
 }
 
+void scn_object_wear(scn_object *object, const scn_textures *textures, uint64_t seed, uint64_t index)
+{
+    rng r = rng_at(seed, index, STREAM_TEXTURE);
+    material_wear(object->material, textures, &r);
+}
+
 void scn_object_free(scn_object *object)
 {
     free(object->position);
@@ -136,7 +142,8 @@ void scn_surface_eval(const scn_object *object, uint32_t triangle, real u, real 
     out->geometric_normal = vec3_normalize(e.cross_p);
     material_eval(object->material, reference, vec3_normalize(e.cross_q), part, &out->albedo, &out->roughness);
     vec3 n = vec3_normalize(interpolate(object->normal, t, u, v));
-    if (object->material->bumps) n = vec3_normalize(vec3_sub(n, height_gradient(object, &e, reference, part)));
+    if (object->material->bumps || object->material->embossed)
+        n = vec3_normalize(vec3_sub(n, height_gradient(object, &e, reference, part)));
     float front = vec3_dot(n, out->geometric_normal);
     if (!(front > 0.05f)) /* bent behind the surface: back to where it just faces outward */
         n = vec3_normalize(vec3_fma(n, 0.05f - front, out->geometric_normal));

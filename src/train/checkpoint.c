@@ -52,25 +52,25 @@ static bool scan_losses(const char *text, trn_losses *l)
     char *end;
     l->count = strtoll(text, &end, 10);
     l->total = strtod(end, &end);
+    /* a checkpoint of an earlier version may lack the last losses: its model has none of them */
     for (int i = 0; i < MODEL_LOSSES; i++)
-        l->each[i] = strtod(end, &end);
+        l->each[i] = *end ? strtod(end, &end) : (double)NAN;
     return *end == 0 && end != text;
 }
 
 static status write_tensors(const char *path, const st_tensor *tensors, size_t count, const nn_adam *adam,
                             const trn_state *state, const trn_identity *identity)
 {
-    char counters[128], samples[32], seconds[64], best[64], open[64 * (MODEL_LOSSES + 2)];
+    char counters[128], samples[32], best[64], open[64 * (MODEL_LOSSES + 2)];
     snprintf(counters, sizeof counters, "%" PRId64 " %" PRId64 " %" PRId64, state->step, nn_adam_steps(adam),
              nn_adam_skipped(adam));
     snprintf(samples, sizeof samples, "%zu", identity->samples);
-    snprintf(seconds, sizeof seconds, "%a", state->seconds);
     snprintf(best, sizeof best, "%a", state->best);
     print_losses(&state->open, open, sizeof open);
     const char *const metadata[][2] = {
         {"checkpoint", "1"},  {"config", identity->model}, {"training", identity->training},
-        {"samples", samples}, {"counters", counters},      {"seconds", seconds},
-        {"best", best},       {"open_losses", open}};
+        {"samples", samples}, {"counters", counters},      {"best", best},
+        {"open_losses", open}};
     return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
 }
 
@@ -104,12 +104,11 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     if (s == OK) s = must_equal(path, "number of samples", st_metadata(f, "samples"), samples);
     if (s != OK) return s;
     const char *counters = st_metadata(f, "counters"), *open = st_metadata(f, "open_losses");
-    const char *seconds = st_metadata(f, "seconds"), *best = st_metadata(f, "best");
+    const char *best = st_metadata(f, "best");
     int64_t steps = 0, skipped = 0;
-    if (!counters || !open || !seconds || !best || !scan_losses(open, &state->open) ||
+    if (!counters || !open || !best || !scan_losses(open, &state->open) ||
         sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 || state->step < 0)
         return fail(ERROR_INPUT, "%s is not a checkpoint of merlin train", path);
-    state->seconds = strtod(seconds, NULL);
     state->best = strtod(best, NULL);
     nn_adam_set_steps(adam, steps, skipped);
     return OK;

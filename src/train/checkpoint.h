@@ -8,8 +8,7 @@
 
 typedef struct trn_state {
     int64_t step;
-    double seconds; /* spent training, all sessions together */
-    double best;    /* lowest validation loss so far */
+    double best; /* lowest validation loss so far */
     trn_losses open;
 } trn_state;
 
@@ -31,7 +30,7 @@ typedef struct trn_provenance {
     const char *note; /* such as the commit; may be NULL */
     int64_t presentations, samples;
     int size, generator_version;
-    double seconds, validation_loss;
+    double validation_loss;
 } trn_provenance;
 
 /* Weights for everybody (model_load): half floats, batch norm's statistics float32, with the model's configuration and

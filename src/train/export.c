@@ -37,12 +37,11 @@ static void convert(nn_params *params, st_tensor *tensors, uint16_t *halves)
 
 static status write_weights(const char *path, const st_tensor *tensors, size_t count, const trn_provenance *from)
 {
-    char presentations[32], samples[32], size[16], version[16], seconds[32], loss[32];
+    char presentations[32], samples[32], size[16], version[16], loss[32];
     snprintf(presentations, sizeof presentations, "%" PRId64, from->presentations);
     snprintf(samples, sizeof samples, "%" PRId64, from->samples);
     snprintf(size, sizeof size, "%d", from->size);
     snprintf(version, sizeof version, "%d", from->generator_version);
-    snprintf(seconds, sizeof seconds, "%.0f", from->seconds);
     snprintf(loss, sizeof loss, "%.6g", from->validation_loss);
     const char *const metadata[][2] = {{"config", from->config},
                                        {"training", from->training},
@@ -50,7 +49,6 @@ static status write_weights(const char *path, const st_tensor *tensors, size_t c
                                        {"samples", samples},
                                        {"size", size},
                                        {"generator_version", version},
-                                       {"training_seconds", seconds},
                                        {"validation_loss", loss},
                                        {"note", from->note ? from->note : ""}};
     return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);

@@ -11,7 +11,7 @@
 #include "train/feed.h"
 
 typedef struct paths {
-    char *checkpoint, *curves, *validation, *chart, *weights;
+    char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
 } paths;
 
 typedef struct run {
@@ -29,7 +29,7 @@ typedef struct run {
     trn_feed *feed, *judge_feed;
     trn_order order;
     trn_state state;
-    double resumed_at, saved_at, seconds_before;
+    double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
 } run;
 
 static void close_run(run *r)
@@ -48,6 +48,7 @@ static void close_run(run *r)
     free(r->paths.validation);
     free(r->paths.chart);
     free(r->paths.weights);
+    free(r->paths.seconds);
     free(r->model_json);
     free(r->training_json);
 }
@@ -56,9 +57,6 @@ static status read_configuration(run *r)
 {
     status s = train_config_read(r->options->config, &r->model, &r->training);
     if (s != OK) return s;
-    if (r->model.lighting != MODEL_LIGHT_POINT)
-        return fail(ERROR_USAGE, "%s: training knows point lights only, \"lighting\" must be \"point\"",
-                    r->options->config);
     r->model_json = model_config_write(&r->model);
     r->training_json = train_config_write(&r->training);
     return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
@@ -70,10 +68,10 @@ static status open_output(run *r)
     status s = file_make_folder(folder);
     if (s != OK) return s;
     r->paths = (paths){file_join(folder, "checkpoint.safetensors"), file_join(folder, "curves.csv"),
-                       file_join(folder, "validation.csv"), file_join(folder, "curves.png"),
-                       file_join(folder, "weights.safetensors")};
+                       file_join(folder, "validation.csv"),         file_join(folder, "curves.png"),
+                       file_join(folder, "weights.safetensors"),    file_join(folder, "seconds.txt")};
     const paths *p = &r->paths;
-    if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights)
+    if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights || !p->seconds)
         return fail(ERROR_MEMORY, "out of memory");
     bool exists = file_exists(p->checkpoint);
     if (exists && !r->options->resume)
@@ -83,9 +81,15 @@ static status open_output(run *r)
     return OK;
 }
 
+static bool is_lit_by_both(const run *r)
+{
+    return r->model.lighting == MODEL_LIGHT_BOTH;
+}
+
 static status open_data(run *r)
 {
-    status s = trn_dataset_open(r->options->data, r->training.size, r->training.memory_gib, &r->data);
+    trn_dataset_options options = {r->training.size, r->training.memory_gib, is_lit_by_both(r)};
+    status s = trn_dataset_open(r->options->data, &options, &r->data);
     if (s != OK) return s;
     size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
     if (count <= held_back)
@@ -100,7 +104,7 @@ static status build(run *r)
     const train_config *c = &r->training;
     nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
-    trn_source source = {r->data, c, r->model.input_global, r->training_count};
+    trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
     status s = model_build(&r->model, MODEL_TRAINING, &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK && r->options->init) s = nn_params_load(r->params, r->options->init);
@@ -122,14 +126,33 @@ static trn_identity identity_of(const run *r)
     return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data)};
 }
 
+/* Time spent is kept beside the checkpoint, not in it: a resumed run's files are those of one that was not stopped. */
+static status write_seconds(const run *r)
+{
+    char text[32];
+    int n = snprintf(text, sizeof text, "%.0f\n", r->seconds_before + r->saved_at - r->resumed_at);
+    return file_write(r->paths.seconds, text, (size_t)n);
+}
+
+static status read_seconds(run *r)
+{
+    char *text;
+    size_t size;
+    if (!file_exists(r->paths.seconds)) return OK;
+    status s = file_read(r->paths.seconds, 1 << 10, &text, &size);
+    if (s != OK) return s;
+    r->seconds_before = strtod(text, NULL);
+    free(text);
+    return OK;
+}
+
 static status resume(run *r)
 {
     trn_identity identity = identity_of(r);
     status s = trn_checkpoint_read(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
     if (s == OK) s = trn_curve_truncate(r->paths.curves, r->state.step);
     if (s == OK) s = trn_curve_truncate(r->paths.validation, r->state.step);
-    r->seconds_before = r->state.seconds;
-    return s;
+    return s == OK ? read_seconds(r) : s;
 }
 
 static status begin(run *r)
@@ -154,7 +177,6 @@ static int64_t presented(const run *r)
 
 static status export_weights(run *r)
 {
-    r->state.seconds = r->seconds_before + clock_seconds() - r->resumed_at;
     trn_provenance from = {.config = r->model_json,
                            .training = r->training_json,
                            .note = r->options->note,
@@ -162,7 +184,6 @@ static status export_weights(run *r)
                            .samples = (int64_t)r->training_count,
                            .size = r->training.size,
                            .generator_version = trn_dataset_generator_version(r->data),
-                           .seconds = r->state.seconds,
                            .validation_loss = r->state.best};
     return train_export(r->paths.weights, r->params, &from);
 }
@@ -170,10 +191,10 @@ static status export_weights(run *r)
 static status save(run *r)
 {
     r->saved_at = clock_seconds();
-    r->state.seconds = r->seconds_before + r->saved_at - r->resumed_at;
     trn_identity identity = identity_of(r);
     status s = trn_checkpoint_write(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
     if (s == OK && !r->judge) s = export_weights(r);
+    if (s == OK) s = write_seconds(r);
     if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
     return s;
 }

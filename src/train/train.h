@@ -4,8 +4,9 @@
  *     status s = trn_train(&o);
  *
  * The output folder receives checkpoint.safetensors (every few minutes and when stopped), curves.csv, validation.csv
- * and curves.png, and weights.safetensors, the best so far by validation loss (the latest, without validation). A run
- * that was killed and resumed ends with the same parameters and curves, bit for bit, as one that was not. */
+ * and curves.png, seconds.txt (time spent), and weights.safetensors, the best so far by validation loss (the latest,
+ * without validation). A run that was killed and resumed ends with the same weights, checkpoint and curves, bit for
+ * bit, as one that was not. */
 #ifndef MERLIN_TRAIN_TRAIN_H
 #define MERLIN_TRAIN_TRAIN_H
 

@@ -58,6 +58,17 @@ static void what_was_written_is_read(void **state)
     assert_int_equal(file_read(path, 100, &data, &size), OK);
     assert_int_equal(size, 0);
     free(data);
+    file_view view;
+    assert_int_equal(file_map(path, 100, &view), OK);
+    assert_int_equal(view.size, 0);
+    assert_int_equal(file_write(path, "one\0two", 7), OK);
+    assert_int_equal(file_map(path, 6, &view), ERROR_INPUT);
+    assert_null(view.data);
+    assert_int_equal(file_map(path, 7, &view), OK);
+    assert_int_equal(view.size, 7);
+    assert_memory_equal(view.data, "one\0two", 7);
+    file_unmap(&view);
+    assert_null(view.data);
     unlink(path);
     free(path);
 }

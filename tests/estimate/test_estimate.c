@@ -325,7 +325,7 @@ static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
 {
     const fixture *f = *state;
     const float left[3] = {-0.7f, 0.3f, -0.4f}, right[3] = {0.7f, 0.3f, -0.4f};
-    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_NETWORK; how++) {
+    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_UNSHADOWED; how++) {
         merlin_maps maps;
         merlin_image a, b;
         estimate(f, &maps);

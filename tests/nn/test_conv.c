@@ -170,7 +170,7 @@ static void open_fixture(fixture *f, nn_type type, nn_purpose purpose)
         if (p->rank == 1) fill(p->value, p->count, i, strstr(p->name, "running_mean") ? -0.3f : 0.4f, 1.2f);
     }
     nn_params_touch(f->params);
-    const nn_options options = {BATCH, HEIGHT, WIDTH, type, purpose};
+    const nn_options options = {.batch = BATCH, .height = HEIGHT, .width = WIDTH, .type = type, .purpose = purpose};
     if (nn_compile(g, f->params, &options, &f->program) != OK) fail_msg("%s", status_message());
     nn_graph_free(g);
     f->outputs = BATCH * (HEIGHT / 2) * (WIDTH / 2) * 2;

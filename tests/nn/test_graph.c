@@ -241,6 +241,47 @@ static void cost_counts_two_per_multiply_add(void **state)
     nn_graph_free(g);
 }
 
+/* Two heads on one body; `options.outputs` chooses. */
+static nn_graph *two_headed_net(void)
+{
+    nn_graph *g = nn_graph_new();
+    nn_node *body = nn_relu(g, nn_conv2d(g, compute_input(g, "image", 3, 1), "body", 8, 3, 1, NN_BIAS));
+    nn_output(g, nn_float(g, nn_conv2d(g, body, "left", 2, 3, 1, NN_BIAS)), "left");
+    nn_output(g, nn_float(g, nn_conv2d(g, nn_conv2d(g, body, "neck", 8, 3, 1, NN_BIAS), "right", 4, 3, 1, NN_BIAS)),
+              "right");
+    return g;
+}
+
+static nn_program *run_heads(nn_params *params, const nn_graph *g, const char *const *outputs)
+{
+    nn_program *p;
+    const nn_options options = {.batch = 1, .height = 8, .width = 8, .purpose = NN_INFER, .outputs = outputs};
+    assert_int_equal(nn_compile(g, params, &options, &p), OK);
+    float *image = nn_input_data(p, "image");
+    for (int i = 0; i < 8 * 8 * 3; i++)
+        image[i] = sinf((float)i);
+    assert_int_equal(nn_forward(p), OK);
+    return p;
+}
+
+static void outputs_that_nobody_wants_are_left_out(void **state)
+{
+    (void)state;
+    static const char *const left[] = {"left", NULL};
+    nn_graph *g = two_headed_net();
+    nn_params *params;
+    assert_int_equal(nn_params_new(g, 3, &params), OK);
+    nn_program *all = run_heads(params, g, NULL), *one = run_heads(params, g, left);
+    assert_non_null(nn_output_data(all, "right"));
+    assert_null(nn_output_data(one, "right"));
+    assert_memory_equal(nn_output_data(one, "left"), nn_output_data(all, "left"), 8 * 8 * 2 * sizeof(float));
+    assert_float_equal(nn_program_cost(one).forward_flops, 2.0 * 64 * 9 * (3 * 8 + 8 * 2), 0.5);
+    nn_program_free(all);
+    nn_program_free(one);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +295,7 @@ int main(void)
         cmocka_unit_test(parameters_of_another_graph_are_refused),
         cmocka_unit_test(a_program_outlives_its_graph),
         cmocka_unit_test(cost_counts_two_per_multiply_add),
+        cmocka_unit_test(outputs_that_nobody_wants_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

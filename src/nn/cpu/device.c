@@ -1,21 +1,12 @@
 /* The CPU as a device: oneDNN for convolutions, OpenMP loops for the rest. */
-#include <stdlib.h>
-#include <string.h>
 #ifdef __SSE__
 #include <xmmintrin.h>
 #endif
 
+#include "base/memory.h"
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/steps.h"
-
-void *cpu_allocate(size_t bytes)
-{
-    bytes = (bytes + 64) / 64 * 64;
-    void *memory = aligned_alloc(64, bytes);
-    if (memory) memset(memory, 0, bytes);
-    return memory;
-}
 
 static nn_type usable_type(nn_type wanted)
 {
@@ -68,8 +59,8 @@ const nn_device *cpu_device(void)
         .open = dnn_open,
         .close = dnn_close,
         .create = create,
-        .allocate = cpu_allocate,
-        .release = free,
+        .allocate = memory_new,
+        .release = memory_free,
         .begin = begin,
         .end = end,
         .convert = convert,

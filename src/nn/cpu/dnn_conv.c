@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/norm.h"
@@ -15,7 +16,7 @@ typedef struct conv {
     dnn_call forward, data, weights;
     dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
     dnnl_memory_desc_t plain;                /* the float32 weights */
-    float *folded_weight, *folded_bias;
+    float *folded_bias;
     void *forward_weights, *data_weights, *weight_gradient;
     bool has_bias;
 } conv;
@@ -136,7 +137,7 @@ static size_t prepared_bytes(const nn_step *step)
 static size_t own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
 {
     size_t bytes = dnnl_memory_desc_get_size(layout);
-    *memory = cpu_allocate(bytes);
+    *memory = memory_new(bytes);
     step->own_bytes += bytes;
     return bytes;
 }
@@ -167,11 +168,10 @@ static void conv_release(nn_step *step)
                          &state->convert, &state->convert_back, &state->collect};
     for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
         dnn_release(calls[i]);
-    free(state->folded_weight);
     free(state->folded_bias);
-    free(state->forward_weights);
-    free(state->data_weights);
-    free(state->weight_gradient);
+    memory_free(state->forward_weights);
+    memory_free(state->data_weights);
+    memory_free(state->weight_gradient);
     free(state);
 }
 
@@ -188,7 +188,7 @@ static status bind_forward(nn_step *step, conv *state)
     dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), b = bias_layout(step),
                        y = dnn_activation(&step->out, step->out.type);
     const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
-    float *master = state->folded_weight ? state->folded_weight : step->params.weight->value;
+    float *master = step->folded.weight ? step->forward_space : step->params.weight->value;
     status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
     if (s == OK && state->has_bias) s = dnn_argument(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
@@ -264,9 +264,11 @@ static status conv_bind(nn_step *step)
     return s;
 }
 
+/* Into the scratch of forward, which is free between runs. */
 static void fold(const nn_step *step)
 {
     const conv *state = step->state;
+    float *folded = step->forward_space;
     int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
     bool transposed = step->op == OP_DECONV;
     for (int o = 0; o < out; o++) {
@@ -276,7 +278,7 @@ static void fold(const nn_step *step)
         for (int i = 0; i < in; i++) {
             size_t at = (size_t)(transposed ? i * out + o : o * in + i) * (size_t)taps;
             for (int t = 0; t < taps; t++)
-                state->folded_weight[at + (size_t)t] = step->params.weight->value[at + (size_t)t] * factor;
+                folded[at + (size_t)t] = step->params.weight->value[at + (size_t)t] * factor;
         }
     }
 }
@@ -340,10 +342,9 @@ static void count_flops(nn_step *step)
 
 static status allocate_folded(nn_step *step, conv *state)
 {
-    state->folded_weight = calloc(step->params.weight->count, sizeof(float));
     state->folded_bias = calloc((size_t)step->out.c, sizeof(float));
-    step->own_bytes += (step->params.weight->count + (size_t)step->out.c) * sizeof(float);
-    return state->folded_weight && state->folded_bias ? OK : fail(ERROR_MEMORY, "no memory for weights");
+    step->own_bytes += (size_t)step->out.c * sizeof(float);
+    return state->folded_bias ? OK : fail(ERROR_MEMORY, "no memory for weights");
 }
 
 status conv_create(nn_step *step)
@@ -362,5 +363,7 @@ status conv_create(nn_step *step)
     own(step, &state->forward_weights, dnn_query(&state->forward, dnnl_query_weights_md));
     if (!state->forward_weights) return fail(ERROR_MEMORY, "no memory for weights");
     step->forward_scratch = dnn_scratch_bytes(&state->forward);
+    size_t folded = step->folded.weight ? step->params.weight->count * sizeof(float) : 0;
+    if (step->forward_scratch < folded) step->forward_scratch = folded;
     return step->backs ? describe_backward(step, state) : OK;
 }

@@ -1,6 +1,7 @@
 /* The machine's peak: the rate of a convolution that everything favours. */
-#include <stdlib.h>
+#include <string.h>
 
+#include "base/memory.h"
 #include "base/progress.h"
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/steps.h"
@@ -22,13 +23,21 @@ static status best_rate(nn_step *step, pass run, double flops, double *rate)
     return OK;
 }
 
+/* Written, so that no page is the system's one page of zeros, which would always be in the cache. */
+static void *new_written(size_t bytes)
+{
+    void *memory = memory_new(bytes);
+    if (memory) memset(memory, 0, bytes);
+    return memory;
+}
+
 static status allocate_tensors(nn_step *step, void *memory[6])
 {
     nn_tensor *tensors[] = {&step->in[0], &step->out, &step->in_gradient[0], &step->out_gradient};
     for (int i = 0; i < 4; i++)
-        memory[i] = tensors[i]->data = cpu_allocate(tensor_bytes(tensors[i]));
-    memory[4] = step->forward_space = cpu_allocate(step->forward_scratch);
-    memory[5] = step->backward_space = cpu_allocate(step->backward_scratch);
+        memory[i] = tensors[i]->data = new_written(tensor_bytes(tensors[i]));
+    memory[4] = step->forward_space = new_written(step->forward_scratch);
+    memory[5] = step->backward_space = new_written(step->backward_scratch);
     for (int i = 0; i < 6; i++)
         if (!memory[i]) return fail(ERROR_MEMORY, "no memory to measure the peak rate");
     return OK;
@@ -46,7 +55,7 @@ static status measure(nn_step *step, nn_peak *out)
     if (s == OK) s = best_rate(step, conv_backward_weights, step->forward_flops, &out->backward_weights);
     if (step->run) step->run->release(step);
     for (int i = 0; i < 6; i++)
-        free(memory[i]);
+        memory_free(memory[i]);
     return s;
 }
 
@@ -58,8 +67,8 @@ status cpu_measure_peak(void *context, nn_type type, nn_peak *out)
                        .rank = 4,
                        .shape = {CHANNELS, CHANNELS, KERNEL, KERNEL},
                        .count = count,
-                       .value = cpu_allocate(count * sizeof(float)),
-                       .gradient = cpu_allocate(count * sizeof(float))};
+                       .value = new_written(count * sizeof(float)),
+                       .gradient = new_written(count * sizeof(float))};
     nn_tensor tensor = {.type = type, .n = BATCH, .h = SIZE, .w = SIZE, .c = CHANNELS};
     nn_step step = {.op = OP_CONV,
                     .at = {.kernel = KERNEL, .stride = 1},
@@ -76,7 +85,7 @@ status cpu_measure_peak(void *context, nn_type type, nn_peak *out)
                     .context = context};
     status s = weight.value && weight.gradient ? measure(&step, out)
                                                : fail(ERROR_MEMORY, "no memory to measure the peak rate");
-    free(weight.value);
-    free(weight.gradient);
+    memory_free(weight.value);
+    memory_free(weight.gradient);
     return s;
 }

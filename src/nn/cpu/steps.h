@@ -17,6 +17,4 @@ status kernel_create(nn_step *step);
 
 status cpu_measure_peak(void *context, nn_type type, nn_peak *out);
 
-void *cpu_allocate(size_t bytes);
-
 #endif

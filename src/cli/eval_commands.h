@@ -1,0 +1,8 @@
+/* The verbs of merlin eval that have a file of their own. */
+#ifndef MERLIN_CLI_EVAL_COMMANDS_H
+#define MERLIN_CLI_EVAL_COMMANDS_H
+
+/* merlin eval stereo; argv[0] is "stereo". Returns the exit status. */
+int eval_stereo(int argc, char **argv);
+
+#endif

@@ -1,0 +1,30 @@
+/* A photograph read by a thread of its own while something else is done.
+ *
+ *     photo_ahead first;
+ *     photo_begin(&first, &job);
+ *     ... open the model ...
+ *     status s = photo_finish(&first, &photo, &mask);
+ */
+#ifndef MERLIN_CLI_PHOTO_AHEAD_H
+#define MERLIN_CLI_PHOTO_AHEAD_H
+
+#include <pthread.h>
+#include <stdbool.h>
+
+#include "cli/photos.h"
+
+typedef struct photo_ahead {
+    const photo_job *job; /* borrowed */
+    bool running;
+    pthread_t thread;
+    merlin_image photo, mask;
+    status result;
+    char message[1024]; /* words are kept per thread, and this one goes away */
+} photo_ahead;
+
+/* Every begin needs its finish. */
+void photo_begin(photo_ahead *ahead, const photo_job *job);
+/* Waits; then as photo_read. */
+status photo_finish(photo_ahead *ahead, merlin_image *photo, merlin_image *mask);
+
+#endif

@@ -1,0 +1,208 @@
+#include "estimate/shadow.h"
+
+#include <stdbool.h>
+
+#include "base/parallel.h"
+#include "estimate/fill.h"
+#include "estimate/fuse.h"
+#include "optics/camera.h"
+
+/* Scene units, of which an object is about one wide. Found by trying on samples with path-traced shadows
+ * (docs/evaluation.md). */
+static const float THICKNESS = 0.15f, THICKNESS_BORDER = 0.04f;
+/* How far behind the map is behind it, and over what range it becomes so: in pixels, and in shares of the way. */
+static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
+
+status shadow_caster_new(const img *depth, const img *normal, const img *mask, float fov, shadow_caster *out)
+{
+    *out = (shadow_caster){.fov = fov, .nearest = INFINITY};
+    status s = img_copy(&out->mask, mask);
+    if (s == OK) s = img_copy(&out->depth, depth);
+    if (s == OK) s = fuse_depth(normal, mask, fov, &out->depth);
+    if (s == OK) s = fill_outside(&out->depth, mask);
+    if (s != OK) {
+        shadow_caster_free(out);
+        return s;
+    }
+    size_t count = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < count; i++) {
+        if (mask->data[i] < 0.5f) continue;
+        out->nearest = fminf(out->nearest, out->depth.data[i]);
+        out->farthest = fmaxf(out->farthest, out->depth.data[i]);
+    }
+    return OK;
+}
+
+void shadow_caster_free(shadow_caster *caster)
+{
+    img_free(&caster->depth);
+    img_free(&caster->mask);
+}
+
+/* ---- interpolation ---- */
+
+/* Pixel centres are at whole coordinates here; out of the frame the edge goes on. */
+typedef struct corners {
+    size_t at[4];
+    float weight[4];
+} corners;
+
+static corners corners_of(const img *image, float x, float y)
+{
+    float u = fminf(fmaxf(x, 0), (float)(image->width - 1)), v = fminf(fmaxf(y, 0), (float)(image->height - 1));
+    int left = (int)u, top = (int)v;
+    int right = left + 1 < image->width ? left + 1 : left, bottom = top + 1 < image->height ? top + 1 : top;
+    u -= (float)left;
+    v -= (float)top;
+    size_t above = (size_t)top * (size_t)image->width, below = (size_t)bottom * (size_t)image->width;
+    return (corners){{above + (size_t)left, above + (size_t)right, below + (size_t)left, below + (size_t)right},
+                     {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+static float value_at(const img *image, const corners *c)
+{
+    float sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += c->weight[i] * image->data[c->at[i]];
+    return sum;
+}
+
+/* ---- one ray ---- */
+
+/* A straight line in space is one on the picture, along which the inverse of depth changes evenly. */
+typedef struct march {
+    float x, y, inverse;                /* where it starts, pixel centres at whole coordinates */
+    float step_x, step_y, step_inverse; /* a pixel further along the longer axis */
+    float first, count;                 /* steps: to the first pixel centre along that axis, and to the end */
+    bool across;                        /* the longer axis is x */
+    float way;                          /* scene units to the end, times the end's inverse depth, a step */
+    float pixel;                        /* its size in scene units at the start */
+} march;
+
+/* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
+static float part_with_occluders(const shadow_caster *c, vec3 p, vec3 to_light)
+{
+    float behind = c->farthest + THICKNESS + THICKNESS_BORDER, part = 1;
+    if (p.z + to_light.z > -c->nearest) part = (-c->nearest - p.z) / to_light.z;
+    if (p.z + to_light.z < -behind) part = (-behind - p.z) / to_light.z;
+    return fminf(part, 1);
+}
+
+/* False if nothing can be met. */
+static bool march_begin(const shadow_caster *c, float x, float y, float depth, vec3 light, march *m)
+{
+    camera view = {c->depth.width, c->depth.height, c->fov};
+    vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = vec3_sub(light, p);
+    float part = part_with_occluders(c, p, to_light);
+    if (!(part > 0)) return false;
+    vec3 end = vec3_fma(p, part, to_light);
+    float end_x, end_y;
+    camera_project(&view, end, &end_x, &end_y);
+    float dx = end_x - 0.5f - x, dy = end_y - 0.5f - y;
+    m->across = fabsf(dx) >= fabsf(dy);
+    m->count = m->across ? fabsf(dx) : fabsf(dy);
+    if (!(m->count >= 1)) return false;
+    m->x = x;
+    m->y = y;
+    m->inverse = 1 / depth;
+    m->step_x = dx / m->count;
+    m->step_y = dy / m->count;
+    m->step_inverse = (-1 / end.z - m->inverse) / m->count;
+    float start = m->across ? x : y, forward = m->across ? dx : dy;
+    m->first = forward > 0 ? floorf(start) + 1 - start : start - ceilf(start) + 1;
+    m->way = part * vec3_length(to_light) * (-1 / end.z) / m->count;
+    m->pixel = camera_pixel_size(&view) * depth;
+    return true;
+}
+
+/* How surely the map's pixel `at` stops a ray of this depth there. */
+static float stops(const shadow_caster *c, size_t at, float depth, float margin, float border)
+{
+    if (c->mask.data[at] < 0.5f) return 0;
+    float behind = depth - c->depth.data[at];
+    if (!(behind > margin)) return 0;
+    float front = fminf((behind - margin) / border, 1), back = (THICKNESS - behind) / THICKNESS_BORDER + 1;
+    return front * fminf(fmaxf(back, 0), 1);
+}
+
+/* How surely the light is hidden: the surest of the places on the way. */
+static float hidden(const shadow_caster *c, const march *m)
+{
+    int width = c->depth.width, height = c->depth.height;
+    float most = 0;
+    for (float k = m->first; k < m->count && most < 1; k += 1) {
+        float x = m->x + k * m->step_x, y = m->y + k * m->step_y;
+        if (!(x >= 0 && y >= 0 && x <= (float)(width - 1) && y <= (float)(height - 1))) break;
+        float depth = 1 / (m->inverse + k * m->step_inverse), way = k * m->way * depth;
+        float margin = MARGIN * m->pixel, border = BORDER * m->pixel + BORDER_BY_WAY * way;
+        int column = m->across ? (int)(x + 0.5f) : (int)x, row = m->across ? (int)y : (int)(y + 0.5f);
+        float between = m->across ? y - (float)row : x - (float)column;
+        size_t at = (size_t)row * (size_t)width + (size_t)column;
+        size_t next = m->across ? at + (size_t)(row + 1 < height ? width : 0) : at + (column + 1 < width ? 1 : 0);
+        float a = stops(c, at, depth, margin, border), b = stops(c, next, depth, margin, border);
+        most = fmaxf(most, a + between * (b - a));
+    }
+    return most;
+}
+
+/* ---- all of them ---- */
+
+typedef struct cast {
+    const shadow_caster *caster;
+    vec3 light;
+    img *seen;
+} cast;
+
+static void cast_row(void *context, size_t row)
+{
+    const cast *job = context;
+    const shadow_caster *c = job->caster;
+    float scale_x = (float)c->depth.width / (float)job->seen->width;
+    float scale_y = (float)c->depth.height / (float)job->seen->height;
+    float y = ((float)row + 0.5f) * scale_y - 0.5f;
+    for (int i = 0; i < job->seen->width; i++) {
+        float x = ((float)i + 0.5f) * scale_x - 0.5f;
+        corners around = corners_of(&c->mask, x, y);
+        march m;
+        float *seen = img_at(job->seen, i, (int)row);
+        *seen = 1;
+        if (!(value_at(&c->mask, &around) > 0)) continue;
+        if (march_begin(c, x, y, value_at(&c->depth, &around), job->light, &m)) *seen = 1 - hidden(c, &m);
+    }
+}
+
+status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen)
+{
+    status s = img_new(seen, width, height, 1);
+    if (s != OK) return s;
+    cast job = {caster, light, seen};
+    parallel_for((size_t)height, cast_row, &job);
+    return OK;
+}
+
+typedef struct darkening {
+    const img *seen;
+    img *image;
+} darkening;
+
+static void darken_rows(void *context, size_t begin, size_t end)
+{
+    const darkening *d = context;
+    float scale_x = (float)d->seen->width / (float)d->image->width;
+    float scale_y = (float)d->seen->height / (float)d->image->height;
+    for (size_t row = begin; row < end; row++) {
+        for (int x = 0; x < d->image->width; x++) {
+            corners around =
+                corners_of(d->seen, ((float)x + 0.5f) * scale_x - 0.5f, ((float)row + 0.5f) * scale_y - 0.5f);
+            float share = value_at(d->seen, &around), *pixel = img_at(d->image, x, (int)row);
+            for (int c = 0; c < d->image->channels; c++)
+                pixel[c] *= share;
+        }
+    }
+}
+
+void shadow_darken(const img *seen, img *image)
+{
+    darkening d = {seen, image};
+    parallel_blocks((size_t)image->height, darken_rows, &d);
+}

@@ -1,0 +1,107 @@
+/* PNG, written here for speed: every row is filtered by its left neighbour, and libdeflate compresses all rows at once.
+ * Several times faster than the usual zlib for files of the same size. */
+#include <libdeflate.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/codes.h"
+
+/* Bytes of signature and header, of a chunk without content, and before its content. */
+enum { HEAD = 8 + 25, CHUNK = 12, CHUNK_CONTENT = 8 };
+enum { SUB = 1, LEVEL = 3 };
+
+static uint8_t *put_number(uint8_t *to, uint32_t number)
+{
+    for (int shift = 24; shift >= 0; shift -= 8)
+        *to++ = (uint8_t)(number >> shift);
+    return to;
+}
+
+/* Length, name, content and checksum; content NULL: it is in place already. */
+static uint8_t *put_chunk(uint8_t *to, const char *name, const uint8_t *content, size_t size)
+{
+    to = put_number(to, (uint32_t)size);
+    uint8_t *checked = to;
+    memcpy(to, name, 4);
+    if (content) memcpy(to + 4, content, size);
+    to += 4 + size;
+    return put_number(to, libdeflate_crc32(0, checked, 4 + size));
+}
+
+static uint8_t *put_head(uint8_t *to, const pixel_codes *p, bool wide)
+{
+    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    uint8_t header[13] = {0}, *h = put_number(put_number(header, (uint32_t)p->width), (uint32_t)p->height);
+    h[0] = wide ? 16 : 8;
+    h[1] = p->channels == 3 ? 2 : 0; /* RGB or grey */
+    memcpy(to, signature, sizeof signature);
+    return put_chunk(to + sizeof signature, "IHDR", header, sizeof header);
+}
+
+/* A row as big-endian bytes, each less the one of the pixel before. */
+static void filter_row(const pixel_codes *p, bool wide, size_t row, uint8_t *to)
+{
+    size_t codes = (size_t)p->width * (size_t)p->channels, pixel = (size_t)p->channels;
+    *to++ = SUB;
+    if (wide) {
+        const uint16_t *from = (const uint16_t *)p->codes + row * codes;
+        for (size_t i = 0; i < codes; i++) {
+            unsigned before = i < pixel ? 0 : from[i - pixel];
+            to[2 * i] = (uint8_t)((from[i] >> 8) - (before >> 8));
+            to[2 * i + 1] = (uint8_t)(from[i] - before);
+        }
+    } else {
+        const uint8_t *from = (const uint8_t *)p->codes + row * codes;
+        memcpy(to, from, pixel);
+        for (size_t i = pixel; i < codes; i++)
+            to[i] = (uint8_t)(from[i] - from[i - pixel]);
+    }
+}
+
+/* All rows filtered, malloc'ed. */
+static uint8_t *filter(const pixel_codes *p, bool wide, size_t *size)
+{
+    size_t line = 1 + (size_t)p->width * (size_t)p->channels * (wide ? 2 : 1);
+    *size = line * (size_t)p->height;
+    uint8_t *rows = malloc(*size);
+    for (size_t y = 0; rows && y < (size_t)p->height; y++)
+        filter_row(p, wide, y, rows + y * line);
+    return rows;
+}
+
+/* Head, the rows compressed, end. */
+static status encode(const char *path, const pixel_codes *p, bool wide, uint8_t **data, size_t *size)
+{
+    size_t filtered;
+    uint8_t *rows = filter(p, wide, &filtered);
+    struct libdeflate_compressor *packer = libdeflate_alloc_compressor(LEVEL);
+    size_t room = packer ? libdeflate_zlib_compress_bound(packer, filtered) : 0, packed = 0;
+    status s = OK;
+    *data = NULL;
+    if (room > INT32_MAX)
+        s = fail(ERROR_USAGE, "cannot write %s: %d x %d pixels are too many for a PNG", path, p->width, p->height);
+    else if (!rows || !packer || !(*data = malloc(HEAD + room + 2 * CHUNK)))
+        s = fail(ERROR_MEMORY, "no memory to write %s", path);
+    if (s == OK) {
+        uint8_t *to = put_head(*data, p, wide);
+        packed = libdeflate_zlib_compress(packer, rows, filtered, to + CHUNK_CONTENT, room);
+        to = put_chunk(to, "IDAT", NULL, packed);
+        *size = (size_t)(put_chunk(to, "IEND", NULL, 0) - *data);
+    }
+    libdeflate_free_compressor(packer);
+    free(rows);
+    return s;
+}
+
+status codes_write_png(const char *path, const pixel_codes *p)
+{
+    uint8_t *data;
+    size_t size = 0;
+    status s = encode(path, p, p->format == VIPS_FORMAT_USHORT, &data, &size);
+    if (s == OK) s = file_write(path, data, size);
+    free(data);
+    return s;
+}
