@@ -160,6 +160,18 @@ static inline real brdf_pdf(vec3 albedo, real roughness, vec3 n, vec3 l, vec3 v)
     return share * specular + (1 - share) * n_l / BRDF_PI;
 }
 
+/* brdf_eval and brdf_pdf in one, for half the work. */
+static inline vec3 brdf_eval_pdf(vec3 albedo, real roughness, vec3 n, vec3 l, vec3 v, real *pdf)
+{
+    vec3 h = brdf_half_vector(l, v);
+    real n_l = brdf_clamp(vec3_dot(n, l), 0, 1), n_v = brdf_clamp(vec3_dot(n, v), 0, 1);
+    real n_h = brdf_clamp(vec3_dot(n, h), 0, 1), v_h = vec3_dot(v, h);
+    real d = brdf_distribution(brdf_alpha2(roughness), n_h), share = brdf_specular_share(albedo, n, v);
+    *pdf = share * (v_h > 0 ? d * n_h / (4 * v_h) : 0) + (1 - share) * n_l / BRDF_PI;
+    real s = d * brdf_fresnel(brdf_clamp(v_h, 0, 1)) * brdf_visibility(brdf_k(roughness), n_l, n_v);
+    return vec3_make(albedo.x / BRDF_PI + s, albedo.y / BRDF_PI + s, albedo.z / BRDF_PI + s);
+}
+
 /* Draws l for the unit v from a mixture of both lobes; u1, u2 and choice in [0, 1). l may lie below the surface: its
  * contribution is zero then. */
 static inline vec3 brdf_sample(vec3 albedo, real roughness, vec3 n, vec3 v, real u1, real u2, real choice)

@@ -10,10 +10,12 @@ static vec3 reflect(const trace_scene *scene, const scn_surface *at, vec3 l, vec
     return brdf_eval(at->albedo, at->roughness, at->normal, l, view);
 }
 
-static real density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view)
+/* The same with the density of scatter at l. */
+static vec3 reflect_density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view, real *pdf)
 {
-    if (scene->diffuse_only) return brdf_clamp(vec3_dot(at->normal, l), 0, 1) / BRDF_PI;
-    return brdf_pdf(at->albedo, at->roughness, at->normal, l, view);
+    if (!scene->diffuse_only) return brdf_eval_pdf(at->albedo, at->roughness, at->normal, l, view, pdf);
+    *pdf = brdf_clamp(vec3_dot(at->normal, l), 0, 1) / BRDF_PI;
+    return vec3_scale(at->albedo, 1 / BRDF_PI);
 }
 
 /* Both normals must face l: the shading normal for the BRDF, the true one lest light pass through the surface. */
@@ -31,9 +33,8 @@ static bool scatter(const trace_scene *scene, const scn_surface *at, vec3 view, 
     else
         *l = brdf_sample(at->albedo, at->roughness, at->normal, view, start.u1, start.u2, choice);
     if (!faces(at, *l)) return false;
-    *pdf = density(scene, at, *l, view);
+    vec3 f = reflect_density(scene, at, *l, view, pdf);
     if (*pdf < (real)1e-6) return false;
-    vec3 f = reflect(scene, at, *l, view);
     *throughput = vec3_mul(*throughput, vec3_scale(f, vec3_dot(at->normal, *l) / *pdf));
     return true;
 }
@@ -44,22 +45,21 @@ static vec3 clamp_path(vec3 c)
                      c.z < PATH_CLAMP ? c.z : PATH_CLAMP);
 }
 
-path_start path_start_at(int i, int count, real shift1, real shift2)
-{
-    uint32_t bits = (uint32_t)i;
-    bits = ((bits >> 1) & 0x55555555u) | ((bits & 0x55555555u) << 1);
-    bits = ((bits >> 2) & 0x33333333u) | ((bits & 0x33333333u) << 2);
-    bits = ((bits >> 4) & 0x0f0f0f0fu) | ((bits & 0x0f0f0f0fu) << 4);
-    bits = __builtin_bswap32(bits);
-    real a = ((real)i + shift1) / (real)count, b = (real)(bits >> 8) * (real)0x1p-24 + shift2;
-    /* below 1 even after rounding: the samplers divide by what is left of 1 */
-    return (path_start){brdf_clamp(a, 0, (real)0.9999999), b >= 1 ? b - 1 : b};
-}
-
 static path_start random_start(rng *r)
 {
     real a = rng_uniform(r), b = rng_uniform(r);
     return (path_start){a, b};
+}
+
+/* Whether a path goes on, about as likely as its throughput is high, which is then raised to make up for the others
+ * (Russian roulette; Arvo & Kirk 1990). */
+static bool survives(vec3 *throughput, real choice)
+{
+    const real least = (real)0.2;
+    real share = brdf_clamp(fmax(throughput->x, fmax(throughput->y, throughput->z)), least, 1);
+    if (choice >= share) return false;
+    *throughput = vec3_scale(*throughput, 1 / share);
+    return true;
 }
 
 vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light)
@@ -83,16 +83,18 @@ vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, co
     return trace_occluded(scene, origin, vec3_scale(to_light, 1 / distance), distance) ? black : radiance;
 }
 
-void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light, path_start start,
-                      rng *r, vec3 bounce[2])
+void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light,
+                      const path_source *source, vec3 bounce[2])
 {
     bounce[0] = bounce[1] = black;
     vec3 throughput = white, v = view, l;
+    path_start choice = sequence_at(source->sequence, SEQUENCE_CHOICE, source->index);
     scn_surface from = *at, to;
     for (int b = 0; b < 2; b++) {
         real pdf;
-        if (b > 0) start = random_start(r);
-        if (!scatter(scene, &from, v, start, rng_uniform(r), &l, &pdf, &throughput)) return;
+        if (b > 0 && !survives(&throughput, rng_uniform(source->random))) return;
+        path_start start = sequence_at(source->sequence, b ? SEQUENCE_SECOND : SEQUENCE_DIRECTION, source->index);
+        if (!scatter(scene, &from, v, start, b ? choice.u2 : choice.u1, &l, &pdf, &throughput)) return;
         if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
         v = vec3_scale(l, -1);
         bounce[b] = clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light)));
@@ -101,33 +103,43 @@ void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, cons
 }
 
 /* The environment's light at one surface, by a direction drawn from the map. */
-static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, rng *r)
+static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
+                               path_start u)
 {
-    real u1 = rng_uniform(r), u2 = rng_uniform(r), light_pdf;
-    vec3 l, radiance = environment_sample(env, u1, u2, &l, &light_pdf);
+    real light_pdf;
+    vec3 l, radiance = environment_sample(env, u.u1, u.u2, &l, &light_pdf);
     if (!faces(at, l)) return black;
-    real weight = 1 / (light_pdf + density(scene, at, l, view));
-    vec3 f = vec3_scale(reflect(scene, at, l, view), vec3_dot(at->normal, l) * weight);
-    vec3 result = vec3_mul(f, radiance);
+    real pdf;
+    vec3 f = reflect_density(scene, at, l, view, &pdf);
+    vec3 result = vec3_mul(vec3_scale(f, vec3_dot(at->normal, l) / (light_pdf + pdf)), radiance);
     if (result.x + result.y + result.z <= 0) return black;
     return trace_occluded(scene, trace_leave(at), l, 1e4f) ? black : result;
 }
 
-vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, path_start start,
-                      rng *r)
+vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
+                      const path_source *source)
 {
     enum { SURFACES = 3 };
     vec3 sum = black, throughput = white, v = view, l;
     scn_surface from = *at, to;
+    path_start to_light = sequence_at(source->sequence, SEQUENCE_LIGHT, source->index);
+    path_start start = sequence_at(source->sequence, SEQUENCE_DIRECTION, source->index);
+    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, source->index).u1;
     for (int b = 0; b < SURFACES; b++) {
         real pdf;
-        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, r));
+        if (b > 0) {
+            if (!survives(&throughput, rng_uniform(source->random))) break;
+            to_light = random_start(source->random);
+            start = random_start(source->random);
+            choice = rng_uniform(source->random);
+        }
+        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, to_light));
         sum = vec3_add(sum, clamp_path(direct));
-        if (b > 0) start = random_start(r);
-        if (!scatter(scene, &from, v, start, rng_uniform(r), &l, &pdf, &throughput)) break;
+        if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) break;
         if (!trace_surface(scene, trace_leave(&from), l, &to)) {
-            real weight = pdf / (pdf + environment_pdf(env, l));
-            vec3 seen = vec3_scale(vec3_mul(throughput, environment_radiance(env, l)), weight);
+            real light_pdf;
+            vec3 radiance = environment_look(env, l, &light_pdf);
+            vec3 seen = vec3_scale(vec3_mul(throughput, radiance), pdf / (pdf + light_pdf));
             sum = vec3_add(sum, clamp_path(seen));
             break;
         }

@@ -13,13 +13,20 @@
 
 enum { MAX_POINTS = RENDER_MAX_STRATA * RENDER_MAX_STRATA };
 
+/* What a layer's paths are drawn from. */
+typedef struct layer_source {
+    sequence sequence;
+    rng random;
+} layer_source;
+
 typedef struct renderer {
     trace_scene *scene;
     const image_settings *settings;
     const environment *env;
     camera eye;
     point_light flash, lights[SAMPLE_MAX_TARGETS];
-    rng jitter, indirect, target, surroundings;
+    rng jitter;
+    layer_source indirect, target, surroundings;
     sample *out;
 } renderer;
 
@@ -124,16 +131,20 @@ static vec3 mean_direct(renderer *r, const pixel *p, const point_light *light)
     return vec3_scale(sum, p->coverage / (float)p->count);
 }
 
-static void mean_indirect(renderer *r, const pixel *p, const point_light *light, rng *generator, vec3 bounce[2])
+static path_source source_of(layer_source *layer, const pixel *p, int paths)
+{
+    return (path_source){&layer->sequence, sequence_index(p->x, p->y) * (uint32_t)paths, &layer->random};
+}
+
+static void mean_indirect(renderer *r, const pixel *p, const point_light *light, layer_source *layer, vec3 bounce[2])
 {
     int paths = r->settings->paths;
-    float shift1 = rng_uniform(generator), shift2 = rng_uniform(generator);
+    path_source source = source_of(layer, p, paths);
     bounce[0] = bounce[1] = vec3_make(0, 0, 0);
-    for (int i = 0; i < paths; i++) {
+    for (int i = 0; i < paths; i++, source.index++) {
         vec3 path[2];
         int at = i % p->count;
-        point_light_path(r->scene, &p->at[at], p->view[at], light, path_start_at(i, paths, shift1, shift2), generator,
-                         path);
+        point_light_path(r->scene, &p->at[at], p->view[at], light, &source, path);
         bounce[0] = vec3_add(bounce[0], path[0]);
         bounce[1] = vec3_add(bounce[1], path[1]);
     }
@@ -144,12 +155,11 @@ static void mean_indirect(renderer *r, const pixel *p, const point_light *light,
 static vec3 mean_environment(renderer *r, const pixel *p)
 {
     int paths = r->settings->paths;
-    float shift1 = rng_uniform(&r->surroundings), shift2 = rng_uniform(&r->surroundings);
+    path_source source = source_of(&r->surroundings, p, paths);
     vec3 sum = {0, 0, 0};
-    for (int i = 0; i < paths; i++) {
+    for (int i = 0; i < paths; i++, source.index++) {
         int at = i % p->count;
-        sum = vec3_add(sum, environment_path(r->scene, &p->at[at], p->view[at], r->env,
-                                             path_start_at(i, paths, shift1, shift2), &r->surroundings));
+        sum = vec3_add(sum, environment_path(r->scene, &p->at[at], p->view[at], r->env, &source));
     }
     return vec3_scale(sum, p->coverage / (float)paths);
 }
@@ -223,6 +233,13 @@ static status smooth_layers(sample *out)
     return s;
 }
 
+static layer_source layer_of(uint64_t seed, uint64_t index, int stream)
+{
+    layer_source layer = {.random = rng_at(seed, index, (uint64_t)stream)};
+    layer.sequence = sequence_of(&layer.random);
+    return layer;
+}
+
 status render_image(trace_scene *scene, const image_settings *settings, uint64_t seed, uint64_t index,
                     const environment *env, sample *out)
 {
@@ -243,9 +260,9 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
                   .eye = {settings->size, settings->size, settings->fov},
                   .flash = {{0, 0, 0}, LIGHT_POWER, true},
                   .jitter = rng_at(seed, index, STREAM_JITTER),
-                  .indirect = rng_at(seed, index, STREAM_INDIRECT),
-                  .target = rng_at(seed, index, STREAM_TARGET),
-                  .surroundings = rng_at(seed, index, STREAM_SURROUNDINGS),
+                  .indirect = layer_of(seed, index, STREAM_INDIRECT),
+                  .target = layer_of(seed, index, STREAM_TARGET),
+                  .surroundings = layer_of(seed, index, STREAM_SURROUNDINGS),
                   .out = out};
     rng lights = rng_at(seed, index, STREAM_LIGHTS);
     for (int t = 0; t < settings->targets; t++) {
