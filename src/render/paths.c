@@ -1,8 +1,9 @@
 #include "render/paths.h"
 
 #include "optics/brdf.h"
+#include "render/bundle.h"
 
-static const vec3 white = {1, 1, 1}, black = {0, 0, 0};
+static const vec3 black = {0, 0, 0};
 
 static vec3 reflect(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view)
 {
@@ -51,17 +52,6 @@ static path_start random_start(rng *r)
     return (path_start){a, b};
 }
 
-/* Whether a path goes on, about as likely as its throughput is high, which is then raised to make up for the others
- * (Russian roulette; Arvo & Kirk 1990). */
-static bool survives(vec3 *throughput, real choice)
-{
-    const real least = (real)0.2;
-    real share = brdf_clamp(fmax(throughput->x, fmax(throughput->y, throughput->z)), least, 1);
-    if (choice >= share) return false;
-    *throughput = vec3_scale(*throughput, 1 / share);
-    return true;
-}
-
 vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light)
 {
     vec3 to_light = vec3_sub(light->position, at->position);
@@ -83,22 +73,37 @@ vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, co
     return trace_occluded(scene, origin, vec3_scale(to_light, 1 / distance), distance) ? black : radiance;
 }
 
-void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light,
-                      const path_source *source, vec3 bounce[2])
+/* Bounce 2 of a path that has met `hit`, and bounce 3. */
+static void follow_point_light(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
+                               const point_light *light, const path_source *source, vec3 bounce[2])
 {
+    vec3 throughput = lanes_at(&b->throughput, lane), l;
+    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    scn_surface from, to;
+    real pdf;
+    trace_surface_at(scene, hit, v, &from);
+    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, point_light_direct(scene, &from, v, light))));
+    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, b->index[lane]);
+    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, b->index[lane]).u2;
+    if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) return;
+    if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
+    v = vec3_scale(l, -1);
+    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light))));
+}
+
+void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
+                       const path_source *source, int count, vec3 bounce[2])
+{
+    bundle b;
+    trace_hit hits[TRACE_PACKET];
     bounce[0] = bounce[1] = black;
-    vec3 throughput = white, v = view, l;
-    path_start choice = sequence_at(source->sequence, SEQUENCE_CHOICE, source->index);
-    scn_surface from = *at, to;
-    for (int b = 0; b < 2; b++) {
-        real pdf;
-        if (b > 0 && !survives(&throughput, rng_uniform(source->random))) return;
-        path_start start = sequence_at(source->sequence, b ? SEQUENCE_SECOND : SEQUENCE_DIRECTION, source->index);
-        if (!scatter(scene, &from, v, start, b ? choice.u2 : choice.u1, &l, &pdf, &throughput)) return;
-        if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
-        v = vec3_scale(l, -1);
-        bounce[b] = clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light)));
-        from = to;
+    for (int done = 0; done < count; done += TRACE_PACKET) {
+        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
+        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
+        bundle_scatter(&b, source->sequence, scene->diffuse_only);
+        trace_packet(scene, &b.rays, hits);
+        for (int i = 0; i < abreast; i++)
+            if (hits[i].distance >= 0) follow_point_light(scene, &b, i, &hits[i], light, source, bounce);
     }
 }
 
@@ -116,35 +121,83 @@ static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 v
     return trace_occluded(scene, trace_leave(at), l, 1e4f) ? black : result;
 }
 
-vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
-                      const path_source *source)
+/* The map's light along a direction that was drawn from the BRDF with this density. */
+static vec3 environment_seen(const environment *env, vec3 l, real pdf)
 {
-    enum { SURFACES = 3 };
-    vec3 sum = black, throughput = white, v = view, l;
-    scn_surface from = *at, to;
-    path_start to_light = sequence_at(source->sequence, SEQUENCE_LIGHT, source->index);
-    path_start start = sequence_at(source->sequence, SEQUENCE_DIRECTION, source->index);
-    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, source->index).u1;
-    for (int b = 0; b < SURFACES; b++) {
+    real light_pdf;
+    vec3 radiance = environment_look(env, l, &light_pdf);
+    return vec3_scale(radiance, pdf / (pdf + light_pdf));
+}
+
+/* The light that a path brings once it has met `hit`: from the map at up to two more surfaces. */
+static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
+                               const environment *env, rng *r)
+{
+    enum { MORE_SURFACES = 2 };
+    vec3 sum = black, throughput = lanes_at(&b->throughput, lane), l;
+    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    scn_surface from, to;
+    trace_surface_at(scene, hit, v, &from);
+    for (int left = MORE_SURFACES; left > 0; left--) {
         real pdf;
-        if (b > 0) {
-            if (!survives(&throughput, rng_uniform(source->random))) break;
-            to_light = random_start(source->random);
-            start = random_start(source->random);
-            choice = rng_uniform(source->random);
-        }
-        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, to_light));
+        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, random_start(r)));
         sum = vec3_add(sum, clamp_path(direct));
-        if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) break;
+        path_start start = random_start(r);
+        if (!scatter(scene, &from, v, start, rng_uniform(r), &l, &pdf, &throughput)) break;
         if (!trace_surface(scene, trace_leave(&from), l, &to)) {
-            real light_pdf;
-            vec3 radiance = environment_look(env, l, &light_pdf);
-            vec3 seen = vec3_scale(vec3_mul(throughput, radiance), pdf / (pdf + light_pdf));
-            sum = vec3_add(sum, clamp_path(seen));
+            sum = vec3_add(sum, clamp_path(vec3_mul(throughput, environment_seen(env, l, pdf))));
             break;
         }
         v = vec3_scale(l, -1);
         from = to;
+    }
+    return sum;
+}
+
+/* The map's light at the first surfaces, by directions drawn from the map. */
+static vec3 first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q)
+{
+    lanes radiance = {0};
+    float light_pdf[TRACE_PACKET] = {0};
+    vec3 sum = black;
+    for (int i = 0; i < b->count; i++) {
+        path_start u = sequence_at(q, SEQUENCE_LIGHT, b->index[i]);
+        vec3 l;
+        lanes_put(&radiance, i, environment_sample(env, u.u1, u.u2, &l, &light_pdf[i]));
+        b->rays.dx[i] = l.x;
+        b->rays.dy[i] = l.y;
+        b->rays.dz[i] = l.z;
+    }
+    bundle_reflect(b, light_pdf, scene->diffuse_only);
+    trace_packet_free(scene, &b->rays);
+    for (int i = 0; i < b->count; i++)
+        if (b->rays.valid[i])
+            sum = vec3_add(sum, clamp_path(vec3_mul(lanes_at(&b->throughput, i), lanes_at(&radiance, i))));
+    return sum;
+}
+
+vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
+                       int count)
+{
+    bundle b;
+    trace_hit hits[TRACE_PACKET];
+    vec3 sum = black;
+    for (int done = 0; done < count; done += TRACE_PACKET) {
+        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
+        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
+        for (int i = abreast; i < TRACE_PACKET; i++)
+            b.rays.dx[i] = b.rays.dy[i] = b.rays.dz[i] = 1;
+        sum = vec3_add(sum, first_environment_direct(scene, &b, env, source->sequence));
+        bundle_scatter(&b, source->sequence, scene->diffuse_only);
+        trace_packet(scene, &b.rays, hits);
+        for (int i = 0; i < abreast; i++) {
+            vec3 l = vec3_make(b.rays.dx[i], b.rays.dy[i], b.rays.dz[i]), brought = black;
+            if (hits[i].distance >= 0)
+                brought = follow_environment(scene, &b, i, &hits[i], env, source->random);
+            else if (b.rays.valid[i])
+                brought = clamp_path(vec3_mul(lanes_at(&b.throughput, i), environment_seen(env, l, b.pdf[i])));
+            sum = vec3_add(sum, brought);
+        }
     }
     return sum;
 }
