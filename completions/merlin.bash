@@ -4,7 +4,7 @@ _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local -A options=(
         [estimate]="--mask --output --model --size --exposure --json --quiet --help"
-        [relight]="--light --lights --orbit --dome --lp --by --no-shadows --frame --mask --output --model --size --exposure --json --quiet --help"
+        [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --exposure --json --quiet --help"
         [stereo]="--lights --near --method --mask --ambient --linear --integrate --mesh --output --model --size --exposure
             --sphere --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths

@@ -98,7 +98,9 @@ typedef struct merlin_maps {
     int size;   /* what that square was resized to */
     float gain; /* the photograph times this is radiance under a flash of power 5.95 */
     merlin_mask_source mask_source;
-    float mask_confidence; /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
+    int has_environment;     /* the model knows of surroundings beside the flash: */
+    float environment[9][3]; /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
+    float mask_confidence;   /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
     char model[64];
     merlin_timing timing;
 } merlin_maps;
@@ -128,6 +130,22 @@ typedef enum merlin_relighting {
  * size and exposure, 3 channels in [0, 1]. */
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
+
+/* Surroundings: a latitude-longitude picture (Radiance HDR or EXR; up is its top row, straight ahead of the camera its
+ * middle column, right of that the camera's right). */
+typedef struct merlin_environment merlin_environment;
+
+/* Such files are in no known unit: mean luminance becomes 2^exposure, at 0 a white object about as bright as
+ * under the flash. turn: degrees about the vertical; at 90 what was straight ahead is to the camera's right. */
+merlin_status merlin_environment_read(const char *path, float turn, float exposure, merlin_environment **out);
+void merlin_environment_free(merlin_environment *environment);
+
+/* The object in these surroundings, and under a point light too unless that is NULL: diffuse by nine spherical
+ * harmonics, highlights from the picture itself; the surroundings cast no shadows. MERLIN_BY_NETWORK needs a light and
+ * a model that was trained for both. */
+merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps,
+                                         const merlin_environment *environment, const float *light,
+                                         merlin_relighting how, merlin_image *out);
 
 #ifdef __cplusplus
 }

@@ -15,8 +15,10 @@ static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
     "       merlin relight PHOTO|DIR --lights FILE [options]\n"
     "       merlin relight PHOTO|DIR --orbit N [options]\n"
-    "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n\n"
-    "Shows an object under one point light instead of the flash. DIR is a folder made by merlin estimate; a PHOTO is\n"
+    "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
+    "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
+    "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by merlin "
+    "estimate; a PHOTO is\n"
     "estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop\n"
     "around the object counts as a frame 60 degrees wide.\n\n"
     "      --light x,y,z    a light's position; may be given again\n"
@@ -27,6 +29,11 @@ static const char help[] =
     "and "
     "mask.png\n"
     "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo\n"
+    "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each light\n"
+    "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
+    "      --env-exposure EV\n"
+    "                       makes them brighter or darker (default 0: mean luminance 1)\n"
+    "                       with --orbit they go round once, and the light stays\n"
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
     "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
     "      --no-shadows     brdf without cast shadows, as in the paper\n"
@@ -46,6 +53,9 @@ enum {
     OPTION_ORBIT,
     OPTION_DOME,
     OPTION_LP,
+    OPTION_ENV,
+    OPTION_ROTATE,
+    OPTION_ENV_EXPOSURE,
     OPTION_BY,
     OPTION_NO_SHADOWS,
     OPTION_FRAME,
@@ -63,6 +73,9 @@ static const struct option long_options[] = {
     {"orbit", required_argument, NULL, OPTION_ORBIT},
     {"dome", required_argument, NULL, OPTION_DOME},
     {"lp", no_argument, NULL, OPTION_LP},
+    {"env", required_argument, NULL, OPTION_ENV},
+    {"rotate", required_argument, NULL, OPTION_ROTATE},
+    {"env-exposure", required_argument, NULL, OPTION_ENV_EXPOSURE},
     {"by", required_argument, NULL, OPTION_BY},
     {"no-shadows", no_argument, NULL, OPTION_NO_SHADOWS},
     {"frame", required_argument, NULL, OPTION_FRAME},
@@ -78,7 +91,8 @@ static const struct option long_options[] = {
 };
 
 typedef struct request {
-    const char *input, *list, *mask, *weights, *output;
+    const char *input, *list, *mask, *weights, *output, *env;
+    double rotate, env_exposure;
     light_list lights;
     merlin_params params;
     merlin_relighting how;
@@ -109,6 +123,9 @@ static status take_text(int option, const char *value, request *r)
     switch (option) {
     case OPTION_LIGHTS:
         r->list = value;
+        return OK;
+    case OPTION_ENV:
+        r->env = value;
         return OK;
     case OPTION_MASK:
         r->mask = value;
@@ -150,6 +167,10 @@ static status take_option(int option, const char *value, request *r)
         return cli_int("--dome", value, 3, RELIGHT_MOST_DOME, &r->dome);
     case OPTION_FRAME:
         return cli_int("--frame", value, 32, 1024, &r->frame);
+    case OPTION_ROTATE:
+        return cli_float("--rotate", value, -1e6, 1e6, &r->rotate);
+    case OPTION_ENV_EXPOSURE:
+        return cli_float("--env-exposure", value, -20, 20, &r->env_exposure);
     case OPTION_BY:
         return take_way(value, &r->how);
     case OPTION_SIZE:
@@ -174,8 +195,11 @@ static status parse(int argc, char **argv, request *r)
     if (optind + 1 < argc)
         return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", argv[optind + 1]);
     r->input = argv[optind];
-    if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0)
-        return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit or --dome");
+    if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0 && !r->env)
+        return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit, --dome or --env");
+    if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
+        return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
+    if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
     if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
@@ -242,13 +266,18 @@ static status relight(const request *r, const char *weights, const char *output)
                        .frame = (int)r->frame,
                        .stop = cli_interrupted};
     merlin_maps maps = {0};
-    status s = (status)merlin_model_open(weights, &job.model);
+    merlin_environment *environment = NULL;
+    status s = OK;
+    if (r->env) s = (status)merlin_environment_read(r->env, (float)r->rotate, (float)r->env_exposure, &environment);
+    job.environment = environment;
+    if (s == OK) s = (status)merlin_model_open(weights, &job.model);
     if (s == OK) s = get_maps(r, job.model, &maps);
     job.maps = &maps;
     if (s == OK) s = relight_output(&job);
     if (s == OK) announce(r, &job, clock_seconds() - began);
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
+    merlin_environment_free(environment);
     return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 

@@ -32,9 +32,13 @@ static void sheet_free(sheet *s)
         img_free(&s->pictures[i]);
 }
 
-static void label_light(vec3 light, char *label)
+/* light NULL: the environment alone. */
+static void label_light(const vec3 *light, char *label)
 {
-    snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", (double)light.x, (double)light.y, (double)light.z);
+    if (light)
+        snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", (double)light->x, (double)light->y, (double)light->z);
+    else
+        snprintf(label, LABEL_SIZE, "environment");
 }
 
 static status sheet_write(const sheet *s, const staging *t, const char *name)
@@ -51,12 +55,18 @@ static status sheet_write(const sheet *s, const staging *t, const char *name)
 }
 
 /* A small copy of the square for the sheet, if there is room. */
-static status sheet_add(sheet *s, const img *picture, vec3 light)
+static status sheet_add(sheet *s, const img *picture, const char *label)
 {
     if (s->count == MOST_TILES) return OK;
     status result = img_resize(picture, TILE_SIZE, TILE_SIZE, &s->pictures[s->count]);
-    if (result == OK) label_light(light, s->labels[s->count++]);
+    if (result == OK) snprintf(s->labels[s->count++], LABEL_SIZE, "%s", label);
     return result;
+}
+
+static status relight(const relight_job *job, const stage *st, const vec3 *light, img *out)
+{
+    network *n = job->model->network;
+    return light ? stage_relight(n, st, *light, out) : stage_relight_environment(n, st, out);
 }
 
 static status write_picture(const staging *t, const char *pattern, size_t i, const img *picture)
@@ -75,15 +85,17 @@ static status write_picture(const staging *t, const char *pattern, size_t i, con
 typedef struct picture {
     const char *name;
     size_t number;
-    vec3 light;
+    const vec3 *light; /* NULL: the environment alone */
 } picture;
 
 /* all: where a small copy goes, or NULL. */
 static status write_light(const relight_job *job, const stage *st, const staging *t, const picture *p, sheet *all)
 {
     img square = {0}, whole = {0};
-    status s = stage_relight(job->model->network, st, p->light, &square);
-    if (s == OK && all) s = sheet_add(all, &square, p->light);
+    status s = relight(job, st, p->light, &square);
+    char label[LABEL_SIZE];
+    label_light(p->light, label);
+    if (s == OK && all) s = sheet_add(all, &square, label);
     if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
     if (s == OK) {
         crop_put(&square, crop_of(job->maps), &whole);
@@ -96,14 +108,17 @@ static status write_light(const relight_job *job, const stage *st, const staging
 
 static status write_lights(const relight_job *job, const staging *t)
 {
-    if (job->lights.count == 0) return OK;
+    size_t count = job->lights.count;
+    if (count == 0 && !job->environment) return OK;
     stage st;
     status s = stage_new(job->maps, 0, job->how, &st);
     if (s != OK) return s;
     sheet all = {.count = 0};
-    for (size_t i = 0; i < job->lights.count && s == OK; i++)
+    if (job->environment) st.environment = &job->environment->map;
+    if (count == 0) s = write_light(job, &st, t, &(picture){"relit", 0, NULL}, &all);
+    for (size_t i = 0; i < count && s == OK; i++)
         s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
-                         : write_light(job, &st, t, &(picture){"relit", i, job->lights.at[i]}, &all);
+                         : write_light(job, &st, t, &(picture){"relit", i, &job->lights.at[i]}, &all);
     if (s == OK) s = sheet_write(&all, t, "relit.png");
     sheet_free(&all);
     stage_free(&st);
@@ -155,9 +170,11 @@ static status write_dome(const relight_job *job, const staging *t)
     stage st;
     status s = stage_new(job->maps, 0, job->how, &st);
     if (s != OK) return s;
-    for (int i = 0; i < job->dome && s == OK; i++)
+    for (int i = 0; i < job->dome && s == OK; i++) {
+        vec3 light = dome_light(i, job->dome);
         s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
-                         : write_light(job, &st, t, &(picture){"dome", (size_t)i, dome_light(i, job->dome)}, NULL);
+                         : write_light(job, &st, t, &(picture){"dome", (size_t)i, &light}, NULL);
+    }
     if (s == OK) s = write_dome_mask(job, t);
     if (s == OK && job->lp) s = write_lp(job, t);
     stage_free(&st);
@@ -186,17 +203,34 @@ static status write_animations(const relight_job *job, const staging *t, const i
     return s;
 }
 
-static status write_frames(const relight_job *job, const stage *st, const staging *t, img *frames)
+/* Under an environment, turned a step further for each frame, the light stays where it is. */
+static status render_frame(const relight_job *job, stage *st, env_map *environment, int i, sheet *some, img *frame)
+{
+    vec3 moving = orbit_light(i, job->orbit);
+    const vec3 *light = &moving;
+    char label[LABEL_SIZE];
+    label_light(light, label);
+    if (job->environment) {
+        light = job->lights.count ? &job->lights.at[0] : NULL;
+        if (i > 0) env_map_turn(environment, 360.0f / (float)job->orbit);
+        st->environment = environment;
+        snprintf(label, sizeof label, "turned by %.0f°", 360.0 * i / job->orbit);
+    }
+    int step = (job->orbit + MOST_TILES - 1) / MOST_TILES;
+    status s = relight(job, st, light, frame);
+    return s == OK && i % step == 0 ? sheet_add(some, frame, label) : s;
+}
+
+static status write_frames(const relight_job *job, stage *st, const staging *t, img *frames)
 {
     sheet some = {.count = 0};
-    int step = (job->orbit + MOST_TILES - 1) / MOST_TILES;
+    /* shares the levels, which a turn does not change */
+    env_map turning = job->environment ? job->environment->map : (env_map){.cosine = 1};
     status s = OK;
     for (int i = 0; i < job->orbit && s == OK; i++) {
         if (stopped(job)) s = fail(ERROR_STOPPED, "stopped");
-        vec3 light = orbit_light(i, job->orbit);
-        if (s == OK) s = stage_relight(job->model->network, st, light, &frames[i]);
+        if (s == OK) s = render_frame(job, st, &turning, i, &some, &frames[i]);
         if (s == OK) s = write_picture(t, "frame", (size_t)i, &frames[i]);
-        if (s == OK && i % step == 0) s = sheet_add(&some, &frames[i], light);
     }
     if (s == OK) s = sheet_write(&some, t, "orbit.png");
     sheet_free(&some);

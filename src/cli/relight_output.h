@@ -1,4 +1,4 @@
-/* The files of merlin relight: a picture a light, frames and animations of an orbit, contact sheets. */
+/* The files of merlin relight: a picture a light or environment, frames and animations of an orbit, contact sheets. */
 #ifndef MERLIN_CLI_RELIGHT_OUTPUT_H
 #define MERLIN_CLI_RELIGHT_OUTPUT_H
 
@@ -13,12 +13,14 @@ enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 typedef struct relight_job {
     merlin_model *model;
     const merlin_maps *maps;
-    const char *output; /* folder */
-    light_list lights;  /* relit_000.png …, of the photograph's size */
+    const char *output;                    /* folder */
+    light_list lights;                     /* relit_000.png …, of the photograph's size */
+    const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
     merlin_relighting how;
     int dome;  /* pictures under a dome of lights, of the photograph's size; 0: none */
     bool lp;   /* and a list of the dome's lights for RTI viewers */
-    int orbit; /* frames; 0: none */
+    int orbit; /* frames; 0: none. Under an environment that goes round, beside the first of the lights if any; else the
+                * light does */
     int frame; /* their side; 0: the crop's, at most 512 */
     int (*stop)(void);
 } relight_job;

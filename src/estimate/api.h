@@ -3,6 +3,7 @@
 #define MERLIN_ESTIMATE_API_H
 
 #include "estimate/crop.h"
+#include "estimate/env_map.h"
 #include "estimate/network.h"
 #include "estimate/shadow.h"
 #include "estimate/surface.h"
@@ -11,6 +12,10 @@
 
 struct merlin_model {
     network *network;
+};
+
+struct merlin_environment {
+    env_map map;
 };
 
 /* The same pixels under the other name; nothing is copied. */
@@ -40,17 +45,21 @@ status maps_check(const merlin_maps *maps);
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {
     surface full, low;
-    img low_photo;        /* radiance */
-    shadow_caster caster; /* empty unless shadows are cast */
-    float white;          /* the radiance that becomes 1: the photograph's, unless changed */
+    img low_photo;              /* radiance */
+    img flash;                  /* `low` under it, bounce 1 */
+    shadow_caster caster;       /* empty unless shadows are cast */
+    const env_map *environment; /* lights beside the point light, or NULL; borrowed */
+    float white;                /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;
 } stage;
 
 /* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
-/* The square under a point light, bounces included: 3 channels in [0, 1] of `white`. */
+/* The square under a point light and the stage's environment, bounces included: 3 channels in [0, 1] of `white`. */
 status stage_relight(network *n, const stage *s, vec3 light, img *out);
+/* Under its environment alone, which it must have. */
+status stage_relight_environment(network *n, const stage *s, img *out);
 
 /* What merlin_maps_write does; stop (may be NULL) is asked between files. */
 status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void));

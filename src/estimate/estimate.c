@@ -3,11 +3,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/progress.h"
 #include "estimate/api.h"
 #include "estimate/exposure.h"
 #include "estimate/mask.h"
+#include "estimate/relight_env.h"
 #include "image/resize.h"
 
 enum { LEAST_SIDE = 16, MOST_PIXELS = 64 * 1000 * 1000 };
@@ -18,19 +20,19 @@ typedef struct work {
     img photo, mask;
     crop_square crop;
     img crop_photo, crop_mask;
-    img low_photo, low_mask, low_indirect;
-    surface low, full;
+    img low_photo, low_mask;
+    network_estimation low;
+    surface full;
     img reconstruction;
     double clock; /* when the current stage began */
 } work;
 
 static void work_free(work *w)
 {
-    img *images[] = {&w->mask,     &w->crop_photo,   &w->crop_mask,     &w->low_photo,
-                     &w->low_mask, &w->low_indirect, &w->reconstruction};
+    img *images[] = {&w->mask, &w->crop_photo, &w->crop_mask, &w->low_photo, &w->low_mask, &w->reconstruction};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         img_free(images[i]);
-    surface_free(&w->low);
+    network_estimation_free(&w->low);
     surface_free(&w->full);
 }
 
@@ -109,14 +111,20 @@ static status make_input(work *w, float *gain)
     return OK;
 }
 
-/* The maps at the crop's own resolution, and what they look like under the flash in the photograph's exposure. */
-static status refine(work *w, float gain)
+/* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
+static status refine(work *w, float gain, bool in_environment)
 {
-    status s = surface_refine(&w->low, &w->crop_photo, &w->crop_mask, &w->full);
+    status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     if (s == OK) s = surface_shade(&w->full, vec3_make(0, 0, 0), &w->reconstruction);
     img indirect = {0};
-    if (s == OK) s = surface_resize_indirect(&w->low_indirect, &w->low.mask, w->crop.side, w->crop.side, &indirect);
+    if (s == OK)
+        s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, &indirect);
     if (s != OK) return s;
+    if (in_environment) {
+        const float(*sh)[3] = (const float(*)[3])w->low.environment;
+        surface_add_ambient(&w->full, sh, &w->reconstruction);
+        surface_add_ambient_highlights(&w->full, sh, &w->reconstruction);
+    }
     size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
     for (size_t i = 0; i < count; i++) {
         float radiance = w->reconstruction.data[i] + indirect.data[i] * w->crop_mask.data[i / 3];
@@ -165,9 +173,11 @@ static status estimate(merlin_model *model, work *w, const merlin_image *mask, m
     t->compile = network_take_compile_seconds(n);
     if (s == OK) s = make_input(w, &maps->gain);
     if (s == OK) s = lap(w, &t->prepare);
-    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->low, &w->low_indirect);
+    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->low);
     if (s == OK) s = lap(w, &t->network);
-    if (s == OK) s = refine(w, maps->gain);
+    maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
+    memcpy(maps->environment, w->low.environment, sizeof maps->environment);
+    if (s == OK) s = refine(w, maps->gain, maps->has_environment);
     if (s == OK) s = place_all(w, maps);
     if (s == OK) s = lap(w, &t->upsample);
     return s;

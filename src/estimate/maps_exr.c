@@ -38,6 +38,8 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     square.values[0] = (float)maps->crop.x;
     square.values[1] = (float)maps->crop.y;
     square.values[2] = (float)maps->crop.side;
+    exr_attribute environment = {.name = "merlinEnvironment", .count = 27};
+    memcpy(environment.values, maps->environment, sizeof maps->environment);
     exr_attribute attributes[] = {
         square,
         exr_number("merlinSize", (float)maps->size),
@@ -45,9 +47,10 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
         exr_number("merlinMaskFound", maps->mask_source == MERLIN_MASK_FOUND),
         exr_number("merlinMaskConfidence", maps->mask_confidence),
         exr_text("merlinModel", maps->model),
+        environment,
     };
-    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes,
-                     sizeof attributes / sizeof attributes[0]);
+    size_t count = sizeof attributes / sizeof attributes[0] - (maps->has_environment ? 0 : 1);
+    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
 }
 
 static status read_attributes(const exr_file *f, const char *path, merlin_maps *maps)
@@ -70,6 +73,7 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     maps->mask_source = found != 0 ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
     snprintf(maps->model, sizeof maps->model, "%s", model);
+    maps->has_environment = exr_get_numbers(f, "merlinEnvironment", &maps->environment[0][0], 27);
     return OK;
 }
 

@@ -22,7 +22,8 @@ struct network {
 };
 
 /* What each program is made for; the rest of the whole network is left out of it. */
-static const char *const maps_outputs[] = {"albedo", "normal", "roughness", "depth", "indirect", NULL};
+static const char *const maps_outputs[] = {"albedo",   "normal",           "roughness", "depth",
+                                           "indirect", "environment_code", NULL};
 static const char *const relit_outputs[] = {"relit_direct", NULL};
 
 static nn_type best_type(void)
@@ -140,20 +141,21 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
 }
 
 /* Every value of the photograph passes through once, so a fresh image and light are put in for each run. */
-static status run_whole(network *n, const img *photo, const img *mask, vec3 light, const char *const *outputs,
-                        compiled *c)
+static status run_whole(network *n, const img *photo, const img *mask, const network_light *light,
+                        const char *const *outputs, compiled *c)
 {
     status s = compile(n, MODEL_WHOLE, outputs, photo->width, c);
     if (s != OK) return s;
     nn_program *p = c->program;
     model_encode_image(photo->data, nn_input_data(p, "image"), value_count(photo));
     put(p, "mask", mask, 1, 0);
-    float position[3] = {light.x, light.y, light.z};
+    float position[3] = {light->place.x, light->place.y, light->place.z};
     memcpy(nn_input_data(p, "light_position"), position, sizeof position);
     float *code = nn_input_data(p, "light");
     if (code) {
         memset(code, 0, (size_t)model_light_size(&n->config) * sizeof *code);
         memcpy(code, position, sizeof position);
+        if (light->sh) model_encode_sh(light->sh, code + 3);
     }
     return nn_forward(p);
 }
@@ -175,32 +177,48 @@ static status take_maps(nn_program *p, const img *mask, surface *maps)
     return s;
 }
 
-status network_estimate(network *n, const img *photo, const img *mask, surface *maps, img *indirect)
+/* The environment that a model of both lights sees in the photograph. */
+static void take_environment(nn_program *p, float sh[9][3])
 {
-    *maps = (surface){0};
-    *indirect = (img){0};
+    const float *code = nn_output_data(p, "environment_code");
+    if (code)
+        model_decode_sh(code, sh);
+    else
+        memset(sh, 0, 9 * sizeof *sh);
+}
+
+status network_estimate(network *n, const img *photo, const img *mask, network_estimation *out)
+{
+    *out = (network_estimation){0};
+    surface *maps = &out->maps;
+    img *indirect = &out->indirect;
     pthread_mutex_lock(&n->lock);
-    status s = run_whole(n, photo, mask, vec3_make(0, 0, 0), maps_outputs, &n->maps);
+    status s = run_whole(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, maps_outputs, &n->maps);
     if (s == OK) s = take_maps(n->maps.program, mask, maps);
+    if (s == OK) take_environment(n->maps.program, out->environment);
     if (s == OK && n->config.global_illumination)
         s = take(n->maps.program, "indirect", photo->width, 3, 1, 0, indirect);
     else if (s == OK)
         s = img_new(indirect, photo->width, photo->height, 3);
     pthread_mutex_unlock(&n->lock);
-    if (s != OK) {
-        surface_free(maps);
-        img_free(indirect);
-    }
+    if (s != OK) network_estimation_free(out);
     return s;
 }
 
-status network_relight(network *n, const img *photo, const img *mask, vec3 light, img *direct)
+void network_estimation_free(network_estimation *e)
+{
+    surface_free(&e->maps);
+    img_free(&e->indirect);
+}
+
+status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct)
 {
     *direct = (img){0};
     if (n->config.relight != MODEL_RELIGHT_NETWORK)
         return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
-    if (n->config.lighting == MODEL_LIGHT_SH)
-        return fail(ERROR_USAGE, "model \"%s\" relights by environments only, not by point lights", n->config.name);
+    if (light->sh && n->config.lighting != MODEL_LIGHT_BOTH)
+        return fail(ERROR_USAGE, "model \"%s\" relights by point lights only, not by environments; relight by BRDF",
+                    n->config.name);
     pthread_mutex_lock(&n->lock);
     status s = run_whole(n, photo, mask, light, relit_outputs, &n->relit);
     if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, direct);
@@ -208,20 +226,25 @@ status network_relight(network *n, const img *photo, const img *mask, vec3 light
     return s;
 }
 
-static void put_clipped(nn_program *p, const img *direct)
+/* As in training: a lamp's light is clipped to [0, 1], an environment's is added by models that know of it, and is so
+ * much more of the lamp's for the others. */
+static void put_direct(nn_program *p, const img *direct, const img *environment)
 {
-    float *to = nn_input_data(p, "direct");
+    float *to = nn_input_data(p, "direct"), *apart = nn_input_data(p, "environment");
     size_t count = value_count(direct);
-    for (size_t i = 0; i < count; i++)
-        to[i] = fminf(fmaxf(direct->data[i], 0), 1);
+    for (size_t i = 0; i < count; i++) {
+        float more = environment ? environment->data[i] : 0;
+        to[i] = apart ? fminf(fmaxf(direct->data[i], 0), 1) + more : fminf(fmaxf(direct->data[i] + more, 0), 1);
+        if (apart) apart[i] = more;
+    }
 }
 
-static status run_indirect(network *n, const surface *maps, const img *direct, img *indirect)
+static status run_indirect(network *n, const surface *maps, const img *direct, const img *environment, img *indirect)
 {
     status s = compile(n, MODEL_INDIRECT, NULL, direct->width, &n->indirect);
     if (s != OK) return s;
     nn_program *p = n->indirect.program;
-    put_clipped(p, direct);
+    put_direct(p, direct, environment);
     put(p, "albedo", &maps->albedo, 2, -1);
     put(p, "normal", &maps->normal, 1, 0);
     put(p, "roughness", &maps->roughness, 2, -1);
@@ -231,12 +254,12 @@ static status run_indirect(network *n, const surface *maps, const img *direct, i
     return s == OK ? take(p, "indirect", direct->width, 3, 1, 0, indirect) : s;
 }
 
-status network_indirect(network *n, const surface *maps, const img *direct, img *indirect)
+status network_indirect(network *n, const surface *maps, const img *direct, const img *environment, img *indirect)
 {
     *indirect = (img){0};
     if (!n->config.global_illumination) return img_new(indirect, direct->width, direct->height, 3);
     pthread_mutex_lock(&n->lock);
-    status s = run_indirect(n, maps, direct, indirect);
+    status s = run_indirect(n, maps, direct, environment, indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
 }

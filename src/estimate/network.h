@@ -2,7 +2,7 @@
  *
  *     network *n;
  *     status s = network_open("merlin-point.safetensors", &n);
- *     s = network_estimate(n, &photo, &mask, &maps, &indirect);
+ *     s = network_estimate(n, &photo, &mask, &estimation);
  *     network_close(n);
  *
  * Images are square, a multiple of 32 pixels a side, linear. Calls from several threads take turns. */
@@ -28,15 +28,27 @@ status network_prepare(network *n, int size);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
 
-/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. *indirect: the light
- * of bounces 2 and up under the flash; zero for a model without global illumination. */
-status network_estimate(network *n, const img *photo, const img *mask, surface *maps, img *indirect);
+typedef struct network_estimation {
+    surface maps;
+    img indirect;            /* light of bounces 2 and up; zero for a model without global illumination */
+    float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
+} network_estimation;
 
-/* The same photograph under another point light, by the relighting decoder; without bounces. ERROR_USAGE if the model
- * has none or it does not take point lights. */
-status network_relight(network *n, const img *photo, const img *mask, vec3 light, img *direct);
+/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. */
+status network_estimate(network *n, const img *photo, const img *mask, network_estimation *out);
+void network_estimation_free(network_estimation *e);
 
-/* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training). */
-status network_indirect(network *n, const surface *maps, const img *direct, img *indirect);
+typedef struct network_light {
+    vec3 place;           /* of the point light */
+    const float (*sh)[3]; /* of an environment beside it (9 of them), or NULL */
+} network_light;
+
+/* The same photograph under other light, by the relighting decoder; without bounces. ERROR_USAGE if the model has none
+ * or it does not take environments. */
+status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct);
+
+/* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point lights and
+ * `environment` (diffuse only; may be NULL) under an environment. */
+status network_indirect(network *n, const surface *maps, const img *direct, const img *environment, img *indirect);
 
 #endif

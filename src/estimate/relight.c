@@ -1,7 +1,9 @@
-/* merlin_relight: maps under another point light. */
+/* merlin_relight and merlin_relight_environment: maps under other light. */
 #include <stdlib.h>
 
 #include "estimate/api.h"
+#include "estimate/bounce.h"
+#include "estimate/relight_env.h"
 #include "image/resize.h"
 
 /* Shadows are cast by maps of at most this side and looked for at this many points a side; a light costs a few
@@ -26,6 +28,7 @@ void stage_free(stage *s)
     surface_free(&s->full);
     surface_free(&s->low);
     img_free(&s->low_photo);
+    img_free(&s->flash);
     shadow_caster_free(&s->caster);
 }
 
@@ -103,6 +106,7 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
         out->full = whole;
     }
     if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
+    if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
     if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
     if (s != OK) stage_free(out);
     return s;
@@ -140,17 +144,39 @@ static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
 static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
 {
     int side = s->full.mask.width;
-    status result = network_relight(n, &s->low_photo, &s->low.mask, light, low);
+    network_light both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
+    status result = network_relight(n, &s->low_photo, &s->low.mask, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, side, side, full);
     if (result == OK && side != low->width) multiply_mask(full, &s->full.mask);
     return result;
 }
 
-/* The network's bounces 2 and up for `low`, resized and added to `full`. */
-static status add_indirect(network *n, const stage *s, const img *low, img *full)
+/* The environment's light: its diffuse part at the network's size, and all of it on top of `full`. What the relighting
+ * decoder gives (`low` and `full` then) has the diffuse part already. */
+static status add_environment(const stage *s, img *low, img *full, img *ambient)
+{
+    const env_map *env = s->environment;
+    const float(*sh)[3] = (const float(*)[3])env->sh;
+    status result = img_new(ambient, low->width, low->height, 3);
+    if (result != OK) return result;
+    surface_add_ambient(&s->low, sh, ambient);
+    if (s->how == MERLIN_BY_NETWORK) {
+        for (size_t i = 0; i < value_count(low); i++)
+            low->data[i] -= ambient->data[i];
+    } else {
+        surface_add_ambient(&s->full, sh, full);
+    }
+    surface_add_reflections(&s->full, env, full);
+    return OK;
+}
+
+/* The network's bounces 2 and up for `low` and `ambient`, resized and added to `full`. */
+static status add_indirect(network *n, const stage *s, const img *low, const img *ambient, img *full)
 {
     img indirect = {0}, large = {0};
-    status result = network_indirect(n, &s->low, low, &indirect);
+    const img *more = ambient->data ? ambient : NULL;
+    status result = network_indirect(n, &s->low, low, more, &indirect);
+    if (result == OK) result = bounce_follow(&s->flash, low, more, &indirect);
     if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, full->width, full->height, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
@@ -168,17 +194,67 @@ static void expose(img *radiance, float white)
         radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
 }
 
-status stage_relight(network *n, const stage *s, vec3 light, img *out)
+static status light_by_point(network *n, const stage *s, vec3 light, img *full, img *low)
+{
+    return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
+}
+
+static status dark(const stage *s, img *full, img *low)
+{
+    status result = img_new(full, s->full.mask.width, s->full.mask.height, 3);
+    return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
+}
+
+/* light NULL: no point light. */
+static status relight(network *n, const stage *s, const vec3 *light, img *out)
 {
     *out = (img){0};
-    img low = {0};
-    status result =
-        s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, out, &low) : light_by_brdf(s, light, out, &low);
-    if (result == OK) result = add_indirect(n, s, &low, out);
+    img low = {0}, ambient = {0};
+    status result = light ? light_by_point(n, s, *light, out, &low) : dark(s, out, &low);
+    if (result == OK && s->environment) result = add_environment(s, &low, out, &ambient);
+    if (result == OK) result = add_indirect(n, s, &low, &ambient, out);
     if (result == OK) expose(out, s->white);
     img_free(&low);
+    img_free(&ambient);
     if (result != OK) img_free(out);
     return result;
+}
+
+status stage_relight(network *n, const stage *s, vec3 light, img *out)
+{
+    return relight(n, s, &light, out);
+}
+
+status stage_relight_environment(network *n, const stage *s, img *out)
+{
+    if (s->how == MERLIN_BY_NETWORK)
+        return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
+    return relight(n, s, NULL, out);
+}
+
+/* In the photograph's frame, under the point light, the environment, or both. */
+static status relight_maps(merlin_model *model, const merlin_maps *maps, const vec3 *light, const env_map *environment,
+                           merlin_relighting how, merlin_image *out)
+{
+    stage st;
+    status s = stage_new(maps, 0, how, &st);
+    if (s != OK) return s;
+    img part = {0}, whole = {0};
+    st.environment = environment;
+    s = light ? stage_relight(model->network, &st, *light, &part)
+              : stage_relight_environment(model->network, &st, &part);
+    stage_free(&st);
+    if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
+    if (s == OK) crop_put(&part, crop_of(maps), &whole);
+    img_free(&part);
+    *out = image_of(&whole);
+    return s;
+}
+
+static status check_light(const float light[3])
+{
+    if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
+    return fail(ERROR_USAGE, "the light's position is not finite");
 }
 
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
@@ -186,17 +262,16 @@ merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const
 {
     *out = (merlin_image){0};
     vec3 place = vec3_make(light[0], light[1], light[2]);
-    if (!isfinite(place.x) || !isfinite(place.y) || !isfinite(place.z))
-        return result_of(fail(ERROR_USAGE, "the light's position is not finite"));
-    stage st;
-    status s = stage_new(maps, 0, how, &st);
+    status s = check_light(light);
+    return result_of(s == OK ? relight_maps(model, maps, &place, NULL, how, out) : s);
+}
+
+merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
+                                         const float *light, merlin_relighting how, merlin_image *out)
+{
+    *out = (merlin_image){0};
+    status s = light ? check_light(light) : OK;
     if (s != OK) return result_of(s);
-    img part = {0}, whole = {0};
-    s = stage_relight(model->network, &st, place, &part);
-    stage_free(&st);
-    if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
-    if (s == OK) crop_put(&part, crop_of(maps), &whole);
-    img_free(&part);
-    *out = image_of(&whole);
-    return result_of(s);
+    vec3 place = light ? vec3_make(light[0], light[1], light[2]) : vec3_make(0, 0, 0);
+    return result_of(relight_maps(model, maps, light ? &place : NULL, &env->map, how, out));
 }

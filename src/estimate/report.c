@@ -77,6 +77,19 @@ static void put_timing(cJSON *root, const merlin_timing *t)
     cJSON_AddNumberToObject(o, "upsample", t->upsample);
 }
 
+/* Nine coefficients of three channels. */
+static void put_environment(cJSON *root, const merlin_maps *maps)
+{
+    if (!maps->has_environment) return;
+    cJSON *all = cJSON_AddArrayToObject(root, "environment");
+    for (int i = 0; i < 9; i++) {
+        cJSON *channels = cJSON_CreateArray();
+        for (int c = 0; c < 3; c++)
+            cJSON_AddItemToArray(channels, cJSON_CreateNumber((double)maps->environment[i][c]));
+        cJSON_AddItemToArray(all, channels);
+    }
+}
+
 char *maps_report(const merlin_maps *maps)
 {
     cJSON *root = cJSON_CreateObject();
@@ -91,6 +104,7 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddNumberToObject(root, "exposure_gain", maps->gain);
     cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
     cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
+    put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);
     put_timing(root, &maps->timing);

@@ -10,7 +10,7 @@
 enum { MAX_WIDTH = 1024, MAX_CONFIG_BYTES = 1 << 20 };
 
 static const char *const relight_words[] = {"network", "brdf"};
-static const char *const lighting_words[] = {"point", "sh", "both"};
+static const char *const lighting_words[] = {"point", "both"};
 
 static status check_widths(const char *where, const char *key, const int *widths)
 {
@@ -41,7 +41,7 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = json_bool(o, "gated_attention", &out->gated_attention);
     if (s == OK) s = json_choice(o, "relight", relight_words, 2, &relight);
     if (s == OK) s = json_bool(o, "global_illumination", &out->global_illumination);
-    if (s == OK) s = json_choice(o, "lighting", lighting_words, 3, &lighting);
+    if (s == OK) s = json_choice(o, "lighting", lighting_words, 2, &lighting);
     if (s == OK) s = json_ints(o, "widths", 8, MAX_WIDTH, MODEL_LEVELS, out->widths);
     if (s == OK) s = json_ints(o, "gi_widths", 8, MAX_WIDTH, MODEL_LEVELS, out->gi_widths);
     if (s == OK) s = check_widths(where, "widths", out->widths);
@@ -101,6 +101,5 @@ char *model_config_write(const model_config *c)
 
 int model_light_size(const model_config *config)
 {
-    static const int sizes[] = {3, 27, 30};
-    return sizes[config->lighting];
+    return config->lighting == MODEL_LIGHT_BOTH ? 3 + MODEL_SH : 3;
 }

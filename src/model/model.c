@@ -7,10 +7,11 @@
 #include "model/blocks.h"
 #include "nn/safetensors.h"
 
-enum { LIGHT_CODE = 128 };
+enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
 const char *const model_losses[MODEL_LOSSES] = {
-    "albedo", "normal", "depth", "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"};
+    "albedo", "normal",   "depth",          "roughness", "roughness_gradient",
+    "direct", "indirect", "reconstruction", "relight",   "environment"};
 
 typedef struct maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
@@ -23,6 +24,8 @@ typedef struct network {
     nn_node *encoder[MODEL_LEVELS];
     nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of the four decoders' */
     maps maps;
+    nn_node *light;                          /* the target's lighting code */
+    nn_node *environment_code, *environment; /* NULL in the point setting */
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
 
@@ -30,6 +33,35 @@ void model_encode_image(const float *linear, float *encoded, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         encoded[i] = sqrtf(fminf(fmaxf(linear[i], 0.0f), MODEL_BRIGHTEST));
+}
+
+/* What becomes of radiance in band 0, 1 and 2 on its way to a diffuse white surface, over the root of the sphere's
+ * area: the mean over all normals of a squared radiance is the sum of the squared code. */
+static const float sh_scale[3] = {0.28209479f, 0.18806319f, 0.07052370f};
+enum { SH_BANDS = 3 };
+static const int sh_first[SH_BANDS] = {0, 3, 12}, sh_count[SH_BANDS] = {3, 9, 15};
+
+void model_encode_sh(const float sh[9][3], float code[MODEL_SH])
+{
+    for (int band = 0; band < SH_BANDS; band++)
+        for (int i = sh_first[band]; i < sh_first[band] + sh_count[band]; i++)
+            code[i] = sh[i / 3][i % 3] * sh_scale[band];
+}
+
+void model_decode_sh(const float code[MODEL_SH], float sh[9][3])
+{
+    for (int band = 0; band < SH_BANDS; band++)
+        for (int i = sh_first[band]; i < sh_first[band] + sh_count[band]; i++)
+            sh[i / 3][i % 3] = code[i] / sh_scale[band];
+}
+
+/* model_decode_sh in the graph. */
+static nn_node *decode_sh(nn_graph *g, nn_node *code)
+{
+    nn_node *parts[SH_BANDS];
+    for (int band = 0; band < SH_BANDS; band++)
+        parts[band] = nn_scale_shift(g, nn_slice(g, code, sh_first[band], sh_count[band]), 1 / sh_scale[band], 0.0f);
+    return nn_concat(g, parts, SH_BANDS);
 }
 
 /* 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. The range of a bare tanh would end at 0.95, behind
@@ -86,7 +118,7 @@ static void relight_by_network(network *n)
 {
     nn_graph *g = n->g;
     /* three fully connected layers, repeated over the bottleneck (Sang & Chandraker 2020) */
-    nn_node *code = nn_compute(g, nn_input(g, "light", model_light_size(n->config), NN_VECTOR));
+    nn_node *code = nn_compute(g, n->light);
     code = nn_tanh(g, nn_linear(g, code, "lighting.fc1", 8));
     code = nn_tanh(g, nn_linear(g, code, "lighting.fc2", 32));
     code = nn_tanh(g, nn_linear(g, code, "lighting.fc3", LIGHT_CODE));
@@ -104,13 +136,31 @@ static void relight_by_network(network *n)
     n->relit_direct = nn_gate(g, y, n->mask);
 }
 
-/* The residual light of bounces 2 and up, from what bounce 1 looks like and the maps. */
-static nn_node *global_illumination(nn_graph *g, const model_config *config, nn_node *direct, const maps *m,
+/* The photograph's environment from the encoder's two deepest features, averaged over the image. */
+static void estimate_environment(network *n)
+{
+    nn_graph *g = n->g;
+    nn_node *parts[2];
+    for (int i = 0; i < 2; i++)
+        parts[i] = nn_spatial_mean(g, n->encoder[MODEL_LEVELS - 2 + i]);
+    nn_node *y = nn_relu(g, nn_linear(g, nn_concat(g, parts, 2), "environment.fc1", ENVIRONMENT_FEATURES));
+    n->environment_code = nn_float(g, nn_linear(g, y, "environment.fc2", MODEL_SH));
+}
+
+/* What the lamp of the rendering layer does not: direct is all of bounce 1, environment (or NULL) the part of it that
+ * an environment sends. */
+typedef struct first_bounce {
+    nn_node *direct, *environment;
+} first_bounce;
+
+/* The residual light of bounces 2 and up (under an environment also its shadows), from what bounce 1 looks like and the
+ * maps. */
+static nn_node *global_illumination(nn_graph *g, const model_config *config, const first_bounce *light, const maps *m,
                                     nn_node *mask)
 {
-    nn_node *parts[6] = {direct, m->albedo, m->normal, m->roughness, m->depth, mask};
+    nn_node *parts[7] = {light->direct, m->albedo, m->normal, m->roughness, m->depth, mask, light->environment};
     /* maps mean nothing outside the mask */
-    nn_node *x = nn_gate(g, nn_concat(g, parts, 6), mask);
+    nn_node *x = nn_gate(g, nn_concat(g, parts, light->environment ? 7 : 6), mask);
     nn_node *encoder[MODEL_LEVELS], *features[MODEL_LEVELS - 1];
     block_encoder(g, x, "indirect.encoder", config->gi_widths, encoder);
     block_decoder_inputs in = {.name = "indirect.decoder",
@@ -130,6 +180,30 @@ static nn_node *render(network *n, nn_node *light)
     return nn_render(n->g, &in, MODEL_FOV, MODEL_LIGHT_POWER);
 }
 
+static nn_node *render_environment(network *n, nn_node *code)
+{
+    return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
+}
+
+static void build_lights(network *n, bool training)
+{
+    nn_graph *g = n->g;
+    bool both = n->config->lighting == MODEL_LIGHT_BOTH, by_network = n->config->relight == MODEL_RELIGHT_NETWORK;
+    n->direct = render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
+    if (both) {
+        estimate_environment(n);
+        n->environment = render_environment(n, n->environment_code);
+        n->direct = nn_add(g, n->direct, n->environment);
+    }
+    first_bounce first = {n->direct, n->environment};
+    if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
+    if (both || by_network) n->light = nn_input(g, "light", model_light_size(n->config), NN_VECTOR);
+    if (by_network) relight_by_network(n);
+    if (training && by_network) return;
+    n->relit_brdf = render(n, n->light_position);
+    if (both) n->relit_brdf = nn_add(g, n->relit_brdf, render_environment(n, nn_slice(g, n->light, 3, MODEL_SH)));
+}
+
 static void build_network(network *n, bool training)
 {
     nn_graph *g = n->g;
@@ -142,10 +216,7 @@ static void build_network(network *n, bool training)
         material_by_one_decoder(n);
     else
         material_by_four_decoders(n);
-    n->direct = render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
-    if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, n->direct, &n->maps, n->mask);
-    if (n->config->relight == MODEL_RELIGHT_NETWORK) relight_by_network(n);
-    if (!training || n->config->relight == MODEL_RELIGHT_BRDF) n->relit_brdf = render(n, n->light_position);
+    build_lights(n, training);
 }
 
 static void name_outputs(const network *n)
@@ -156,6 +227,8 @@ static void name_outputs(const network *n)
     nn_output(g, n->maps.roughness, "roughness");
     nn_output(g, n->maps.depth, "depth");
     nn_output(g, n->direct, "direct");
+    if (n->environment) nn_output(g, n->environment, "environment");
+    if (n->environment) nn_output(g, n->environment_code, "environment_code");
     if (n->indirect) nn_output(g, n->indirect, "indirect");
     if (n->relit_direct) nn_output(g, n->relit_direct, "relit_direct");
     if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
@@ -179,6 +252,11 @@ static void add_losses(network *n)
         nn_node *image = nn_add(g, n->direct, n->indirect);
         nn_masked_l2(g, image, nn_input(g, "reconstruction_true", 3, 1), mask, "reconstruction", 1.0f);
     }
+    if (n->environment) {
+        nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
+        nn_node *code = nn_input(g, "environment_true", MODEL_SH, NN_VECTOR);
+        nn_masked_l2(g, n->environment_code, code, one, "environment", 1.0f);
+    }
     nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf;
     nn_masked_l2(g, relit, nn_input(g, "relit_true", 3, 1), mask, "relight", 1.0f);
 }
@@ -192,7 +270,8 @@ static status build_indirect(nn_graph *g, const model_config *config)
     m.normal = nn_input(g, "normal", 3, 1);
     m.roughness = nn_input(g, "roughness", 1, 1);
     m.depth = nn_input(g, "depth", 1, 1);
-    nn_output(g, global_illumination(g, config, direct, &m, nn_input(g, "mask", 1, 1)), "indirect");
+    first_bounce first = {direct, config->lighting == MODEL_LIGHT_BOTH ? nn_input(g, "environment", 3, 1) : NULL};
+    nn_output(g, global_illumination(g, config, &first, &m, nn_input(g, "mask", 1, 1)), "indirect");
     return OK;
 }
 

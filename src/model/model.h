@@ -4,16 +4,20 @@
  * inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
  *
  *   inputs   "image"  3, model_encode_image of the linear image, multiplied by the mask      "mask"   1
- *            "light"  vector 3, 27 or 30: the target light's code   "light_position" vector 3: the target light's place
+ *            "light"  vector 3 or 30: the target's lighting code: a place, and with "lighting": "both" an environment's
+ *                     model_encode_sh               "light_position" vector 3: the target light's place
  *   outputs  "albedo" 3 in [-1, 1]   "normal" 3 unit   "roughness" 1 in [-1, 1]   "depth" 1, scene units
  *            "direct" 3: rendering layer under the flash    "indirect" 3: global-illumination residual for "direct"
  *            "relit_direct" 3: by the relighting decoder    "relit_brdf" 3: by the rendering layer
  *            Maps mean nothing outside the mask; images are zero there. A variant without global illumination has no
  *            "indirect", one that relights by BRDF no "light" and no "relit_direct" (nn_output_data: NULL). "indirect"
- * may dip below zero. training adds inputs "loss_mask" 1, "albedo_true" 3 and "roughness_true" 1 in [-1, 1],
- * "normal_true" 3, "depth_true" 1, "direct_true" 3, "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and
- * the losses "albedo", "normal", "depth", "roughness", "roughness_gradient", "direct", "indirect", "reconstruction",
- * "relight".
+ * may dip below zero. With "lighting": "both" the photograph shows the object under its flash and an environment at
+ * once: "environment_code" vector 27 is what the network takes that for, "environment" 3 what the rendering layer makes
+ * of it, "direct" includes it, and both relit images are under point light and environment. training adds inputs
+ * "loss_mask" 1, "albedo_true" 3 and "roughness_true" 1 in [-1, 1], "normal_true" 3, "depth_true" 1, "direct_true" 3,
+ * "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and the losses "albedo", "normal", "depth",
+ * "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"; for both lights also vector 27
+ * "environment_true" and the loss "environment".
  */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
@@ -23,7 +27,7 @@
 #include "base/status.h"
 #include "nn/nn.h"
 
-enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 9 };
+enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 10, MODEL_SH = 27 };
 
 /* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
 #define MODEL_FOV 60.0f
@@ -33,7 +37,7 @@ enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 9 };
 extern const char *const model_losses[MODEL_LOSSES];
 
 typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
-typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_SH, MODEL_LIGHT_BOTH } model_lighting;
+typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH } model_lighting;
 
 typedef struct model_config {
     char name[64];
@@ -43,7 +47,7 @@ typedef struct model_config {
     bool gated_attention;
     model_relight relight; /* by network: has a relighting decoder */
     bool global_illumination;
-    model_lighting lighting;  /* lighting code of 3, 27 or 30 */
+    model_lighting lighting;  /* the paper's settings A (point) and B (point and environment) */
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
 } model_config;
@@ -55,7 +59,7 @@ status model_config_read(const char *path, model_config *out);
 /* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
 char *model_config_write(const model_config *config);
 
-/* Length of the lighting code: 3, 27 or 30. */
+/* Length of the lighting code: 3 or 30. */
 int model_light_size(const model_config *config);
 
 /* Radiance above which the network sees no more: photographs whose white lies higher are scaled down before. */
@@ -66,11 +70,17 @@ int model_light_size(const model_config *config);
  * (radiance 1 in the published data, up to 2.5 in training) it stays flat. n values; in place is fine. */
 void model_encode_image(const float *linear, float *encoded, size_t n);
 
+/* An environment's nine coefficients (optics/sh.h) as the network sees them: scaled by what the clamped cosine keeps of
+ * their band, so that the mean square of a difference is that of the radiance of a white surface over all normals. In
+ * place is fine. */
+void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
+void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
+
 typedef enum model_part {
     MODEL_WHOLE,    /* everything a photograph goes through once */
     MODEL_TRAINING, /* the same with losses */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
-                       "mask"; output "indirect" */
+                       "mask", for both lights "environment"; output "indirect" */
 } model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);
 

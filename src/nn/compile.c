@@ -103,7 +103,8 @@ static void use_buffer(compilation *c, int *buffer, size_t bytes, int time)
 
 static bool backward_needs_input(nn_op op)
 {
-    return op_is_conv(op) || op_is_loss(op) || op == OP_NORM || op == OP_GATE || op == OP_NORMALIZE || op == OP_RENDER;
+    return op_is_conv(op) || op_is_loss(op) || op == OP_NORM || op == OP_GATE || op == OP_NORMALIZE ||
+           op == OP_RENDER || op == OP_ENVIRONMENT;
 }
 
 static bool backward_needs_output(const nn_step *step)

@@ -54,9 +54,11 @@ const char *op_name(nn_op op)
                                         "space_to_depth",
                                         "depth_to_space",
                                         "channel_mean",
+                                        "spatial_mean",
                                         "normalize",
                                         "reciprocal",
                                         "render",
+                                        "environment",
                                         "masked_l2",
                                         "masked_gradient_l2"};
     return names[op];
@@ -387,6 +389,15 @@ nn_node *nn_channel_mean(nn_graph *g, nn_node *x)
     return node;
 }
 
+nn_node *nn_spatial_mean(nn_graph *g, nn_node *x)
+{
+    nn_node *node = append1(g, OP_SPATIAL_MEAN, x);
+    if (!node) return NULL;
+    if (x->reduction == NN_VECTOR) return reject(g, "spatial_mean: the input is a vector already");
+    node->reduction = NN_VECTOR;
+    return node;
+}
+
 static bool is_float_of(const nn_node *node, const nn_node *x, int channels, const char *what)
 {
     if (x->is_float && x->channels == channels) return true;
@@ -422,6 +433,16 @@ nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float lig
     if (in->light->reduction != NN_VECTOR) return reject(g, "render: the light must be a vector");
     node->at.fov = fov;
     node->at.light_power = light_power;
+    return node;
+}
+
+nn_node *nn_environment(nn_graph *g, nn_node *albedo, nn_node *normal, nn_node *mask, nn_node *sh)
+{
+    nn_node *node = append(g, OP_ENVIRONMENT, (nn_node *[]){albedo, normal, sh, mask}, 4);
+    if (!node || !matches(node, normal, true) || !matches(node, mask, false)) return NULL;
+    if (!is_float_of(node, albedo, 3, "albedo") || !is_float_of(node, mask, 1, "mask")) return NULL;
+    if (!is_float_of(node, sh, 27, "sh")) return NULL;
+    if (sh->reduction != NN_VECTOR) return reject(g, "environment: the coefficients must be a vector");
     return node;
 }
 

@@ -40,6 +40,7 @@ static status infer_shape(const nn_options *o, value *v)
 bool lower_passes_gradient(const nn_node *node, int input)
 {
     if (op_is_loss(node->op)) return input == 0;
+    if (node->op == OP_ENVIRONMENT) return input < 3;
     return node->op != OP_RENDER || input < 4;
 }
 

@@ -76,6 +76,8 @@ nn_node *nn_space_to_depth(nn_graph *g, nn_node *x, int block);
 nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block);
 /* Mean over channels: C to 1. */
 nn_node *nn_channel_mean(nn_graph *g, nn_node *x);
+/* Mean over rows and columns: a vector. */
+nn_node *nn_spatial_mean(nn_graph *g, nn_node *x);
 /* Unit 3-vectors per pixel: x / sqrt(|x|² + 1e-12). */
 nn_node *nn_normalize(nn_graph *g, nn_node *x);
 /* 1 / (scale·x + shift): depth from the network's range by (0.4, 0.65). */
@@ -88,6 +90,11 @@ typedef struct nn_render_inputs {
     nn_node *albedo, *normal, *roughness, *depth, *mask, *light;
 } nn_render_inputs;
 nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float light_power);
+/* What the diffuse part of the same maps reflects of an environment known by their spherical harmonics
+ * (src/optics/sh.h): albedo/π · irradiance, times the mask, not clipped: three bands of a bright spot ring below zero a
+ * little, and the layer stays linear in sh. sh: vector of 27, coefficient by coefficient, three channels each. No
+ * gradient flows to mask. */
+nn_node *nn_environment(nn_graph *g, nn_node *albedo, nn_node *normal, nn_node *mask, nn_node *sh);
 
 /* Losses: scalars, summed with their weights into the program's total. mask has one channel.
  * (1/ΣM) Σ ((prediction - target) M)², summed over channels: the paper's Eq. 6. */

@@ -36,18 +36,76 @@ static inline void sh_accumulate(real sh[9][3], vec3 d, vec3 weighted_radiance)
     }
 }
 
+/* What the clamped cosine keeps of the band that coefficient i belongs to. */
+static inline real sh_cosine_band(int i)
+{
+    return i == 0 ? (real)3.14159265358979324 : i < 4 ? (real)2.09439510239319549 : (real)0.78539816339744831;
+}
+
 /* Irradiance on a surface of unit normal n; a Lambertian surface reflects albedo/π of it. */
 static inline vec3 sh_irradiance(const real sh[9][3], vec3 n)
 {
-    static const double band[9] = {3.14159265358979324, 2.09439510239319549, 2.09439510239319549,
-                                   2.09439510239319549, 0.78539816339744831, 0.78539816339744831,
-                                   0.78539816339744831, 0.78539816339744831, 0.78539816339744831};
     real basis[9];
     sh_basis(n, basis);
     vec3 e = {0, 0, 0};
     for (int i = 0; i < 9; i++)
-        e = vec3_fma(e, (real)band[i] * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
+        e = vec3_fma(e, sh_cosine_band(i) * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
     return e;
+}
+
+/* Gradient of weight · sh_irradiance(sh, n) by n, whose components count as three free numbers. */
+static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weight)
+{
+    real s[9];
+    for (int i = 0; i < 9; i++)
+        s[i] = sh_cosine_band(i) * vec3_dot(weight, vec3_make(sh[i][0], sh[i][1], sh[i][2]));
+    const real first = (real)0.48860251190291992, second = (real)1.0925484305920792;
+    return vec3_make(first * s[3] + second * (s[4] * n.y + s[7] * n.z + s[8] * n.x),
+                     first * s[1] + second * (s[4] * n.x + s[5] * n.z - s[8] * n.y),
+                     first * s[2] + second * (s[5] * n.y + s[7] * n.x) + (real)1.8923493915151202 * s[6] * n.z);
+}
+
+/* One channel's band 2 as the symmetric matrix q of dᵀ q d, and back. */
+static inline void sh_band2_matrix(const real sh[9][3], int channel, real q[3][3])
+{
+    const real pair = (real)0.5462742152960396, squares = (real)0.54627421529603959, polar = (real)0.31539156525252005;
+    q[0][0] = squares * sh[8][channel] - polar * sh[6][channel];
+    q[1][1] = -squares * sh[8][channel] - polar * sh[6][channel];
+    q[2][2] = 2 * polar * sh[6][channel];
+    q[0][1] = q[1][0] = pair * sh[4][channel];
+    q[1][2] = q[2][1] = pair * sh[5][channel];
+    q[0][2] = q[2][0] = pair * sh[7][channel];
+}
+
+static inline void sh_band2_from_matrix(real q[3][3], int channel, real sh[9][3])
+{
+    const real pair = (real)0.5462742152960396, polar = (real)0.31539156525252005;
+    sh[4][channel] = q[0][1] / pair;
+    sh[5][channel] = q[1][2] / pair;
+    sh[6][channel] = q[2][2] / (2 * polar);
+    sh[7][channel] = q[0][2] / pair;
+    sh[8][channel] = (q[0][0] - q[1][1]) / (2 * pair);
+}
+
+/* The coefficients of the environment turned by the orthogonal matrix m (rotation, reflection or both): what came from
+ * d comes from m d. */
+static inline void sh_turn(real sh[9][3], const real m[3][3])
+{
+    for (int c = 0; c < 3; c++) {
+        const real line[3] = {sh[3][c], sh[1][c], sh[2][c]};
+        real q[3][3], turned[3] = {0, 0, 0}, both[3][3] = {{0}};
+        sh_band2_matrix((const real(*)[3])sh, c, q);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                turned[i] += m[i][j] * line[j];
+                for (int k = 0; k < 9; k++)
+                    both[i][j] += m[i][k / 3] * q[k / 3][k % 3] * m[j][k % 3];
+            }
+        sh[3][c] = turned[0];
+        sh[1][c] = turned[1];
+        sh[2][c] = turned[2];
+        sh_band2_from_matrix(both, c, sh);
+    }
 }
 
 #endif

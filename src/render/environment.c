@@ -4,21 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "optics/latlong.h"
 #include "optics/sh.h"
 #include "render/sky.h"
 
 static const float pi = 3.14159265358979f;
 
-vec3 environment_direction(real u, real v)
-{
-    real around = (u - (real)0.5) * 2 * pi, down = v * pi, s = sinf(down);
-    return vec3_make(s * sinf(around), cosf(down), -s * cosf(around));
-}
-
 /* The place of a unit direction in the map, in texels. */
 static void place_of(const environment *env, vec3 d, float *x, float *y)
 {
-    float u = atan2f(d.x, -d.z) / (2 * pi) + 0.5f, v = acosf(fminf(1, fmaxf(-1, d.y))) / pi;
+    float u, v;
+    latlong_place(d, &u, &v);
     *x = u * (float)env->map.width;
     *y = v * (float)env->map.height;
 }
@@ -28,7 +24,7 @@ static float luminance(const float *c)
     return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
 }
 
-/* Solid angle of a texel of row y. */
+/* Solid angle of a texel of row y: latlong_solid_angle, from the stored cosines. */
 static float texel_solid_angle(const environment *env, int y)
 {
     return (env->cosines[y] - env->cosines[y + 1]) * 2 * pi / (float)env->map.width;
@@ -79,8 +75,8 @@ static void project_sh(environment *env)
         float angle = texel_solid_angle(env, y);
         for (int x = 0; x < env->map.width; x++) {
             const float *c = img_at(&env->map, x, y);
-            vec3 d = environment_direction(((float)x + 0.5f) / (float)env->map.width,
-                                           ((float)y + 0.5f) / (float)env->map.height);
+            vec3 d = latlong_direction(((float)x + 0.5f) / (float)env->map.width,
+                                       ((float)y + 0.5f) / (float)env->map.height);
             sh_accumulate(env->sh, d, vec3_make(c[0] * angle, c[1] * angle, c[2] * angle));
         }
     }

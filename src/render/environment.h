@@ -5,8 +5,7 @@
  *     vec3 l, radiance = environment_sample(&env, u1, u2, &l, &pdf);
  *     environment_free(&env);
  *
- * World up is +y. The map's top row is up; its columns run around the y axis, the middle one is straight ahead of the
- * camera (-z) and columns right of it lie to the camera's right. */
+ * Directions as in optics/latlong.h. */
 #ifndef MERLIN_RENDER_ENVIRONMENT_H
 #define MERLIN_RENDER_ENVIRONMENT_H
 
@@ -24,9 +23,6 @@ typedef struct environment {
     float *columns; /* height × (width + 1): cumulative probability within a row */
     float sh[9][3]; /* radiance coefficients */
 } environment;
-
-/* The unit direction of a place (0..1, 0..1) of a latitude-longitude map. */
-vec3 environment_direction(real u, real v);
 
 /* A sky, a room or a studio at random, its mean radiance that of ordinary exposures. */
 status environment_procedural(rng *r, environment *out);

@@ -50,6 +50,10 @@ status sample_write(const char *path, const sample *s);
 status sample_read(const char *path, sample *out);
 /* Reads everything but env, bounces and targets: what training needs, faster. */
 status sample_read_training(const char *path, sample *out);
+/* The same and env. Refuses files rendered without. */
+status sample_read_training_environment(const char *path, sample *out);
+/* Only the environment's coefficients, from the file's header. Refuses files rendered without. */
+status sample_read_sh(const char *path, float sh[9][3]);
 
 /* "folder/000123.exr", malloc'ed. */
 char *sample_path(const char *folder, uint64_t index);

@@ -14,8 +14,12 @@ enum { MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS, MAX_ATTRIBUTES = 16 + SAMPLE_
 /* A layer's channels: one image and the endings of its channels' names. */
 typedef struct layer {
     const char *name, *endings;
-    size_t offset;              /* of the img within the sample */
-    enum { ALWAYS, FULL } when; /* FULL: only by sample_read, and only where the file has it */
+    size_t offset; /* of the img within the sample */
+    enum {
+        ALWAYS,
+        LIT,  /* by sample_read_training_environment, and by sample_read where the file has it */
+        FULL, /* only by sample_read, and only where the file has it */
+    } when;
 } layer;
 
 static const layer layers[] = {
@@ -23,7 +27,7 @@ static const layer layers[] = {
     {"roughness", "Y", offsetof(sample, roughness), ALWAYS}, {"depth", "Z", offsetof(sample, depth), ALWAYS},
     {"mask", "A", offsetof(sample, mask), ALWAYS},           {"direct", "RGB", offsetof(sample, direct), ALWAYS},
     {"indirect", "RGB", offsetof(sample, indirect), ALWAYS}, {"bounce2", "RGB", offsetof(sample, bounce2), FULL},
-    {"bounce3", "RGB", offsetof(sample, bounce3), FULL},     {"env", "RGB", offsetof(sample, env), FULL},
+    {"bounce3", "RGB", offsetof(sample, bounce3), FULL},     {"env", "RGB", offsetof(sample, env), LIT},
 };
 enum { LAYER_COUNT = sizeof layers / sizeof *layers };
 
@@ -185,20 +189,28 @@ static status make_targets(const exr_file *f, const char *path, sample *s)
     return OK;
 }
 
+typedef enum extent { READ_TRAINING, READ_TRAINING_ENVIRONMENT, READ_ALL } extent;
+
+static bool is_wanted(const exr_file *f, const layer *l, extent what)
+{
+    char first[NAME_SIZE];
+    snprintf(first, sizeof first, "%s.%c", l->name, l->endings[0]);
+    if (l->when == LIT && what == READ_TRAINING_ENVIRONMENT) return true;
+    return l->when == ALWAYS || (what == READ_ALL && exr_has_channel(f, first));
+}
+
 /* Makes the images to be read and lists their channels. */
-static status plan(const exr_file *f, const char *path, bool full, sample *s, channel_list *list)
+static status plan(const exr_file *f, const char *path, extent what, sample *s, channel_list *list)
 {
     list->count = 0;
     for (int i = 0; i < LAYER_COUNT; i++) {
-        char first[NAME_SIZE];
-        snprintf(first, sizeof first, "%s.%c", layers[i].name, layers[i].endings[0]);
-        if (layers[i].when == FULL && (!full || !exr_has_channel(f, first))) continue;
+        if (!is_wanted(f, &layers[i], what)) continue;
         img *image = layer_image(s, &layers[i]);
         status st = img_new(image, exr_width(f), exr_height(f), (int)strlen(layers[i].endings));
         if (st != OK) return fail_in(st, "cannot read %s", path);
         add_layer(list, layers[i].name, layers[i].endings, image);
     }
-    if (!full) return OK;
+    if (what != READ_ALL) return OK;
     status st = make_targets(f, path, s);
     add_targets(list, s);
     return st;
@@ -217,7 +229,12 @@ static status check_finite(const char *path, const channel_list *list)
     return OK;
 }
 
-static status read_open(exr_file *f, const char *path, bool full, sample *s)
+static status no_environment(const char *path)
+{
+    return fail(ERROR_INPUT, "%s was rendered without environment: render samples without --no-env", path);
+}
+
+static status read_open(exr_file *f, const char *path, extent what, sample *s)
 {
     struct {
         channel_list channels;
@@ -227,7 +244,8 @@ static status read_open(exr_file *f, const char *path, bool full, sample *s)
     channel_list *list = &work->channels;
     read_identity(f, s);
     status st = read_optics(f, path, s);
-    if (st == OK) st = plan(f, path, full, s, list);
+    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !exr_has_channel(f, "env.R")) st = no_environment(path);
+    if (st == OK) st = plan(f, path, what, s, list);
     if (st == OK) {
         for (size_t i = 0; i < list->count; i++)
             work->targets[i] =
@@ -239,13 +257,13 @@ static status read_open(exr_file *f, const char *path, bool full, sample *s)
     return st;
 }
 
-static status read_sample(const char *path, bool full, sample *out)
+static status read_sample(const char *path, extent what, sample *out)
 {
     exr_file *f;
     *out = (sample){0};
     status st = exr_open(path, &f);
     if (st != OK) return st;
-    st = read_open(f, path, full, out);
+    st = read_open(f, path, what, out);
     exr_close(f);
     if (st != OK) sample_free(out);
     return st;
@@ -253,12 +271,27 @@ static status read_sample(const char *path, bool full, sample *out)
 
 status sample_read(const char *path, sample *out)
 {
-    return read_sample(path, true, out);
+    return read_sample(path, READ_ALL, out);
 }
 
 status sample_read_training(const char *path, sample *out)
 {
-    return read_sample(path, false, out);
+    return read_sample(path, READ_TRAINING, out);
+}
+
+status sample_read_training_environment(const char *path, sample *out)
+{
+    return read_sample(path, READ_TRAINING_ENVIRONMENT, out);
+}
+
+status sample_read_sh(const char *path, float sh[9][3])
+{
+    exr_file *f;
+    status st = exr_open(path, &f);
+    if (st != OK) return st;
+    if (!exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27)) st = no_environment(path);
+    exr_close(f);
+    return st;
 }
 
 char *sample_path(const char *folder, uint64_t index)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "base/vec.h"
+#include "optics/latlong.h"
 #include "render/environment.h"
 #include "scene/noise.h"
 
@@ -197,8 +197,7 @@ void sky_fill(img *map, rng *r)
     studio lit = random_studio(r);
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
-            vec3 d =
-                environment_direction(((float)x + 0.5f) / (float)map->width, ((float)y + 0.5f) / (float)map->height);
+            vec3 d = latlong_direction(((float)x + 0.5f) / (float)map->width, ((float)y + 0.5f) / (float)map->height);
             vec3 c = kind < 0.45f ? outdoors_at(&out, d) : kind < 0.8f ? room_at(&in, d) : studio_at(&lit, d);
             float *texel = img_at(map, x, y);
             texel[0] = fmaxf(0, c.x);

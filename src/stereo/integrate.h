@@ -8,7 +8,8 @@
 #include "stereo/capture.h"
 
 typedef struct pst_integration {
-    bool preserve_edges; /* discontinuity-preserving variant instead of least squares */
+    bool preserve_edges; /* discontinuity-preserving variant instead of least squares: keeps steps that the normals
+                          * betray, but may also cut where the normals have errors of their own */
     const img *prior;    /* 1 channel depth pulled toward weakly, or NULL */
     float prior_weight;
 } pst_integration;

@@ -52,8 +52,9 @@ static bool scan_losses(const char *text, trn_losses *l)
     char *end;
     l->count = strtoll(text, &end, 10);
     l->total = strtod(end, &end);
+    /* a checkpoint of an earlier version may lack the last losses: its model has none of them */
     for (int i = 0; i < MODEL_LOSSES; i++)
-        l->each[i] = strtod(end, &end);
+        l->each[i] = *end ? strtod(end, &end) : (double)NAN;
     return *end == 0 && end != text;
 }
 

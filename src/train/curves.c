@@ -82,8 +82,9 @@ static void free_table(table *t)
 static void read_row(const char *line, table *t)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        char *end;
-        float x = strtof(line, &end);
+        char *end = (char *)line;
+        /* a row of an earlier version may have fewer losses */
+        float x = *line == '\n' || *line == 0 ? NAN : strtof(line, &end);
         t->value[c][t->rows] = end == line ? NAN : x;
         line = end + strcspn(end, ",\n");
         if (*line == ',') line++;

@@ -6,18 +6,21 @@
 
 #include "base/file.h"
 #include "base/half.h"
+#include "optics/sh.h"
 #include "render/sample.h"
 
-enum { VALUES = 15 };
+enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
 
 /* Inside pixels only, in reading order. */
 typedef struct packed {
     uint32_t count;
-    uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × VALUES halves */
+    float sh[9][3];
+    uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × values halves */
 } packed;
 
 struct trn_dataset {
-    int size;
+    trn_dataset_options options;
+    size_t values; /* a pixel */
     size_t count, memory_limit;
     char **paths;
     _Atomic(packed *) *kept;
@@ -25,14 +28,15 @@ struct trn_dataset {
     atomic_int generator_version;
 };
 
-status trn_dataset_open(const char *folder, int size, double memory_gib, trn_dataset **out)
+status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out)
 {
     *out = NULL;
     static const char *const endings[] = {".exr", NULL};
     trn_dataset *d = calloc(1, sizeof *d);
     if (!d) return fail(ERROR_MEMORY, "out of memory opening %s", folder);
-    d->size = size;
-    d->memory_limit = (size_t)(memory_gib * 0x1p30);
+    d->options = *options;
+    d->values = options->environment ? VALUES_WITH_ENVIRONMENT : VALUES;
+    d->memory_limit = (size_t)(options->memory_gib * 0x1p30);
     status s = file_list(folder, endings, &d->paths, &d->count);
     if (s == OK && d->count == 0)
         s = fail(ERROR_INPUT, "%s holds no .exr samples (make some with merlin render)", folder);
@@ -76,14 +80,20 @@ static uint16_t *put3(uint16_t *to, const float *from)
     return to;
 }
 
-static packed *pack(const sample *s, size_t pixels)
+static size_t packed_bytes(const trn_dataset *d, size_t count)
 {
-    size_t count = 0;
+    return sizeof(packed) + count * (d->values + 2) * sizeof(uint16_t);
+}
+
+static packed *pack(const trn_dataset *d, const sample *s)
+{
+    size_t count = 0, pixels = (size_t)s->mask.width * (size_t)s->mask.height;
     for (size_t i = 0; i < pixels; i++)
         count += s->mask.data[i] > 0;
-    packed *p = calloc(1, sizeof *p + count * (VALUES + 2) * sizeof(uint16_t));
+    packed *p = calloc(1, packed_bytes(d, count));
     if (!p) return NULL;
     p->count = (uint32_t)count;
+    memcpy(p->sh, s->sh, sizeof p->sh);
     uint16_t *place = p->data, *value = p->data + 2 * count;
     for (size_t i = 0; i < pixels; i++) {
         if (!(s->mask.data[i] > 0)) continue;
@@ -96,6 +106,7 @@ static packed *pack(const sample *s, size_t pixels)
         *value++ = float_to_half(s->roughness.data[i]);
         *value++ = float_to_half(s->depth.data[i]);
         *value++ = float_to_half(s->mask.data[i]);
+        if (s->env.data) value = put3(value, s->env.data + 3 * i);
     }
     return p;
 }
@@ -103,14 +114,16 @@ static packed *pack(const sample *s, size_t pixels)
 static status read_packed(trn_dataset *d, size_t i, packed **out)
 {
     sample one;
-    status s = sample_read_training(d->paths[i], &one);
+    int size = d->options.size;
+    status s = d->options.environment ? sample_read_training_environment(d->paths[i], &one)
+                                      : sample_read_training(d->paths[i], &one);
     if (s != OK) return s;
-    if (one.mask.width != d->size || one.mask.height != d->size) {
+    if (one.mask.width != size || one.mask.height != size) {
         s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
-                 one.mask.height, d->size, d->size);
+                 one.mask.height, size, size);
     } else {
         d->generator_version = one.generator_version;
-        *out = pack(&one, (size_t)d->size * (size_t)d->size);
+        *out = pack(d, &one);
         if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
     }
     sample_free(&one);
@@ -120,7 +133,7 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
 /* Keeps p if there is room. Returns true if the data set owns it now. */
 static bool keep(trn_dataset *d, size_t i, packed *p)
 {
-    size_t bytes = sizeof *p + (size_t)p->count * (VALUES + 2) * sizeof(uint16_t);
+    size_t bytes = packed_bytes(d, p->count);
     if (atomic_fetch_add(&d->memory_used, bytes) + bytes > d->memory_limit) {
         atomic_fetch_sub(&d->memory_used, bytes);
         return false;
@@ -156,6 +169,17 @@ static void turn_normal(int orientation, float n[3])
     }
 }
 
+void trn_turn_sh(int orientation, float sh[9][3])
+{
+    float columns[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, matrix[3][3];
+    for (int j = 0; j < 3; j++) {
+        turn_normal(orientation, columns[j]);
+        for (int i = 0; i < 3; i++)
+            matrix[i][j] = columns[j][i];
+    }
+    sh_turn(sh, (const float(*)[3])matrix);
+}
+
 static const uint16_t *get3(const uint16_t *from, float *to)
 {
     for (int c = 0; c < 3; c++)
@@ -170,6 +194,7 @@ static void clear(const trn_view *v)
     float *const one[] = {v->roughness, v->depth, v->mask};
     for (int i = 0; i < 4; i++)
         memset(three[i], 0, 3 * n * sizeof(float));
+    if (v->env) memset(v->env, 0, 3 * n * sizeof(float));
     for (int i = 0; i < 3; i++)
         memset(one[i], 0, n * sizeof(float));
 }
@@ -188,7 +213,25 @@ static void unpack(const packed *p, int orientation, const trn_view *v)
         v->roughness[i] = half_to_float(*value++);
         v->depth[i] = half_to_float(*value++);
         v->mask[i] = half_to_float(*value++);
+        if (v->env) value = get3(value, v->env + 3 * i);
     }
+    if (!v->sh) return;
+    float sh[9][3];
+    memcpy(sh, p->sh, sizeof sh);
+    trn_turn_sh(orientation, sh);
+    memcpy(v->sh, sh, sizeof sh);
+}
+
+status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3])
+{
+    const packed *p = d->kept[i];
+    status s = OK;
+    if (p)
+        memcpy(sh, p->sh, sizeof p->sh);
+    else
+        s = sample_read_sh(d->paths[i], sh);
+    trn_turn_sh(orientation, sh);
+    return s;
 }
 
 status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out)

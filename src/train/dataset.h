@@ -2,7 +2,7 @@
  * the eight orientations.
  *
  *     trn_dataset *d;
- *     status s = trn_dataset_open("data/train", 128, 11.0, &d);
+ *     status s = trn_dataset_open("data/train", &(trn_dataset_options){.size = 128, .memory_gib = 11}, &d);
  *     trn_view v = ...;                                    where in the batch it goes
  *     if (s == OK) s = trn_dataset_get(d, 17, 0, &v);
  *     trn_dataset_close(d);
@@ -12,6 +12,7 @@
 #ifndef MERLIN_TRAIN_DATASET_H
 #define MERLIN_TRAIN_DATASET_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/status.h"
@@ -28,23 +29,36 @@ typedef struct trn_view {
     float *mask;      /* 1, coverage until trn_prepare makes it 0 or 1 */
     float *direct;    /* 3 */
     float *indirect;  /* 3 */
+    /* of a data set with environments, else NULL: */
+    float *env; /* 3, the object under its environment alone */
+    float *sh;  /* 27 values: that environment; model_encode_sh of it after trn_prepare */
     /* filled by trn_prepare */
     float *image, *reconstruction, *relit; /* 3 */
     float *loss_mask;                      /* 1 */
     float *light;                          /* 3 values */
+    float *target_sh;                      /* 27 values, model_encode_sh: the target's environment; or NULL */
 } trn_view;
 
 /* An orientation: the camera, its flash and the frame look the same after each of the square's eight symmetries, so a
  * turned sample is as true as the original. Sum of: */
 enum { TRN_FLIP_X = 1, TRN_FLIP_Y = 2, TRN_TRANSPOSE = 4, TRN_ORIENTATIONS = 8 };
 
-/* Refuses an empty folder. size: what every sample's width and height must be. Samples read are kept until they fill
- * memory_gib. */
-status trn_dataset_open(const char *folder, int size, double memory_gib, trn_dataset **out);
+typedef struct trn_dataset_options {
+    int size;          /* what every sample's width and height must be */
+    double memory_gib; /* samples read are kept until they fill this */
+    bool environment;  /* with the images under environments; samples without are refused */
+} trn_dataset_options;
+
+/* Refuses an empty folder. */
+status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out);
 void trn_dataset_close(trn_dataset *d);
 size_t trn_dataset_count(const trn_dataset *d);
 /* Everything outside the outline becomes zero. Safe to call from several threads. */
 status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out);
+/* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
+status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);
+/* What a turn makes of an environment's coefficients. */
+void trn_turn_sh(int orientation, float sh[9][3]);
 /* Of the first sample read; 0 before. */
 int trn_dataset_generator_version(const trn_dataset *d);
 

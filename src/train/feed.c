@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "train/prepare.h"
 
-enum { MESSAGE = 512, BUFFERS = 12 };
+enum { MESSAGE = 512, POINT_BUFFERS = 12, BUFFERS = 15 };
 
 /* What one thread does for one place of the batch. Failures keep their words, which are per thread. */
 typedef struct item {
@@ -29,7 +29,7 @@ struct trn_feed {
 
 /* Where the program wants each of the view's fields; a vector's pixels count as one. */
 typedef struct field {
-    const char *input;
+    const char *input; /* NULL: none */
     int channels;
     bool vector;
     size_t offset; /* of the pointer in trn_view */
@@ -48,6 +48,10 @@ static const field fields[BUFFERS] = {
     {"relit_true", 3, false, offsetof(trn_view, relit)},
     {"loss_mask", 1, false, offsetof(trn_view, loss_mask)},
     {"light_position", 3, true, offsetof(trn_view, light)},
+    /* for both lights only: */
+    {NULL, 3, false, offsetof(trn_view, env)},
+    {"environment_true", MODEL_SH, true, offsetof(trn_view, sh)},
+    {NULL, MODEL_SH, true, offsetof(trn_view, target_sh)},
 };
 
 static status connect(trn_feed *f, nn_program *program, int which)
@@ -55,7 +59,7 @@ static status connect(trn_feed *f, nn_program *program, int which)
     const field *d = &fields[which];
     size_t size = (size_t)f->source.config->size;
     size_t stride = (size_t)d->channels * (d->vector ? 1 : size * size);
-    float *data = nn_input_data(program, d->input);
+    float *data = d->input ? nn_input_data(program, d->input) : NULL;
     if (!data) data = f->spare[which] = calloc(f->batch * stride, sizeof *data);
     if (!data) return fail(ERROR_MEMORY, "out of memory for a batch of %zu", f->batch);
     for (size_t i = 0; i < f->batch; i++) {
@@ -75,7 +79,7 @@ status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **ou
     f->batch = (size_t)source->config->batch;
     f->items = calloc(f->batch, sizeof *f->items);
     status s = f->items ? OK : fail(ERROR_MEMORY, "out of memory for a batch");
-    for (int i = 0; i < BUFFERS && s == OK; i++)
+    for (int i = 0; i < (source->environment ? BUFFERS : POINT_BUFFERS) && s == OK; i++)
         s = connect(f, program, i);
     f->light_code = nn_input_data(program, "light");
     if (s != OK) {
@@ -95,6 +99,24 @@ void trn_feed_free(trn_feed *f)
     free(f);
 }
 
+/* The target's environment is another sample's, turned and exposed at random. Draws are of a stream of their own, so
+ * that the point setting's stay what they are. */
+static status draw_environments(const trn_feed *f, const item *it, trn_lighting *out)
+{
+    const trn_source *from = &f->source;
+    rng r = rng_at((uint64_t)from->config->seed, 2 * it->presentation + f->validation, TRN_STREAM_ENVIRONMENT);
+    size_t first = f->validation ? from->training_count : 0;
+    size_t count = f->validation ? trn_dataset_count(from->data) - first : from->training_count;
+    size_t other = first + (size_t)rng_below(&r, (int)count);
+    int orientation = rng_below(&r, TRN_ORIENTATIONS);
+    out->strength = trn_draw_strength(&r);
+    float strength = trn_draw_strength(&r);
+    status s = trn_dataset_sh(from->data, other, orientation, out->target_sh);
+    for (int i = 0; i < MODEL_SH; i++)
+        out->target_sh[i / 3][i % 3] *= strength;
+    return s;
+}
+
 static void fill_item(void *context, size_t i)
 {
     trn_feed *f = context;
@@ -102,12 +124,13 @@ static void fill_item(void *context, size_t i)
     const train_config *c = f->source.config;
     rng r =
         rng_at((uint64_t)c->seed, it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
-    vec3 light = trn_draw_light(&r);
+    trn_lighting lighting = {.target = trn_draw_light(&r)};
     int orientation = f->validation ? 0 : rng_below(&r, TRN_ORIENTATIONS);
     trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
     it->result = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
+    if (it->result == OK && f->source.environment) it->result = draw_environments(f, it, &lighting);
     if (it->result == OK)
-        trn_prepare(&it->view, f->source.input_global, &lens, light, &r);
+        trn_prepare(&it->view, f->source.input_global, &lens, &lighting, &r);
     else
         snprintf(it->message, MESSAGE, "%s", status_message());
 }
@@ -117,9 +140,12 @@ static status fill(trn_feed *f)
     parallel_for(f->batch, fill_item, f);
     for (size_t i = 0; i < f->batch; i++)
         if (f->items[i].result != OK) return fail(f->items[i].result, "%s", f->items[i].message);
-    if (f->light_code)
-        for (size_t i = 0; i < f->batch; i++)
-            memcpy(f->light_code + 3 * i, f->items[i].view.light, 3 * sizeof(float));
+    size_t code = f->source.environment ? 3 + MODEL_SH : 3;
+    for (size_t i = 0; i < f->batch && f->light_code; i++) {
+        memcpy(f->light_code + code * i, f->items[i].view.light, 3 * sizeof(float));
+        if (f->source.environment)
+            memcpy(f->light_code + code * i + 3, f->items[i].view.target_sh, MODEL_SH * sizeof(float));
+    }
     return OK;
 }
 

@@ -13,6 +13,7 @@ typedef struct trn_source {
     trn_dataset *data;
     const train_config *config;
     bool input_global;
+    bool environment; /* setting B; the data set has environments */
     size_t training_count;
 } trn_source;
 

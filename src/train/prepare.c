@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "image/write.h"
+#include "optics/ambient.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 
@@ -52,6 +53,11 @@ static float photographed(const trn_camera *lens, float radiance, int channel, r
     return x * lens->white;
 }
 
+float trn_draw_strength(rng *r)
+{
+    return expf(rng_range(r, logf(0.1f), 0));
+}
+
 static void take_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
@@ -60,6 +66,7 @@ static void take_photograph(const trn_view *v, bool global, const trn_camera *le
         if (v->mask[i] <= 0.5f) continue;
         for (int c = 0; c < 3; c++) {
             float radiance = v->direct[3 * i + (size_t)c] + (global ? v->indirect[3 * i + (size_t)c] : 0.0f);
+            if (v->env) radiance += v->env[3 * i + (size_t)c];
             v->image[3 * i + (size_t)c] = photographed(lens, radiance, c, noise);
         }
         model_encode_image(v->image + 3 * i, v->image + 3 * i, 3);
@@ -96,21 +103,106 @@ void trn_render(const trn_view *maps, vec3 light, float *out)
     }
 }
 
-void trn_prepare(const trn_view *v, bool global, const trn_camera *lens, vec3 light, rng *noise)
+static void add3(float *to, size_t i, vec3 v)
+{
+    to[3 * i] += v.x;
+    to[3 * i + 1] += v.y;
+    to[3 * i + 2] += v.z;
+}
+
+void trn_add_environment(const trn_view *maps, const float sh[9][3], float *image)
+{
+    size_t pixels = (size_t)maps->size * (size_t)maps->size;
+    for (size_t i = 0; i < pixels; i++) {
+        if (maps->mask[i] <= 0) continue;
+        vec3 white = vec3_scale(sh_irradiance(sh, at3(maps->normal, i)), maps->mask[i] / BRDF_PI);
+        add3(image, i, vec3_mul(white, at3(maps->albedo, i)));
+    }
+}
+
+/* image -= what the specular lobe reflects of the environment, times coverage. */
+static void subtract_highlights(const trn_view *maps, const float sh[9][3], float *image)
+{
+    int size = maps->size;
+    camera c = {size, size, MODEL_FOV};
+    for (int y = 0; y < size; y++) {
+        for (int x = 0; x < size; x++) {
+            size_t i = (size_t)y * (size_t)size + (size_t)x;
+            if (maps->mask[i] <= 0) continue;
+            vec3 view = vec3_scale(camera_ray(&c, (float)x + 0.5f, (float)y + 0.5f), -1);
+            vec3 reflected = ambient_specular(sh, maps->roughness[i], at3(maps->normal, i), view);
+            add3(image, i, vec3_scale(reflected, -maps->mask[i]));
+        }
+    }
+}
+
+/* Environment image and coefficients at the strength of this presentation. */
+static void scale_environment(const trn_view *v, float strength)
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    for (size_t i = 0; i < values; i++)
+        v->env[i] *= strength;
+    for (int i = 0; i < MODEL_SH; i++)
+        v->sh[i] *= strength;
+}
+
+/* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Light of later
+ * bounces does not exceed the first's: what does is a highlight that the coefficients do not know. */
+static void add_environment(const trn_view *v, const float sh[9][3])
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    float *rest = v->env, *shaded = v->reconstruction; /* which is filled later */
+    memset(shaded, 0, values * sizeof *shaded);
+    trn_add_environment(v, sh, shaded);
+    subtract_highlights(v, sh, rest);
+    for (size_t i = 0; i < values; i++) {
+        v->direct[i] += shaded[i];
+        v->indirect[i] += fminf(rest[i] - shaded[i], fmaxf(shaded[i], 0));
+    }
+}
+
+/* The target under both lights, clipped as the rendering layer clips. */
+static void add_target_environment(const trn_view *v, const float sh[9][3])
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    trn_add_environment(v, sh, v->relit);
+    for (size_t i = 0; i < values; i++)
+        v->relit[i] = v->mask[i / 3] > 0.5f ? fminf(fmaxf(v->relit[i], 0.0f), 1.0f) : 0.0f;
+    model_encode_sh(sh, v->target_sh);
+}
+
+/* Masks become binary, maps go to the network's ranges. */
+static void convert(const trn_view *v)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
-    take_photograph(v, global, lens, noise);
-    trn_render(v, light, v->relit);
     for (size_t i = 0; i < pixels; i++) {
         v->loss_mask[i] = v->mask[i] >= 0.999f ? 1.0f : 0.0f; /* coverage was rounded to half */
         v->mask[i] = v->mask[i] > 0.5f ? 1.0f : 0.0f;
         v->roughness[i] = 2 * v->roughness[i] - 1;
     }
     for (size_t i = 0; i < 3 * pixels; i++) {
-        v->direct[i] = fminf(v->direct[i], 1.0f);
         v->reconstruction[i] = v->direct[i] + v->indirect[i];
         v->albedo[i] = 2 * v->albedo[i] - 1;
     }
+}
+
+void trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise)
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    vec3 light = lighting->target;
+    if (v->env) scale_environment(v, lighting->strength);
+    take_photograph(v, global, lens, noise);
+    trn_render(v, light, v->relit);
+    for (size_t i = 0; i < values; i++)
+        v->direct[i] = fminf(v->direct[i], 1.0f);
+    if (v->env) {
+        float sh[9][3];
+        memcpy(sh, v->sh, sizeof sh);
+        add_environment(v, (const float(*)[3])sh);
+        model_encode_sh((const float(*)[3])sh, v->sh);
+        add_target_environment(v, lighting->target_sh);
+    }
+    convert(v);
     v->light[0] = light.x;
     v->light[1] = light.y;
     v->light[2] = light.z;

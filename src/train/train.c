@@ -57,9 +57,6 @@ static status read_configuration(run *r)
 {
     status s = train_config_read(r->options->config, &r->model, &r->training);
     if (s != OK) return s;
-    if (r->model.lighting != MODEL_LIGHT_POINT)
-        return fail(ERROR_USAGE, "%s: training knows point lights only, \"lighting\" must be \"point\"",
-                    r->options->config);
     r->model_json = model_config_write(&r->model);
     r->training_json = train_config_write(&r->training);
     return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
@@ -84,9 +81,15 @@ static status open_output(run *r)
     return OK;
 }
 
+static bool is_lit_by_both(const run *r)
+{
+    return r->model.lighting == MODEL_LIGHT_BOTH;
+}
+
 static status open_data(run *r)
 {
-    status s = trn_dataset_open(r->options->data, r->training.size, r->training.memory_gib, &r->data);
+    trn_dataset_options options = {r->training.size, r->training.memory_gib, is_lit_by_both(r)};
+    status s = trn_dataset_open(r->options->data, &options, &r->data);
     if (s != OK) return s;
     size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
     if (count <= held_back)
@@ -101,7 +104,7 @@ static status build(run *r)
     const train_config *c = &r->training;
     nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
-    trn_source source = {r->data, c, r->model.input_global, r->training_count};
+    trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
     status s = model_build(&r->model, MODEL_TRAINING, &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK && r->options->init) s = nn_params_load(r->params, r->options->init);

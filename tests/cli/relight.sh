@@ -45,6 +45,26 @@ succeeds orbit relight disc.merlin --orbit 5 -o orbit
 present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.png
 absent orbit/frame_005.png
 
+echo "surroundings, alone and beside a light"
+radiance room.hdr 16 5
+succeeds room relight disc.merlin --env room.hdr -o room
+present room/relit_000.png room/relit.png
+absent room/relit_001.png
+succeeds turned relight disc.merlin --env room.hdr --rotate 90 -o turned
+cmp -s room/relit_000.png turned/relit_000.png && complain "turned surroundings give the same picture"
+succeeds whole relight disc.merlin --env room.hdr --env-exposure 1 --light 0.5,0.2,-0.4 -o whole
+cmp -s room/relit_000.png whole/relit_000.png && complain "a light beside the surroundings makes no difference"
+succeeds around relight disc.merlin --env room.hdr --orbit 3 -o around
+present around/relit_000.png around/frame_00{0..2}.png around/orbit.webp
+cmp -s around/frame_000.png around/frame_001.png && complain "the surroundings do not go round"
+refuses 2 'want an --env' relight disc.merlin --light 0,0,0 --rotate 90
+refuses 2 'without --env' relight disc.merlin --env room.hdr --dome 5
+refuses 2 '--rotate' relight disc.merlin --env room.hdr --rotate left
+refuses 2 'relight by BRDF' relight disc.merlin --env room.hdr --by network -o none
+refuses 2 'point lights only' relight disc.merlin --env room.hdr --light 0,0,0 --by network -o none
+refuses 1 'missing.hdr' relight disc.merlin --env missing.hdr -o none
+absent none
+
 echo "wrong use"
 refuses 2 'no photograph' relight
 refuses 2 'no light' relight disc.merlin

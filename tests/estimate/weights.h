@@ -2,6 +2,7 @@
 #ifndef MERLIN_TESTS_ESTIMATE_WEIGHTS_H
 #define MERLIN_TESTS_ESTIMATE_WEIGHTS_H
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,13 +24,15 @@ static inline status write_params(const char *path, nn_params *params, const cha
     return s;
 }
 
-/* The shipped model's configuration, a few channels wide. */
-static inline status write_random_weights(const char *path)
+/* A configuration of configs/, a few channels wide. */
+static inline status write_random_weights_of(const char *name, const char *path)
 {
+    char from[512];
+    snprintf(from, sizeof from, "%s/configs/%s.json", MERLIN_SOURCE_DIR, name);
     model_config config;
     nn_graph *g = NULL;
     nn_params *params = NULL;
-    status s = model_config_read(MERLIN_SOURCE_DIR "/configs/merlin-point.json", &config);
+    status s = model_config_read(from, &config);
     for (int i = 0; i < MODEL_LEVELS; i++)
         config.widths[i] = config.gi_widths[i] = 16;
     char *json = s == OK ? model_config_write(&config) : NULL;
@@ -40,6 +43,11 @@ static inline status write_random_weights(const char *path)
     nn_params_free(params);
     nn_graph_free(g);
     return s;
+}
+
+static inline status write_random_weights(const char *path)
+{
+    return write_random_weights_of("merlin-point", path);
 }
 
 #endif

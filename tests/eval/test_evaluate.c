@@ -131,6 +131,9 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_int_equal(r.all.count[EVAL_TRACED_NETWORK][EVAL_MODEL], 5);
     /* the targets of this sample are the flash picture itself */
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_UNCHANGED) - 1) < 1e-9);
+    /* which the true maps give back, with nothing in shadow, to half floats' 0.05 % */
+    assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_TRUE_MAPS) - 1) < 5e-4);
+    assert_true(fabs(eval_score(&r.all, EVAL_TRACED_SHADOWS, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(file_exists(f->figure));
 }
 
@@ -209,6 +212,35 @@ static void a_verdict_compares_with_the_better_trivial_answer(void **state)
     assert_false(eval_judge(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
 }
 
+static void remove_environments(const char *folder)
+{
+    for (uint64_t i = 0; i < SAMPLES; i++) {
+        char *path = sample_path(folder, i);
+        sample s;
+        assert_int_equal(sample_read(path, &s), OK);
+        img_free(&s.env);
+        assert_int_equal(sample_write(path, &s), OK);
+        sample_free(&s);
+        free(path);
+    }
+}
+
+static void models_of_both_lights_are_shown_the_environment_too(void **state)
+{
+    const fixture *f = *state;
+    model_config both = tiny;
+    both.lighting = MODEL_LIGHT_BOTH;
+    write_weights(f->weights, &both);
+    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_true(isfinite(eval_score(&r.all, EVAL_RECONSTRUCTION, EVAL_MODEL)));
+    assert_int_equal(r.all.count[EVAL_RELIT_NETWORK][EVAL_MODEL], 0);
+    remove_environments(f->data);
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "--no-env"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +249,7 @@ int main(void)
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
+        cmocka_unit_test(models_of_both_lights_are_shown_the_environment_too),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

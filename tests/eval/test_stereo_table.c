@@ -61,8 +61,8 @@ static void read_back(const sample *s, stereo_object *out)
     unlink(path);
 }
 
-/* The ball is half as wide as the frame, so that the frame is cut to it: the sight of every pixel must stay what it was.
- * A normal on the ball and its pixel's ray fix each other: the ray's point is centre + radius · normal. */
+/* The ball is half as wide as the frame, so that the frame is cut to it: the sight of every pixel must stay what it
+ * was. A normal on the ball and its pixel's ray fix each other: the ray's point is centre + radius · normal. */
 static void a_sample_is_cut_to_its_object_and_keeps_its_camera(void **state)
 {
     (void)state;

@@ -43,6 +43,9 @@ static nn_graph *build_net(void)
     nn_node *roughness = nn_tanh(g, nn_channel_mean(g, nn_slice(g, head, 6, 3)));
     nn_node *depth = nn_reciprocal(g, nn_tanh(g, nn_slice(g, head, 9, 1)), 0.4f, 0.65f);
     nn_node *radiance = nn_render(g, &(nn_render_inputs){albedo, normal, roughness, depth, mask, light}, 60, 5.95f);
+    nn_node *mean = nn_tanh(g, nn_linear(g, nn_spatial_mean(g, coarse), "mean", 27));
+    nn_node *ambient = nn_environment(g, albedo, normal, mask, nn_float(g, mean));
+    radiance = nn_add(g, radiance, ambient);
     nn_output(g, radiance, "radiance");
     nn_output(g, joined, "joined");
     nn_masked_l2(g, albedo, image, mask, "albedo", 1);

@@ -89,6 +89,26 @@ static void run_channel_mean(const cpu_tensor *x, cpu_tensor *y, bool accumulate
     cpu_channel_mean(x, y);
 }
 
+static shapes one_pixel(const int *b)
+{
+    return (shapes){{b[0], b[1], b[2], b[3]}, {b[0], 1, 1, b[3]}};
+}
+
+static double spatial_mean(const cpu_tensor *x, int n, int row, int column, int c)
+{
+    (void)row, (void)column;
+    double sum = 0;
+    for (int i = 0; i < x->h * x->w; i++)
+        sum += tensor_at(x, n, i / x->w, i % x->w, c);
+    return sum / (x->h * x->w);
+}
+
+static void run_spatial_mean(const cpu_tensor *x, cpu_tensor *y, bool accumulate)
+{
+    (void)accumulate;
+    cpu_spatial_mean(x, y);
+}
+
 static shapes deeper(const int *b)
 {
     return (shapes){{b[0], 2 * b[1], 2 * b[2], b[3]}, {b[0], b[1], b[2], 4 * b[3]}};
@@ -148,6 +168,7 @@ static const operation operations[] = {
     {"upsample_bilinear", double_size, bilinear, run_bilinear, cpu_upsample_bilinear_backward, false},
     {"tile", tiled, tile, run_tile, cpu_tile_backward, false},
     {"channel_mean", one_channel, channel_mean, run_channel_mean, cpu_channel_mean_backward, false},
+    {"spatial_mean", one_pixel, spatial_mean, run_spatial_mean, cpu_spatial_mean_backward, false},
     {"space_to_depth", deeper, space_to_depth, run_space_to_depth, run_depth_to_space, true},
     {"depth_to_space", shallower, depth_to_space, run_depth_to_space, run_space_to_depth, true},
     {"insert_channels", wider, insert_channels, run_insert, run_extract, true},

@@ -77,12 +77,53 @@ static void constant_radiance_gives_pi_irradiance(void **state)
     assert_true(fabs(e.x - pi) < 1e-12 && fabs(e.z - pi) < 1e-12);
 }
 
+static void gradient_is_that_of_central_differences(void **state)
+{
+    (void)state;
+    real sh[9][3];
+    for (int i = 0; i < 27; i++)
+        sh[i / 3][i % 3] = sin(3.7 * i + 1);
+    const real(*c)[3] = (const real(*)[3])sh;
+    const vec3 n = {0.48, -0.6, 0.64}, weight = {0.7, -0.2, 1.1}, axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    vec3 g = sh_irradiance_gradient(c, n, weight);
+    const double found[3] = {g.x, g.y, g.z}, h = 1e-4;
+    for (int k = 0; k < 3; k++) {
+        double up = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, h, axes[k])));
+        double down = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, -h, axes[k])));
+        /* irradiance is a quadratic in n, for which central differences are exact but for rounding, 1e-16 / 1e-4 */
+        assert_true(fabs(found[k] - (up - down) / (2 * h)) < 1e-10);
+    }
+}
+
+static void turned_environment_in_a_turned_direction_is_the_environment(void **state)
+{
+    (void)state;
+    /* a rotation about an axis of no symmetry, and the same with a reflection */
+    const vec3 x = vec3_normalize(vec3_make(0.6, -0.5, 0.3)), y = vec3_normalize(vec3_cross(x, vec3_make(0, 0, 1)));
+    const vec3 z = vec3_cross(x, y);
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        double sign = mirrored ? -1 : 1, before[9][3], after[9][3];
+        const real m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {sign * z.x, sign * z.y, sign * z.z}};
+        for (int i = 0; i < 27; i++)
+            before[i / 3][i % 3] = after[i / 3][i % 3] = sin(1.9 * i + 2);
+        sh_turn(after, m);
+        for (int i = 0; i < 20; i++) {
+            vec3 d = direction(20 * i + 3, 37 * i);
+            vec3 turned = vec3_make(vec3_dot(x, d), vec3_dot(y, d), sign * vec3_dot(z, d));
+            vec3 a = sh_irradiance((const real(*)[3])before, d), b = sh_irradiance((const real(*)[3])after, turned);
+            assert_true(vec3_length(vec3_sub(a, b)) < 1e-9);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(basis_is_orthonormal),
         cmocka_unit_test(irradiance_from_coefficients_matches_quadrature),
         cmocka_unit_test(constant_radiance_gives_pi_irradiance),
+        cmocka_unit_test(gradient_is_that_of_central_differences),
+        cmocka_unit_test(turned_environment_in_a_turned_direction_is_the_environment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Environment maps: sampling, coefficients, and light from all around. */
+#include "optics/latlong.h"
 #include "optics/sh.h"
 #include "render/render.h"
 #include "shapes.h"
@@ -72,7 +73,7 @@ static void sampling_a_map_integrates_what_looking_it_up_does(void **state)
         for (int y = 0; y < ROWS; y++)
             for (int x = 0; x < 2 * ROWS; x++) {
                 float v = ((float)y + 0.5f) / ROWS, u = ((float)x + 0.5f) / (2 * ROWS);
-                looked_up += environment_radiance(&env, environment_direction(u, v)).y * sinf(3.14159265f * v);
+                looked_up += environment_radiance(&env, latlong_direction(u, v)).y * sinf(3.14159265f * v);
             }
         sampled /= SAMPLES;
         looked_up *= 3.14159265 * 3.14159265 / ((double)ROWS * ROWS);
@@ -105,8 +106,7 @@ static void density_at_a_drawn_direction_is_the_one_it_was_drawn_with(void **sta
 static void middle_of_the_map_is_straight_ahead_and_its_top_is_up(void **state)
 {
     (void)state;
-    vec3 ahead = environment_direction(0.5f, 0.5f), up = environment_direction(0.3f, 0),
-         right = environment_direction(0.75f, 0.5f);
+    vec3 ahead = latlong_direction(0.5f, 0.5f), up = latlong_direction(0.3f, 0), right = latlong_direction(0.75f, 0.5f);
     assert_true(ahead.z < -0.9999f && up.y > 0.9999f && right.x > 0.9999f);
 }
 

@@ -104,6 +104,28 @@ static void training_reads_no_more_than_it_needs(void **state)
     sample_free(&r);
 }
 
+static void training_reads_the_environment_where_it_is_asked_to(void **state)
+{
+    (void)state;
+    sample s = make_sample(), r;
+    float sh[9][3];
+    assert_int_equal(sample_write(path, &s), OK);
+    assert_int_equal(sample_read_training_environment(path, &r), OK);
+    assert_same_image(&s.env, &r.env);
+    assert_null(r.bounce2.data);
+    assert_memory_equal(s.sh, r.sh, sizeof s.sh);
+    assert_int_equal(sample_read_sh(path, sh), OK);
+    assert_memory_equal(s.sh, sh, sizeof sh);
+    sample_free(&r);
+    img_free(&s.env);
+    assert_int_equal(sample_write(path, &s), OK);
+    assert_int_equal(sample_read_training_environment(path, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "--no-env"));
+    assert_int_equal(sample_read_sh(path, sh), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "--no-env"));
+    sample_free(&s);
+}
+
 static void sample_without_a_layer_is_refused_by_name(void **state)
 {
     (void)state;
@@ -166,6 +188,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sample_survives_writing_and_reading),
         cmocka_unit_test(training_reads_no_more_than_it_needs),
+        cmocka_unit_test(training_reads_the_environment_where_it_is_asked_to),
         cmocka_unit_test(sample_without_a_layer_is_refused_by_name),
         cmocka_unit_test(sample_with_nan_or_infinity_is_refused),
         cmocka_unit_test(image_that_is_no_sample_is_refused),

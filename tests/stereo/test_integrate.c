@@ -118,15 +118,13 @@ static void an_orthographic_sphere_is_exact(void **state)
     scene_free(&s);
 }
 
-/* Tangents instead of chords, h²/8R a step where one side is weighed more: below a pixel over the whole cap. */
+/* Weights change nothing where every step fits: no pair is off by more than rounding. */
 static void an_orthographic_sphere_survives_the_edge_preserving_variant(void **state)
 {
     (void)state;
     scene s = scene_new(80, 80);
     fill_sphere_cap(&s, 40, 34);
-    double error = error_of(&s, true);
-    print_message("edge-preserving sphere: %.3f pixels\n", error);
-    assert_true(error < 1);
+    assert_true(error_of(&s, true) < 1e-3);
     scene_free(&s);
 }
 
@@ -147,7 +145,7 @@ static void a_sphere_in_perspective_is_exact(void **state)
             put(&s, x, y, vec3_sub(p, center), -p.z);
         }
     assert_true(error_of(&s, false) < 1e-5);
-    assert_true(error_of(&s, true) < 0.01);
+    assert_true(error_of(&s, true) < 1e-5);
     scene_free(&s);
 }
 
@@ -181,42 +179,71 @@ static void a_step_does_not_bend_what_lies_beside_it(void **state)
     scene_free(&s);
 }
 
-/* Normals of a sphere before a slanted background: the least-squares surface is torn at the silhouette, bilateral
- * weights let it go there. */
+/* A sheet whose right half is wavy and, between two ends, raised above its flat left half by up to 10 pixels. The
+ * normals do not show the step itself; that they differ along it is all there is to go by. */
+static scene cracked_sheet(void)
+{
+    enum { SIDE = 96, FIRST = 8, LENGTH = 80 };
+    const float pi = 3.14159265f, middle = sinf(0.1f * SIDE / 2);
+    scene s = scene_new(SIDE, SIDE);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            float along = fminf(fmaxf((float)(y - FIRST) / LENGTH, 0), 1), up = sinf(pi * along);
+            float down = 10 * pi / LENGTH * sinf(2 * pi * along); /* slope of the step's height */
+            if (x < SIDE / 2)
+                put(&s, x, y, vec3_make(0, 0, 1), 0);
+            else
+                put(&s, x, y, vec3_make(0.3f * cosf(0.1f * (float)x), -down, 1),
+                    10 * up * up + 3 * (sinf(0.1f * (float)x) - middle));
+        }
+    return s;
+}
+
+/* Least squares closes the crack: 5 pixels are missing on either side of its middle. It is off by 0.08 pixels when
+ * edges are kept; the bound leaves a factor of two. */
+static void a_crack_stays_a_step_if_edges_are_kept(void **state)
+{
+    (void)state;
+    scene s = cracked_sheet();
+    double torn = error_of(&s, false), kept = error_of(&s, true);
+    print_message("cracked sheet: least squares off by %.2f, edges kept by %.3f pixels\n", torn, kept);
+    assert_true(torn > 4 && kept < 0.16);
+    scene_free(&s);
+}
+
+static bool inside(int side, int at, float radius)
+{
+    float dx = (float)(at % side) + 0.5f - (float)side / 2, dy = (float)(at / side) + 0.5f - (float)side / 2;
+    return dx * dx + dy * dy < radius * radius;
+}
+
+/* Normals of a ball before a slanted background that nothing joins: the least-squares surface bends the ball. The rim's
+ * outermost pixels may be taken for background, so it is looked at from 3 pixels inside, with its own constant. */
 static double silhouette_error(bool edges)
 {
-    enum { SIDE = 80 };
+    enum { SIDE = 96 };
     scene s = scene_new(SIDE, SIDE);
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)
-            put(&s, x, y, vec3_make(0.1f, 0, 1), 0.1f * (float)x + 40);
-    scene ball = scene_new(SIDE, SIDE);
-    fill_sphere_cap(&ball, 30, 24);
-    for (int y = 0; y < SIDE; y++)
-        for (int x = 0; x < SIDE; x++) {
-            const float *n = img_at(&ball.normal, x, y);
-            if (*img_at(&ball.mask, x, y) > 0) put(&s, x, y, vec3_make(n[0], n[1], n[2]), *img_at(&ball.depth, x, y));
-        }
+            put(&s, x, y, vec3_make(0.25f, 0, 1), 0.25f * (float)x);
+    fill_sphere_cap(&s, 30, 28);
     img depth;
     assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){.preserve_edges = edges}, &depth),
                      OK);
-    /* on the ball alone, with its own constant */
-    for (size_t i = 0; i < (size_t)SIDE * SIDE; i++)
-        if (ball.mask.data[i] == 0) depth.data[i] = 0;
-    double error = largest_error(&ball, &depth);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (!inside(SIDE, i, 25)) s.mask.data[i] = depth.data[i] = 0;
+    double error = largest_error(&s, &depth);
     img_free(&depth);
-    scene_free(&ball);
     scene_free(&s);
     return error;
 }
 
-static void a_silhouette_inside_the_mask_bends_the_edge_preserving_variant_less(void **state)
+static void a_ball_before_a_background_keeps_its_shape_if_edges_are_kept(void **state)
 {
     (void)state;
     double torn = silhouette_error(false), kept = silhouette_error(true);
-    print_message("ball before a background: least squares %.2f, edges kept %.2f pixels\n", torn, kept);
-    /* 1.32 against 1.71 pixels measured: a modest gain, and the bound holds no more than that */
-    assert_true(kept < 0.9 * torn);
+    print_message("ball before a background: least squares off by %.2f, edges kept by %.2f pixels\n", torn, kept);
+    assert_true(kept < 0.3 * torn); /* 0.22 measured */
 }
 
 /* More unknowns than are factorized: conjugate gradients under the multigrid cycle, to its own tolerance. */
@@ -291,7 +318,8 @@ int main(void)
         cmocka_unit_test(an_orthographic_sphere_survives_the_edge_preserving_variant),
         cmocka_unit_test(a_sphere_in_perspective_is_exact),
         cmocka_unit_test(a_step_does_not_bend_what_lies_beside_it),
-        cmocka_unit_test(a_silhouette_inside_the_mask_bends_the_edge_preserving_variant_less),
+        cmocka_unit_test(a_crack_stays_a_step_if_edges_are_kept),
+        cmocka_unit_test(a_ball_before_a_background_keeps_its_shape_if_edges_are_kept),
         cmocka_unit_test(a_mask_beyond_direct_solution_is_solved_too),
         cmocka_unit_test(pieces_have_their_own_constant_and_depths_are_positive),
         cmocka_unit_test(a_prior_sets_the_distance),

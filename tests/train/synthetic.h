@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "optics/ambient.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "render/sample.h"
@@ -19,6 +20,20 @@ static inline void put(const img *image, int x, int y, vec3 v)
     p[0] = v.x;
     p[1] = v.y;
     p[2] = v.z;
+}
+
+/* A smooth sky, which nine coefficients hold whole; another one for each sample. */
+static inline void sphere_sky(int which, float sh[9][3])
+{
+    for (int i = 0; i < 27; i++)
+        sh[i / 3][i % 3] = i < 3 ? 2.5f + 0.2f * (float)i : 0.3f * sinf((float)(3 * i + 5 * which));
+}
+
+static inline vec3 sphere_environment(const sample *s, vec3 albedo, vec3 normal, vec3 ray)
+{
+    const float(*sh)[3] = (const float(*)[3])s->sh;
+    vec3 diffuse = vec3_mul(albedo, vec3_scale(sh_irradiance(sh, normal), 1 / BRDF_PI));
+    return vec3_add(diffuse, ambient_specular(sh, 0.5f, normal, vec3_scale(vec3_normalize(ray), -1)));
 }
 
 static inline void sphere_pixel(sample *s, const camera *c, int x, int y, int which)
@@ -35,6 +50,7 @@ static inline void sphere_pixel(sample *s, const camera *c, int x, int y, int wh
     put(&s->albedo, x, y, albedo);
     put(&s->normal, x, y, normal);
     put(&s->direct, x, y, shade_point(&in));
+    put(&s->env, x, y, sphere_environment(s, albedo, normal, ray));
     /* partly below the smallest normal half float: the arithmetic of such numbers must not differ between threads */
     put(&s->indirect, x, y, vec3_scale(albedo, y % 2 ? 5e-5f : 0.05f));
     *img_at(&s->roughness, x, y) = 0.5f;
@@ -52,6 +68,7 @@ static inline void sphere_write(const char *folder, int size, int which)
         assert_int_equal(img_new(three[i], size, size, 3), OK);
     for (int i = 0; i < 3; i++)
         assert_int_equal(img_new(one[i], size, size, 1), OK);
+    sphere_sky(which, s.sh);
     camera c = {size, size, 60};
     for (int y = 0; y < size; y++)
         for (int x = 0; x < size; x++)

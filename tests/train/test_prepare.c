@@ -15,7 +15,10 @@
 
 #include "synthetic.h"
 
-enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 25 * PIXELS + 3 };
+enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 28 * PIXELS + 3 + 2 * MODEL_SH };
+
+static const trn_dataset_options usual = {.size = SIZE, .memory_gib = 1};
+static const trn_lighting at_the_camera = {.target = {0, 0, 0}};
 
 typedef struct fixture {
     char folder[256];
@@ -49,7 +52,7 @@ static int set_up(void **state)
     f->memory = malloc(FLOATS * sizeof(float));
     assert_non_null(f->memory);
     place(f);
-    if (trn_dataset_open(f->folder, SIZE, 1, &f->data) != OK) fail_msg("%s", status_message());
+    if (trn_dataset_open(f->folder, &usual, &f->data) != OK) fail_msg("%s", status_message());
     *state = f;
     return 0;
 }
@@ -104,7 +107,7 @@ static void sample_from_memory_equals_sample_from_disk(void **state)
 {
     fixture *f = *state;
     trn_dataset *forgetful;
-    assert_int_equal(trn_dataset_open(f->folder, SIZE, 0, &forgetful), OK);
+    assert_int_equal(trn_dataset_open(f->folder, &(trn_dataset_options){.size = SIZE}, &forgetful), OK);
     float *copy = malloc(FLOATS * sizeof(float));
     assert_non_null(copy);
     for (int pass = 0; pass < 2; pass++) {
@@ -125,7 +128,7 @@ static void sample_of_another_size_is_refused(void **state)
     trn_dataset *d;
     trn_view v = f->view;
     v.size = 32;
-    assert_int_equal(trn_dataset_open(f->folder, 32, 1, &d), OK);
+    assert_int_equal(trn_dataset_open(f->folder, &(trn_dataset_options){.size = 32, .memory_gib = 1}, &d), OK);
     assert_int_equal(trn_dataset_get(d, 0, 0, &v), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "64"));
     trn_dataset_close(d);
@@ -137,7 +140,7 @@ static void empty_folder_is_refused(void **state)
     char folder[256];
     scratch_folder(folder, sizeof folder);
     trn_dataset *d;
-    assert_int_equal(trn_dataset_open(folder, SIZE, 1, &d), ERROR_INPUT);
+    assert_int_equal(trn_dataset_open(folder, &usual, &d), ERROR_INPUT);
     scratch_remove(folder);
 }
 
@@ -148,7 +151,7 @@ static void perfect_camera_shows_direct_plus_indirect(void **state)
         rng r = rng_at(1, 2, 3);
         assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
         trn_camera lens = trn_camera_perfect();
-        trn_prepare(&f->view, global, &lens, vec3_make(0.5f, 0, -0.5f), &r);
+        trn_prepare(&f->view, global, &lens, &(trn_lighting){.target = {0.5f, 0, -0.5f}}, &r);
         const trn_view *v = &f->view;
         for (int i = 0; i < 3 * PIXELS; i++) {
             float linear = v->image[i] * v->image[i];
@@ -171,7 +174,7 @@ static void sensor_saturates_at_its_white(void **state)
         radiance[i] = f->view.direct[i] *= 4; /* bright enough for both kinds of pixel */
     trn_camera lens = trn_camera_perfect();
     lens.white = 2;
-    trn_prepare(&f->view, false, &lens, vec3_make(0, 0, 0), &r);
+    trn_prepare(&f->view, false, &lens, &at_the_camera, &r);
     int saturated = 0, below = 0;
     for (int i = 0; i < 3 * PIXELS; i++) {
         if (f->view.mask[i / 3] == 0) continue;
@@ -193,7 +196,7 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
     trn_camera perfect = trn_camera_perfect();
     rng r = rng_at(1, 2, 3);
     assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
-    trn_prepare(&f->view, true, &perfect, vec3_make(0, 0, 0), &r);
+    trn_prepare(&f->view, true, &perfect, &at_the_camera, &r);
     memcpy(clean, f->memory, FLOATS * sizeof(float));
     const float *image = clean + (f->view.image - f->memory);
     for (uint64_t i = 0; i < 20; i++) {
@@ -202,7 +205,7 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
         for (int k = 0; k < 3; k++)
             assert_true(fabsf(logf(lens.gain[k])) <= 0.4f + 1e-5f);
         assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
-        trn_prepare(&f->view, true, &lens, vec3_make(0, 0, 0), &r);
+        trn_prepare(&f->view, true, &lens, &at_the_camera, &r);
         assert_memory_not_equal(f->view.image, image, 3 * PIXELS * sizeof(float));
         memcpy(f->view.image, image, 3 * PIXELS * sizeof(float));
         assert_memory_equal(f->memory, clean, FLOATS * sizeof(float));
@@ -221,6 +224,154 @@ static void target_lights_lie_on_the_frontal_hemisphere(void **unused)
     }
 }
 
+/* ---- both lights ---- */
+
+/* The fixture's samples with their environments. */
+static trn_dataset *with_environments(fixture *f)
+{
+    trn_dataset *d;
+    trn_dataset_options options = usual;
+    options.environment = true;
+    if (trn_dataset_open(f->folder, &options, &d) != OK) fail_msg("%s", status_message());
+    f->view.env = f->view.light + 3;
+    f->view.sh = f->view.env + 3 * PIXELS;
+    f->view.target_sh = f->view.sh + MODEL_SH;
+    return d;
+}
+
+static vec3 random_direction(rng *r)
+{
+    float z = rng_range(r, -1, 1), phi = rng_range(r, 0, 6.2831853f), s = sqrtf(1 - z * z);
+    return vec3_make(s * cosf(phi), s * sinf(phi), z);
+}
+
+/* As trn_dataset_get turns normals; rows run downwards, y upwards. */
+static vec3 turned(int orientation, vec3 d)
+{
+    if (orientation & TRN_FLIP_X) d.x = -d.x;
+    if (orientation & TRN_FLIP_Y) d.y = -d.y;
+    return orientation & TRN_TRANSPOSE ? vec3_make(-d.y, -d.x, d.z) : d;
+}
+
+static void turned_sky_in_a_turned_direction_is_the_sky(void **unused)
+{
+    (void)unused;
+    rng r = rng_at(3, 1, 4);
+    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+        float before[9][3], after[9][3];
+        sphere_sky(1, before);
+        sphere_sky(1, after);
+        trn_turn_sh(orientation, after);
+        for (int i = 0; i < 50; i++) {
+            vec3 d = random_direction(&r);
+            vec3 a = sh_irradiance((const float(*)[3])before, d);
+            vec3 b = sh_irradiance((const float(*)[3])after, turned(orientation, d));
+            assert_float_equal(a.x, b.x, 1e-5); /* nine float terms of size 1 in another order */
+            assert_float_equal(a.z, b.z, 1e-5);
+        }
+    }
+}
+
+/* Without the flash, the maps under the turned coefficients are the turned image: diffuse and highlights. */
+static void turned_maps_reflect_the_turned_environment(void **state)
+{
+    fixture *f = *state;
+    trn_dataset *d = with_environments(f);
+    const trn_view *v = &f->view;
+    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+        assert_int_equal(trn_dataset_get(d, 2, orientation, v), OK);
+        float sh[9][3], alone[9][3];
+        memcpy(sh, v->sh, sizeof sh);
+        assert_int_equal(trn_dataset_sh(d, 2, orientation, alone), OK);
+        assert_memory_equal(sh, alone, sizeof sh);
+        memset(v->relit, 0, 3 * PIXELS * sizeof(float));
+        trn_add_environment(v, (const float(*)[3])sh, v->relit);
+        camera c = {SIZE, SIZE, 60};
+        int inside = 0;
+        for (int i = 0; i < PIXELS; i++) {
+            if (v->mask[i] == 0) continue;
+            vec3 view = vec3_scale(camera_ray(&c, (float)(i % SIZE) + 0.5f, (float)(i / SIZE) + 0.5f), -1);
+            vec3 n = vec3_make(v->normal[3 * i], v->normal[3 * i + 1], v->normal[3 * i + 2]);
+            float expected = v->relit[3 * i] + ambient_specular((const float(*)[3])sh, 0.5f, n, view).x;
+            assert_float_equal(v->env[3 * i], expected, 4e-3); /* normals and image are half floats */
+            inside++;
+        }
+        assert_true(inside > PIXELS / 10);
+    }
+    trn_dataset_close(d);
+}
+
+static void photograph_is_lit_by_both_and_targets_add_up(void **state)
+{
+    fixture *f = *state;
+    trn_dataset *d = with_environments(f);
+    const trn_view *v = &f->view;
+    float *raw = malloc(FLOATS * sizeof(float));
+    assert_non_null(raw);
+    assert_int_equal(trn_dataset_get(d, 0, 0, v), OK);
+    memcpy(raw, f->memory, FLOATS * sizeof(float));
+    const float *direct = raw + (v->direct - f->memory), *indirect = raw + (v->indirect - f->memory);
+    const float *env = raw + (v->env - f->memory), *sh = raw + (v->sh - f->memory);
+    trn_camera lens = trn_camera_perfect();
+    lens.white = 4;
+    trn_lighting lighting = {.target = {0.5f, 0, -0.5f}, .strength = 0.5f};
+    sphere_sky(1, lighting.target_sh);
+    rng r = rng_at(1, 2, 3);
+    trn_prepare(v, true, &lens, &lighting, &r);
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        if (v->mask[i / 3] == 0) continue;
+        assert_float_equal(v->image[i] * v->image[i], direct[i] + indirect[i] + 0.5f * env[i], 1e-4);
+        assert_float_equal(v->reconstruction[i], v->direct[i] + v->indirect[i], 1e-6);
+        /* these surroundings are what their coefficients say: only bounces are left, within half floats' 4e-3 */
+        assert_float_equal(v->indirect[i], indirect[i], 4e-3);
+        assert_true(v->direct[i] > fminf(direct[i], 1) + 0.02f);
+        assert_true(v->relit[i] >= 0 && v->relit[i] <= 1);
+    }
+    float code[MODEL_SH], scaled[9][3];
+    for (int i = 0; i < MODEL_SH; i++)
+        scaled[i / 3][i % 3] = 0.5f * sh[i];
+    model_encode_sh((const float(*)[3])scaled, code);
+    assert_memory_equal(code, v->sh, sizeof code);
+    free(raw);
+    trn_dataset_close(d);
+}
+
+static void target_is_lit_by_its_own_environment(void **state)
+{
+    fixture *f = *state;
+    trn_dataset *d = with_environments(f);
+    float *dark = malloc(3 * PIXELS * sizeof(float));
+    assert_non_null(dark);
+    trn_camera lens = trn_camera_perfect();
+    trn_lighting lighting = {.target = {0.8f, 0, -1}, .strength = 1};
+    int brighter = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        rng r = rng_at(1, 2, 3);
+        if (pass) sphere_sky(2, lighting.target_sh);
+        assert_int_equal(trn_dataset_get(d, 0, 0, &f->view), OK);
+        trn_prepare(&f->view, true, &lens, &lighting, &r);
+        if (pass == 0) memcpy(dark, f->view.relit, 3 * PIXELS * sizeof(float));
+    }
+    for (int i = 0; i < 3 * PIXELS; i++)
+        brighter += f->view.relit[i] > dark[i] + 0.05f;
+    assert_true(brighter > PIXELS / 10);
+    free(dark);
+    trn_dataset_close(d);
+}
+
+static void strengths_span_a_decade(void **unused)
+{
+    (void)unused;
+    rng r = rng_at(5, 6, 7);
+    int weak = 0;
+    for (int i = 0; i < 1000; i++) {
+        float s = trn_draw_strength(&r);
+        assert_true(s >= 0.099f && s <= 1.001f);
+        weak += s < 0.316f;
+    }
+    assert_in_range(weak, 400, 600); /* half of them, standard deviation 16 */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -232,6 +383,11 @@ int main(void)
         cmocka_unit_test_setup_teardown(perfect_camera_shows_direct_plus_indirect, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sensor_saturates_at_its_white, set_up, tear_down),
         cmocka_unit_test_setup_teardown(camera_spoils_the_input_and_not_the_targets, set_up, tear_down),
+        cmocka_unit_test(turned_sky_in_a_turned_direction_is_the_sky),
+        cmocka_unit_test_setup_teardown(turned_maps_reflect_the_turned_environment, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(photograph_is_lit_by_both_and_targets_add_up, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(target_is_lit_by_its_own_environment, set_up, tear_down),
+        cmocka_unit_test(strengths_span_a_decade),
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

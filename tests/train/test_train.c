@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "model/model.h"
+#include "train/curves.h"
 #include "train/train.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
@@ -23,26 +24,37 @@ typedef struct fixture {
     char data[256], root[256], config[300];
 } fixture;
 
+static const char *const jitter = "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05";
+static const char *const no_jitter = "\"exposure_jitter\": 0, \"colour_jitter\": 0";
+
+typedef struct experiment {
+    int presentations, batch, validation;
+    const char *lighting, *more;
+} experiment;
+
 /* A model of a few thousand parameters. */
-static void write_config(const fixture *f, int presentations, int batch, int validation, const char *more)
+static void write_experiment(const fixture *f, const experiment *e)
 {
     char text[2048];
     int n =
         snprintf(text, sizeof text,
                  "{\"model\": {\"name\": \"tiny\", \"input_global\": true, \"material_decoders\": 1, "
                  "\"feature_sharing\": true, \"gated_attention\": true, \"relight\": \"network\", "
-                 "\"global_illumination\": true, \"lighting\": \"point\", \"widths\": [16, 16, 16, 16, 16], "
+                 "\"global_illumination\": true, \"lighting\": \"%s\", \"widths\": [16, 16, 16, 16, 16], "
                  "\"gi_widths\": [8, 8, 8, 8, 8]}, \"training\": {\"size\": %d, \"batch\": %d, \"presentations\": %d, "
                  "\"learning_rate\": 3e-3, \"encoder_rate_scale\": 1, \"halve_every_epochs\": 30, "
                  "\"warmup_steps\": 2, \"beta1\": 0.9, \"beta2\": 0.99, \"clip_norm\": 5, \"depth_weight\": 2, "
                  "\"type\": \"f32\", "
                  "\"seed\": 1, %s, \"memory_gib\": 1, \"validation_count\": %d, "
                  "\"validation_steps\": 2, \"curve_steps\": 4, \"checkpoint_minutes\": 100}}",
-                 SIZE, batch, presentations, more, validation);
+                 e->lighting, SIZE, e->batch, e->presentations, e->more, e->validation);
     if (file_write(f->config, text, (size_t)n) != OK) fail_msg("%s", status_message());
 }
 
-static const char *const jitter = "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05";
+static void write_config(const fixture *f, int presentations, int batch, int validation, const char *more)
+{
+    write_experiment(f, &(experiment){presentations, batch, validation, "point", more});
+}
 
 static int set_up(void **state)
 {
@@ -121,14 +133,23 @@ static void same_run(const fixture *f, const char *a, const char *b)
         same_file(f, a, b, files[i]);
 }
 
-static void resumed_training_is_bit_identical(void **state)
+static void resume_and_compare(const fixture *f, const char *lighting)
 {
-    const fixture *f = *state;
-    write_config(f, 12, 2, 2, jitter);
+    write_experiment(f, &(experiment){12, 2, 2, lighting, jitter});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
     assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
     same_run(f, "a", "b");
+}
+
+static void resumed_training_is_bit_identical(void **state)
+{
+    resume_and_compare(*state, "point");
+}
+
+static void resumed_training_of_both_lights_is_bit_identical(void **state)
+{
+    resume_and_compare(*state, "both");
 }
 
 /* A run killed outright leaves rows behind its last checkpoint. */
@@ -148,6 +169,25 @@ static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
     same_file(f, "a", "b", "validation.csv");
 }
 
+/* A column of curves.csv (0: step) ends below this share of where it began: the first row is the mean of the first four
+ * steps. */
+static void loss_falls_to(const fixture *f, int column, double share)
+{
+    size_t size;
+    char *text = contents(f, "a", "curves.csv", &size), *line = strchr(text, '\n') + 1;
+    double first = 0, last = 0;
+    for (; line && *line; line = strchr(line, '\n') + 1) {
+        const char *at = line;
+        for (int i = 0; i < column; i++)
+            at = strchr(at, ',') + 1;
+        assert_int_equal(sscanf(at, "%lf", &last), 1);
+        if (first == 0) first = last;
+    }
+    print_message("column %d from %.3f to %.3f\n", column, first, last);
+    assert_true(last < share * first);
+    free(text);
+}
+
 static void losses_fall_on_two_samples(void **state)
 {
     const fixture *f = *state;
@@ -156,18 +196,30 @@ static void losses_fall_on_two_samples(void **state)
         unlink(path);
         free(path);
     }
-    write_config(f, 240, 4, 0, "\"exposure_jitter\": 0, \"colour_jitter\": 0");
+    write_config(f, 240, 4, 0, no_jitter);
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
-    size_t size;
-    char *text = contents(f, "a", "curves.csv", &size), *line = strchr(text, '\n') + 1;
-    double first = 0, last = 0;
-    for (; line && *line; line = strchr(line, '\n') + 1) {
-        assert_int_equal(sscanf(line, "%*d,%*d,%*f,%*d,%lf", &last), 1);
-        if (first == 0) first = last;
-    }
-    print_message("total loss from %.3f to %.3f\n", first, last);
-    assert_true(last < 0.3 * first); /* the first row is the mean of the first four steps */
-    free(text);
+    loss_falls_to(f, 4, 0.3);
+}
+
+static void both_lights_can_be_learned(void **state)
+{
+    const fixture *f = *state;
+    write_experiment(f, &(experiment){96, 4, 0, "both", no_jitter});
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    loss_falls_to(f, 4, 0.5);
+    loss_falls_to(f, 4 + MODEL_LOSSES, 0.5); /* the last column: the environment's coefficients */
+}
+
+static void charts_are_drawn_of_rows_with_fewer_losses(void **state)
+{
+    const fixture *f = *state;
+    char csv[300], png[300];
+    snprintf(csv, sizeof csv, "%s/old.csv", f->root);
+    snprintf(png, sizeof png, "%s/old.png", f->root);
+    static const char rows[] = "step,presentations,learning_rate,skipped,total,albedo\n4,8,1,0,2,1\n8,16,1,0,1,0.5\n";
+    assert_int_equal(file_write(csv, rows, sizeof rows - 1), OK);
+    assert_int_equal(trn_curve_chart(csv, "/nonexistent", png), OK);
+    assert_true(file_exists(png));
 }
 
 static void run_is_not_overwritten_without_resume(void **state)
@@ -219,6 +271,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(resumed_training_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(rows_behind_the_checkpoint_are_dropped_on_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(both_lights_can_be_learned, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(resumed_training_of_both_lights_is_bit_identical, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),

@@ -72,6 +72,25 @@ static void every_shipped_configuration_can_be_trained(void **unused)
     }
 }
 
+static void configurations_of_both_lights_differ_from_the_point_settings_in_that(void **unused)
+{
+    (void)unused;
+    static const char *const pairs[][2] = {{"merlin-point", "merlin-env"}, {"merlin-point-256", "merlin-env-256"}};
+    for (int i = 0; i < 2; i++) {
+        model_config m[2];
+        for (int k = 0; k < 2; k++) {
+            char path[512];
+            train_config t;
+            snprintf(path, sizeof path, "%s/configs/%s.json", MERLIN_SOURCE_DIR, pairs[i][k]);
+            if (train_config_read(path, &m[k], &t) != OK) fail_msg("%s", status_message());
+        }
+        assert_int_equal(m[1].lighting, MODEL_LIGHT_BOTH);
+        m[1].lighting = MODEL_LIGHT_POINT;
+        memcpy(m[1].name, m[0].name, sizeof m[0].name);
+        assert_memory_equal(&m[0], &m[1], sizeof m[0]);
+    }
+}
+
 static void wrong_configurations_are_refused_by_key(void **unused)
 {
     (void)unused;
@@ -93,6 +112,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shipped_configuration_survives_writing_and_reading),
         cmocka_unit_test(every_shipped_configuration_can_be_trained),
+        cmocka_unit_test(configurations_of_both_lights_differ_from_the_point_settings_in_that),
         cmocka_unit_test(wrong_configurations_are_refused_by_key),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

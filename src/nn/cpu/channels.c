@@ -108,19 +108,44 @@ static void sum_row(const cpu_tensor *t, size_t row, double *sum)
         sum[c] += partial[c];
 }
 
-void cpu_tile_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
+/* to = scale times the sum of from's pixels, one image at a time. */
+static void sum_images(const cpu_tensor *from, cpu_tensor *to, double scale, bool accumulate)
 {
-    size_t channels = (size_t)dx->c, height = (size_t)dy->h, batch = (size_t)dy->n;
-    assert(dx->c <= CPU_MAX_CHANNELS);
-#pragma omp parallel for schedule(static) if (cpu_count(dy) > CPU_PARALLEL_MIN)
+    size_t channels = (size_t)to->c, height = (size_t)from->h, batch = (size_t)from->n;
+    assert(to->c <= CPU_MAX_CHANNELS);
+#pragma omp parallel for schedule(static) if (cpu_count(from) > CPU_PARALLEL_MIN)
     for (size_t n = 0; n < batch; n++) {
         double sum[CPU_MAX_CHANNELS] = {0};
         float total[CPU_MAX_CHANNELS];
         for (size_t y = 0; y < height; y++)
-            sum_row(dy, n * height + y, sum);
+            sum_row(from, n * height + y, sum);
         for (size_t c = 0; c < channels; c++)
-            total[c] = (float)sum[c];
-        cpu_store(dx, n * channels, channels, total, accumulate);
+            total[c] = (float)(scale * sum[c]);
+        cpu_store(to, n * channels, channels, total, accumulate);
+    }
+}
+
+void cpu_tile_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
+{
+    sum_images(dy, dx, 1, accumulate);
+}
+
+void cpu_spatial_mean(const cpu_tensor *x, cpu_tensor *y)
+{
+    sum_images(x, y, 1 / ((double)x->h * (double)x->w), false);
+}
+
+void cpu_spatial_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
+{
+    size_t channels = (size_t)dx->c, area = (size_t)dx->h * (size_t)dx->w, pixels = (size_t)dx->n * area;
+    assert(dx->c <= CPU_MAX_CHANNELS);
+#pragma omp parallel for schedule(static) if (cpu_count(dx) > CPU_PARALLEL_MIN)
+    for (size_t i = 0; i < pixels; i++) {
+        float room[CPU_MAX_CHANNELS], share[CPU_MAX_CHANNELS];
+        const float *p = cpu_load(dy, i / area * channels, channels, room);
+        for (size_t c = 0; c < channels; c++)
+            share[c] = p[c] / (float)area;
+        cpu_store(dx, i * channels, channels, share, accumulate);
     }
 }
 

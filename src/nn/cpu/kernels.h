@@ -59,6 +59,10 @@ void cpu_depth_to_space(const cpu_tensor *x, cpu_tensor *y, int block, bool accu
 void cpu_channel_mean(const cpu_tensor *x, cpu_tensor *y);
 void cpu_channel_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 
+/* x is N×H×W×C, y N×1×1×C. */
+void cpu_spatial_mean(const cpu_tensor *x, cpu_tensor *y);
+void cpu_spatial_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
+
 /* float32 only from here. */
 void cpu_normalize(const cpu_tensor *x, cpu_tensor *y);
 void cpu_normalize_backward(const cpu_tensor *x, const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx,
@@ -75,6 +79,16 @@ void cpu_render(const cpu_render_tensors *maps, const cpu_tensor *mask, const cp
 void cpu_render_backward(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
                          float light_power, const cpu_tensor *dy, cpu_render_tensors *dmaps,
                          cpu_render_accumulate accumulate);
+
+typedef struct cpu_environment {
+    cpu_tensor albedo, normal, sh; /* values; or their gradients, data NULL where none is wanted */
+} cpu_environment;
+typedef struct cpu_environment_accumulate {
+    bool albedo, normal, sh;
+} cpu_environment_accumulate;
+void cpu_shade_environment(const cpu_environment *in, const cpu_tensor *mask, cpu_tensor *y);
+void cpu_environment_backward(const cpu_environment *in, const cpu_tensor *mask, const cpu_tensor *dy,
+                              cpu_environment *gradients, cpu_environment_accumulate accumulate);
 
 /* Returns the loss; mask_sum receives ΣM for the backward pass. Sums are in double, in a fixed order. */
 float cpu_masked_l2(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask, double *mask_sum);

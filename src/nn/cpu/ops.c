@@ -60,6 +60,24 @@ static void render_backward(nn_step *step)
                         &gradients, accumulate);
 }
 
+static cpu_environment environment_tensors(const nn_tensor *t)
+{
+    return (cpu_environment){t[0], t[1], t[2]};
+}
+
+static void environment_forward(nn_step *step)
+{
+    cpu_environment in = environment_tensors(step->in);
+    cpu_shade_environment(&in, &step->in[3], &step->out);
+}
+
+static void environment_backward(nn_step *step)
+{
+    cpu_environment in = environment_tensors(step->in), gradients = environment_tensors(step->in_gradient);
+    cpu_environment_accumulate accumulate = {step->accumulate[0], step->accumulate[1], step->accumulate[2]};
+    cpu_environment_backward(&in, &step->in[3], &step->out_gradient, &gradients, accumulate);
+}
+
 static status kernel_forward(nn_step *step)
 {
     const nn_tensor *x = &step->in[0];
@@ -112,6 +130,9 @@ static status kernel_forward(nn_step *step)
     case OP_CHANNEL_MEAN:
         cpu_channel_mean(x, y);
         break;
+    case OP_SPATIAL_MEAN:
+        cpu_spatial_mean(x, y);
+        break;
     case OP_NORMALIZE:
         cpu_normalize(x, y);
         break;
@@ -120,6 +141,9 @@ static status kernel_forward(nn_step *step)
         break;
     case OP_RENDER:
         render_forward(step);
+        break;
+    case OP_ENVIRONMENT:
+        environment_forward(step);
         break;
     case OP_MASKED_L2:
         step->loss = cpu_masked_l2(x, x + 1, x + 2, &step->mask_sum);
@@ -186,6 +210,9 @@ static status kernel_backward(nn_step *step)
     case OP_CHANNEL_MEAN:
         cpu_channel_mean_backward(dy, dx, add);
         break;
+    case OP_SPATIAL_MEAN:
+        cpu_spatial_mean_backward(dy, dx, add);
+        break;
     case OP_NORMALIZE:
         cpu_normalize_backward(x, y, dy, dx, add);
         break;
@@ -194,6 +221,9 @@ static status kernel_backward(nn_step *step)
         break;
     case OP_RENDER:
         render_backward(step);
+        break;
+    case OP_ENVIRONMENT:
+        environment_backward(step);
         break;
     case OP_MASKED_L2:
         cpu_masked_l2_backward(x, x + 1, x + 2, step->mask_sum, at->weight, dx, add);

@@ -1,0 +1,56 @@
+/* merlin_environment: surroundings from a file. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "estimate/api.h"
+#include "image/read.h"
+
+/* The well lit of the training data (render/environment.c). */
+static const float MEAN_LUMINANCE = 1.0f;
+static const float MOST_EXPOSURE = 20.0f;
+enum { LEAST_HEIGHT = 4 };
+
+static status check(const char *path, const img *map)
+{
+    if (map->width < 2 * LEAST_HEIGHT || map->height < LEAST_HEIGHT)
+        return fail(ERROR_INPUT, "%s is %d×%d pixels; an environment needs %d×%d at least", path, map->width,
+                    map->height, 2 * LEAST_HEIGHT, LEAST_HEIGHT);
+    return OK;
+}
+
+static status prepare(const char *path, float turn, float exposure, env_map *map)
+{
+    float mean = env_map_mean(map);
+    if (!(mean > 0)) return fail(ERROR_INPUT, "%s is black all over: no light to relight by", path);
+    env_map_scale(map, MEAN_LUMINANCE * exp2f(exposure) / mean);
+    env_map_turn(map, turn);
+    return OK;
+}
+
+merlin_status merlin_environment_read(const char *path, float turn, float exposure, merlin_environment **out)
+{
+    *out = NULL;
+    if (!isfinite(turn) || !(fabsf(exposure) <= MOST_EXPOSURE))
+        return result_of(fail(ERROR_USAGE, "an environment's turn must be finite and its exposure within %g EV",
+                              (double)MOST_EXPOSURE));
+    merlin_environment *e = calloc(1, sizeof *e);
+    if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
+    img picture = {0};
+    status s = img_read(path, &picture, NULL);
+    if (s == OK) s = check(path, &picture);
+    if (s == OK) s = env_map_new(&picture, &e->map);
+    if (s == OK) s = prepare(path, turn, exposure, &e->map);
+    img_free(&picture);
+    if (s != OK)
+        merlin_environment_free(e);
+    else
+        *out = e;
+    return result_of(s);
+}
+
+void merlin_environment_free(merlin_environment *e)
+{
+    if (!e) return;
+    env_map_free(&e->map);
+    free(e);
+}

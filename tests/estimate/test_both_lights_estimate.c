@@ -1,0 +1,209 @@
+/* Photographs in surroundings: models of both lights from estimate to relight, with random weights. */
+#include "base/file.h"
+#include "image/image.h"
+#include "image/write.h"
+#include "merlin/merlin.h"
+#include "weights.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 64 };
+
+typedef struct fixture {
+    char folder[64], weights[96], point_weights[96], output[96], surroundings[96];
+    merlin_model *model, *point;
+    merlin_image photo, mask;
+    merlin_maps maps;
+} fixture;
+
+static merlin_image image_new(int channels)
+{
+    return (merlin_image){SIDE, SIDE, channels, calloc((size_t)(SIDE * SIDE * channels), sizeof(float))};
+}
+
+/* A disc before black. */
+static void draw(fixture *f)
+{
+    f->photo = image_new(3);
+    f->mask = image_new(1);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float x = ((float)(i % SIDE) - 32) / 28, y = ((float)(i / SIDE) - 32) / 28, d = x * x + y * y;
+        if (d >= 1) continue;
+        f->mask.data[i] = 1;
+        for (int c = 0; c < 3; c++)
+            f->photo.data[3 * i + c] = (0.3f + 0.2f * (float)c) * sqrtf(1 - d);
+    }
+}
+
+/* Bright on the right, dark on the left. */
+static status write_surroundings(const char *path)
+{
+    img map = {0};
+    status s = img_new(&map, 32, 16, 3);
+    for (int i = 0; s == OK && i < 32 * 16 * 3; i++)
+        map.data[i] = i / 3 % 32 >= 16 ? 0.9f : 0.05f;
+    if (s == OK) s = img_write_png(path, &map, IMG_LINEAR8);
+    img_free(&map);
+    return s;
+}
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
+    if (!mkdtemp(f->folder)) return -1;
+    snprintf(f->weights, sizeof f->weights, "%s/both.safetensors", f->folder);
+    snprintf(f->point_weights, sizeof f->point_weights, "%s/point.safetensors", f->folder);
+    snprintf(f->output, sizeof f->output, "%s/out", f->folder);
+    snprintf(f->surroundings, sizeof f->surroundings, "%s/room.png", f->folder);
+    draw(f);
+    if (write_random_weights_of("merlin-env", f->weights) != OK || write_random_weights(f->point_weights) != OK ||
+        write_surroundings(f->surroundings) != OK || merlin_model_open(f->weights, &f->model) != MERLIN_OK ||
+        merlin_model_open(f->point_weights, &f->point) != MERLIN_OK)
+        return -1;
+    merlin_params p = merlin_params_default();
+    p.size = SIDE;
+    return merlin_estimate(f->model, &f->photo, &f->mask, &p, &f->maps) == MERLIN_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    merlin_maps_free(&f->maps);
+    merlin_model_close(f->model);
+    merlin_model_close(f->point);
+    merlin_image_free(&f->photo);
+    merlin_image_free(&f->mask);
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", f->folder);
+    int code = system(command);
+    free(f);
+    return code;
+}
+
+static void photographs_environment_is_estimated_and_kept(void **state)
+{
+    fixture *f = *state;
+    merlin_maps again;
+    float largest = 0;
+    assert_true(f->maps.has_environment);
+    for (int i = 0; i < 27; i++)
+        largest = fmaxf(largest, fabsf(f->maps.environment[i / 3][i % 3]));
+    assert_true(largest > 1e-3f && isfinite(largest));
+    assert_int_equal(merlin_maps_write(f->model, &f->maps, f->output), MERLIN_OK);
+    assert_int_equal(merlin_maps_read(f->output, &again), MERLIN_OK);
+    assert_true(again.has_environment);
+    assert_memory_equal(again.environment, f->maps.environment, sizeof again.environment);
+    merlin_maps_free(&again);
+}
+
+static void point_models_know_no_environment(void **state)
+{
+    fixture *f = *state;
+    merlin_maps maps;
+    merlin_params p = merlin_params_default();
+    p.size = SIDE;
+    assert_int_equal(merlin_estimate(f->point, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+    assert_false(maps.has_environment);
+    assert_true(maps.environment[0][0] == 0);
+    merlin_maps_free(&maps);
+}
+
+static double difference(const merlin_image *a, const merlin_image *b)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        sum += fabs((double)(a->data[i] - b->data[i]));
+    return sum;
+}
+
+static void any_model_relights_by_surroundings_which_turn(void **state)
+{
+    fixture *f = *state;
+    const float light[3] = {0.3f, 0.5f, -0.3f};
+    merlin_model *models[] = {f->model, f->point};
+    merlin_environment *room, *turned;
+    assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
+    assert_int_equal(merlin_environment_read(f->surroundings, 180, 0, &turned), MERLIN_OK);
+    for (int i = 0; i < 2; i++) {
+        merlin_image alone, other, both;
+        assert_int_equal(merlin_relight_environment(models[i], &f->maps, room, NULL, MERLIN_BY_BRDF, &alone),
+                         MERLIN_OK);
+        assert_int_equal(merlin_relight_environment(models[i], &f->maps, turned, NULL, MERLIN_BY_BRDF, &other),
+                         MERLIN_OK);
+        assert_int_equal(merlin_relight_environment(models[i], &f->maps, room, light, MERLIN_BY_BRDF, &both),
+                         MERLIN_OK);
+        assert_true(difference(&alone, &other) > 1);
+        double brighter = 0;
+        for (int k = 0; k < 3 * SIDE * SIDE; k++) {
+            assert_true(alone.data[k] >= 0 && alone.data[k] <= 1);
+            if (f->mask.data[k / 3] == 0) assert_true(alone.data[k] == 0);
+            brighter += (double)(both.data[k] - alone.data[k]);
+        }
+        assert_true(brighter > 1);
+        merlin_image_free(&alone);
+        merlin_image_free(&other);
+        merlin_image_free(&both);
+    }
+    merlin_environment_free(room);
+    merlin_environment_free(turned);
+}
+
+static void relighting_decoder_takes_both_lights_if_it_learned_them(void **state)
+{
+    fixture *f = *state;
+    const float light[3] = {0.3f, 0.5f, -0.3f};
+    merlin_environment *room;
+    merlin_image image;
+    assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
+    assert_int_equal(merlin_relight_environment(f->model, &f->maps, room, light, MERLIN_BY_NETWORK, &image), MERLIN_OK);
+    merlin_image_free(&image);
+    assert_int_equal(merlin_relight_environment(f->model, &f->maps, room, NULL, MERLIN_BY_NETWORK, &image),
+                     MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "point light"));
+    assert_int_equal(merlin_relight_environment(f->point, &f->maps, room, light, MERLIN_BY_NETWORK, &image),
+                     MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "point lights only"));
+    assert_null(image.data);
+    merlin_environment_free(room);
+}
+
+static void surroundings_without_light_are_refused(void **state)
+{
+    fixture *f = *state;
+    char path[96];
+    img map = {0};
+    merlin_environment *room;
+    snprintf(path, sizeof path, "%s/black.png", f->folder);
+    assert_int_equal(img_new(&map, 32, 16, 3), OK);
+    assert_int_equal(img_write_png(path, &map, IMG_LINEAR8), OK);
+    img_free(&map);
+    assert_int_equal(merlin_environment_read(path, 0, 0, &room), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "black"));
+    assert_null(room);
+    assert_int_equal(merlin_environment_read(f->weights, 0, 0, &room), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_environment_read(f->surroundings, NAN, 0, &room), MERLIN_WRONG_USE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(photographs_environment_is_estimated_and_kept),
+        cmocka_unit_test(point_models_know_no_environment),
+        cmocka_unit_test(any_model_relights_by_surroundings_which_turn),
+        cmocka_unit_test(relighting_decoder_takes_both_lights_if_it_learned_them),
+        cmocka_unit_test(surroundings_without_light_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

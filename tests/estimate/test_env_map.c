@@ -1,0 +1,173 @@
+#include <math.h>
+#include <string.h>
+
+#include "estimate/env_map.h"
+#include "optics/latlong.h"
+#include "optics/sh.h"
+
+/* cmocka names a macro fail, so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 256, HEIGHT = 128 };
+
+/* A map of what `radiance` gives in the middle of every texel. */
+static env_map map_of(vec3 (*radiance)(vec3))
+{
+    img latlong = {0};
+    env_map e;
+    assert_int_equal(img_new(&latlong, WIDTH, HEIGHT, 3), OK);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            vec3 c = radiance(latlong_direction(((float)x + 0.5f) / WIDTH, ((float)y + 0.5f) / HEIGHT));
+            float *p = img_at(&latlong, x, y);
+            p[0] = c.x;
+            p[1] = c.y;
+            p[2] = c.z;
+        }
+    assert_int_equal(env_map_new(&latlong, &e), OK);
+    img_free(&latlong);
+    return e;
+}
+
+static vec3 even(vec3 d)
+{
+    (void)d;
+    return vec3_make(0.5f, 1, 2);
+}
+
+/* Bands 0 to 2 only. */
+static vec3 smooth(vec3 d)
+{
+    return vec3_make(1 + 0.5f * d.x, 1 + 0.5f * d.y, 1 - 0.4f * d.z + 0.3f * d.x * d.y);
+}
+
+static vec3 spot_ahead(vec3 d)
+{
+    return d.z < -0.995f ? vec3_make(100, 100, 100) : vec3_make(0, 0, 0);
+}
+
+/* Spread over the sphere, the seams of the octahedron (the planes x = 0, y = 0 and z = 0) among them. */
+static vec3 direction(int i)
+{
+    static const vec3 seams[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0.6f, 0.8f, 0}, {-0.6f, -0.8f, 0}};
+    if (i < 6) return seams[i];
+    float z = 1 - 2 * ((float)(i - 6) + 0.5f) / 100, phi = 2.39996f * (float)i, s = sqrtf(1 - z * z);
+    return vec3_make(s * cosf(phi), s * sinf(phi), z);
+}
+enum { DIRECTIONS = 106 };
+
+static void even_surroundings_are_even_at_every_level(void **state)
+{
+    (void)state;
+    env_map e = map_of(even);
+    for (int i = 0; i < DIRECTIONS; i++)
+        for (float angle = 1e-6f; angle < 12; angle *= 5) {
+            vec3 c = env_map_lookup(&e, direction(i), angle);
+            assert_float_equal(c.x, 0.5f, 1e-5);
+            assert_float_equal(c.z, 2, 1e-5);
+        }
+    env_map_free(&e);
+}
+
+static void sharp_look_up_is_the_map(void **state)
+{
+    (void)state;
+    env_map e = map_of(smooth);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        vec3 c = env_map_lookup(&e, direction(i), 0), expected = smooth(direction(i));
+        assert_float_equal(c.x, expected.x,
+                           0.02); /* a texel is 1.4 degrees wide: 0.5 × half of that, and a cell more */
+        assert_float_equal(c.y, expected.y, 0.02);
+        assert_float_equal(c.z, expected.z, 0.02);
+    }
+    env_map_free(&e);
+}
+
+static void blurred_look_up_keeps_the_light_of_a_lamp(void **state)
+{
+    (void)state;
+    env_map e = map_of(spot_ahead);
+    double sharp = 0, blurred = 0;
+    enum { STEPS = 400 };
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < STEPS; k++) {
+            float z = 1 - 2 * ((float)i + 0.5f) / STEPS, phi = 6.2831853f * ((float)k + 0.5f) / STEPS;
+            vec3 d = vec3_make(sqrtf(1 - z * z) * cosf(phi), sqrtf(1 - z * z) * sinf(phi), z);
+            sharp += (double)env_map_lookup(&e, d, 0).y;
+            blurred += (double)env_map_lookup(&e, d, 0.05f).y;
+        }
+    double mean = 100 * 0.005 / 2; /* radiance times the share of the sphere: (1 - 0.995) / 2 */
+    assert_float_equal(sharp / (STEPS * STEPS), mean, 0.05 * mean); /* the spot's edge runs through texels */
+    assert_float_equal(blurred / (STEPS * STEPS), mean, 0.05 * mean);
+    assert_float_equal((double)env_map_mean(&e), mean, 0.05 * mean);
+    assert_true(env_map_lookup(&e, vec3_make(0, 0, -1), 1).y < 10);
+    env_map_free(&e);
+}
+
+static void what_was_ahead_is_to_the_right_after_a_quarter_turn(void **state)
+{
+    (void)state;
+    env_map e = map_of(spot_ahead);
+    const vec3 ahead = {0, 0, -1}, right = {1, 0, 0}, behind = {0, 0, 1};
+    assert_true(env_map_lookup(&e, ahead, 0).y > 90);
+    env_map_turn(&e, 90);
+    assert_true(env_map_lookup(&e, right, 0).y > 90 && env_map_lookup(&e, ahead, 0).y < 1);
+    vec3 by_right = sh_irradiance((const float(*)[3])e.sh, right),
+         by_ahead = sh_irradiance((const float(*)[3])e.sh, ahead);
+    assert_true(by_right.y > 4 * by_ahead.y);
+    env_map_turn(&e, 90);
+    assert_true(env_map_lookup(&e, behind, 0).y > 90);
+    env_map_free(&e);
+}
+
+static void coefficients_are_those_of_the_map(void **state)
+{
+    (void)state;
+    env_map e = map_of(smooth);
+    for (int turn = 0; turn < 2; turn++) {
+        /* smooth()'s red at 90 degrees: what pointed ahead, -z, points to +x; so +x points behind, +z */
+        vec3 n = vec3_normalize(vec3_make(0.5f, -0.3f, 0.7f));
+        vec3 irradiance = sh_irradiance((const float(*)[3])e.sh, n);
+        float slope = turn ? n.z : n.x;
+        /* band 1 keeps 2π/3 of the radiance's slope */
+        assert_float_equal(irradiance.x, 3.14159f * (1 + 0.5f * slope * 2 / 3), 0.005);
+        env_map_turn(&e, 90);
+    }
+    env_map_free(&e);
+}
+
+static void impossible_radiance_counts_as_black(void **state)
+{
+    (void)state;
+    img latlong = {0};
+    env_map e;
+    assert_int_equal(img_new(&latlong, 16, 8, 3), OK);
+    for (int i = 0; i < 16 * 8 * 3; i++)
+        latlong.data[i] = i % 4 == 0 ? NAN : i % 4 == 1 ? -1 : i % 4 == 2 ? INFINITY : 1;
+    assert_int_equal(env_map_new(&latlong, &e), OK);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        vec3 c = env_map_lookup(&e, direction(i), 0.01f);
+        assert_true(c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1);
+    }
+    assert_true(isfinite(e.sh[3][1]));
+    env_map_free(&e);
+    img_free(&latlong);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(even_surroundings_are_even_at_every_level),
+        cmocka_unit_test(sharp_look_up_is_the_map),
+        cmocka_unit_test(blurred_look_up_keeps_the_light_of_a_lamp),
+        cmocka_unit_test(what_was_ahead_is_to_the_right_after_a_quarter_turn),
+        cmocka_unit_test(coefficients_are_those_of_the_map),
+        cmocka_unit_test(impossible_radiance_counts_as_black),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
