@@ -147,8 +147,8 @@ static void scale_environment(const trn_view *v, float strength)
 }
 
 /* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Shadows do not
- * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is not
- * as the coefficients say. */
+ * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is
+ * not as the coefficients say. */
 static void add_environment(const trn_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
