@@ -8,13 +8,25 @@
 #include "stereo/pixel_fit.h"
 
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
-enum { BLOCK = 16 };
+enum { BLOCK = 32 };
+
+typedef enum field_task { FIT, REFINE, SPREAD, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
-    float *x, *y, *z; /* distant lights, padded */
-    float *cost;      /* a pixel */
+    field_task task;
+    const int32_t *slot; /* spread */
+    pst_shading *next;   /* spread: to take the place of the field's */
+    pst_surface *out;    /* store */
+    float *x, *y, *z;    /* distant lights, padded */
+    float *cost;         /* a pixel */
+    double total;
 } fit_job;
+
+typedef struct run_start {
+    bool valid;
+    float cost;
+} run_start;
 
 typedef struct gathered {
     float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) a pixel */
@@ -83,49 +95,115 @@ static void divide_by_power(const near_lights *l, int padded, float *value, floa
 }
 
 /* Albedo a channel by the same weights, and the residual beside the fit. power NULL: distant. */
-static void store(const fit_job *job, size_t at, const pst_observations *o, const float *w, const float *power, vec3 b)
+static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
 {
     const pst_problem *p = job->field->problem;
     const pst_capture *c = p->capture;
-    pst_surface *out = job->field->out;
-    vec3 n = pst_facing(b);
-    float albedo[3] = {0}, energy = 0, fit = 0, residual = 0, length = vec3_length(b);
+    const pst_observations *o = &d->seen;
+    pst_surface *out = job->out;
+    float w[PST_MAX_LIGHTS], lobe[PST_MAX_LIGHTS];
+    pst_lobe_weigh(d, job->field->lobe, q, w, lobe);
+    vec3 n = pst_facing(q->normal);
+    float albedo[3] = {0}, energy = 0, fit = 0, residual = 0;
     for (int k = 0; k < c->count; k++) {
-        float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - o->terminator, 0), wc = w[k] * cosine;
+        float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - job->field->lobe->terminator, 0);
         const uint16_t *code = c->picture[k] + at * (size_t)c->channels;
+        float wc = w[k] * cosine, model = q->albedo * cosine + lobe[k], r = o->value[k] - model;
         energy += wc * cosine;
         for (int ch = 0; ch < c->channels && wc > 0; ch++)
-            albedo[ch] += wc * (float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1));
-        float r = o->value[k] - length * cosine;
+            albedo[ch] +=
+                wc * ((float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) - lobe[k]);
         residual += w[k] * r * r;
-        fit += w[k] * length * cosine * length * cosine;
+        fit += w[k] * model * model;
     }
     for (int ch = 0; ch < c->channels; ch++)
-        albedo[ch] = energy > 1e-12f ? albedo[ch] / energy : 0;
+        albedo[ch] = energy > 1e-12f ? fmaxf(albedo[ch] / energy, 0) : 0;
     memcpy(out->normal.data + 3 * at, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
     memcpy(out->albedo.data + at * (size_t)c->channels, albedo, (size_t)c->channels * sizeof(float));
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
 }
 
-static pst_pixel fit_pixel(const fit_job *job, size_t at, float *value, float *usable)
+/* Neighbours that differ from the pixel and cost less; returns how many. */
+static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
+{
+    static const float differs = 0.9994f, cheaper = 0.3f; /* cosine of 2 degrees; a third of an outlier */
+    static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    const pst_field *f = job->field;
+    const pst_shading *own = &f->shading[i];
+    int width = f->problem->capture->width, height = f->problem->capture->height, count = 0;
+    int x = (int)(f->pixel[i] % (size_t)width), y = (int)(f->pixel[i] / (size_t)width);
+    for (int k = 0; k < 4; k++) {
+        int nx = x + step[k][0], ny = y + step[k][1];
+        if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+        int32_t other = job->slot[(size_t)ny * (size_t)width + (size_t)nx];
+        if (other < 0) continue;
+        const pst_shading *from = &f->shading[other];
+        if (vec3_dot(from->normal, own->normal) < differs && from->cost < own->cost - cheaper) found[count++] = from;
+    }
+    return count;
+}
+
+/* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
+ * where a run of pixels began. */
+static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
+{
+    const pst_field *f = job->field;
+    if (begun->valid) {
+        pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1]);
+        if (next.cost < begun->cost + 0.3f) return next;
+    }
+    pst_shading found = pst_lobe_fit(d, f->lobe);
+    *begun = (run_start){true, found.cost};
+    return found;
+}
+
+static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
 {
     const pst_field *f = job->field;
     const pst_capture *c = f->problem->capture;
+    size_t at = f->pixel[i];
     int padded = pst_padded(c->count);
     near_lights lights;
-    float weight[PST_MAX_LIGHTS];
-    pst_observations o = {padded, job->x, job->y, job->z, value, usable, f->terminator};
+    pst_observations o = {padded, job->x, job->y, job->z, value, usable, 0};
+    vec3 view = {0, 0, 1};
+    const pst_shading *start[4];
+    int starts = 0;
+    if (job->task == SPREAD) {
+        starts = better_neighbours(job, i, start);
+        job->next[i] = f->shading[i];
+        if (starts == 0) return;
+    }
     if (f->depth) {
         int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width);
-        point_lights(f->problem, vec3_scale(pst_ray(&c->camera, x, y), f->scale * f->depth->data[at]), padded, &lights);
+        vec3 ray = pst_ray(&c->camera, x, y);
+        view = vec3_normalize(vec3_scale(ray, -1));
+        point_lights(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), padded, &lights);
         divide_by_power(&lights, padded, value, usable);
         o.x = lights.x;
         o.y = lights.y;
         o.z = lights.z;
+    } else if (f->lobe && f->lobe->focal > 0) {
+        int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width);
+        view = vec3_normalize(vec3_make((0.5f * (float)c->width - 0.5f - (float)x) / f->lobe->focal,
+                                        ((float)y + 0.5f - 0.5f * (float)c->height) / f->lobe->focal, 1));
     }
-    pst_pixel p = pst_pixel_fit(&o, weight);
-    if (f->out) store(job, at, &o, weight, f->depth ? lights.power : NULL, p.b);
-    return p;
+    if (!f->lobe) {
+        float weight[PST_MAX_LIGHTS];
+        pst_pixel p = pst_pixel_fit(&o, weight);
+        job->cost[i] = p.cost;
+        if (f->b) f->b[i] = p.b;
+        return;
+    }
+    pst_lobe_data d;
+    pst_lobe_prepare(&o, view, &d);
+    if (job->task == FIT) f->shading[i] = fit_after(job, i, &d, begun);
+    if (job->task == REFINE) f->shading[i] = pst_lobe_refine(&d, f->lobe, &f->shading[i]);
+    for (int k = 0; k < starts; k++) {
+        pst_shading trial = pst_lobe_refine(&d, f->lobe, start[k]);
+        if (trial.cost < job->next[i].cost) job->next[i] = trial;
+    }
+    if (job->task == STORE) store_pixel(job, at, &d, &f->shading[i], f->depth ? lights.power : NULL);
+    job->cost[i] = f->shading[i].cost;
 }
 
 static void fit_block(void *context, size_t block)
@@ -136,37 +214,73 @@ static void fit_block(void *context, size_t block)
     int count = (int)(left < BLOCK ? left : BLOCK);
     size_t stride = (size_t)pst_padded(f->problem->capture->count);
     gathered g;
+    run_start begun = {false, 0};
     memset(g.value, 0, (size_t)count * stride * sizeof *g.value);
     memset(g.usable, 0, (size_t)count * stride * sizeof *g.usable);
     pst_gather(f->problem, f->pixel + first, (size_t)count, g.value, g.usable, stride);
-    for (int j = 0; j < count; j++) {
-        size_t i = first + (size_t)j;
-        pst_pixel p = fit_pixel(job, f->pixel[i], g.value + (size_t)j * stride, g.usable + (size_t)j * stride);
-        job->cost[i] = p.cost;
-        if (f->b) f->b[i] = p.b;
-    }
+    for (int j = 0; j < count; j++)
+        fit_pixel(job, first + (size_t)j, g.value + (size_t)j * stride, g.usable + (size_t)j * stride, &begun);
 }
 
-status pst_field_fit(const pst_field *f, double *cost)
+static status run(fit_job *job)
 {
+    const pst_field *f = job->field;
     int count = f->problem->capture->count;
     if (count > PST_MAX_LIGHTS)
         return fail(ERROR_INPUT, "%d pictures are more than the robust fit's %d; use method ls", count, PST_MAX_LIGHTS);
     size_t padded = (size_t)pst_padded(count);
     float *memory = calloc(3 * padded + f->count, sizeof *memory);
     if (!memory) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
-    fit_job job = {f, memory, memory + padded, memory + 2 * padded, memory + 3 * padded};
+    job->x = memory;
+    job->y = job->x + padded;
+    job->z = job->y + padded;
+    job->cost = job->z + padded;
     for (int k = 0; k < count; k++) {
-        job.x[k] = f->problem->light[k].direction.x;
-        job.y[k] = f->problem->light[k].direction.y;
-        job.z[k] = f->problem->light[k].direction.z;
+        job->x[k] = f->problem->light[k].direction.x;
+        job->y[k] = f->problem->light[k].direction.y;
+        job->z[k] = f->problem->light[k].direction.z;
     }
-    parallel_for((f->count + BLOCK - 1) / BLOCK, fit_block, &job);
-    *cost = 0;
+    parallel_for((f->count + BLOCK - 1) / BLOCK, fit_block, job);
+    job->total = 0;
     for (size_t i = 0; i < f->count; i++)
-        *cost += (double)job.cost[i];
+        job->total += (double)job->cost[i];
     free(memory);
     return OK;
+}
+
+status pst_field_fit(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = FIT};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_refine(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = REFINE};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_store(const pst_field *f, pst_surface *out)
+{
+    return run(&(fit_job){.field = f, .task = STORE, .out = out});
+}
+
+status pst_field_spread(const pst_field *f, const int32_t *slot, size_t *moved)
+{
+    fit_job job = {.field = f, .task = SPREAD, .slot = slot, .next = malloc(f->count * sizeof *job.next)};
+    if (!job.next) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    status s = run(&job);
+    *moved = 0;
+    for (size_t i = 0; s == OK && i < f->count; i++) {
+        *moved += job.next[i].cost < f->shading[i].cost;
+        f->shading[i] = job.next[i];
+    }
+    free(job.next);
+    return s;
 }
 
 status pst_field_sample(const pst_problem *p, size_t count, uint32_t **pixel, size_t *found)

@@ -7,21 +7,32 @@
 #ifndef MERLIN_STEREO_FIELD_FIT_H
 #define MERLIN_STEREO_FIELD_FIT_H
 
+#include "stereo/lobe_fit.h"
 #include "stereo/solve_parts.h"
 
 typedef struct pst_field {
     const pst_problem *problem;
     const uint32_t *pixel; /* indices into the pictures */
     size_t count;
-    const img *depth; /* NULL: distant lights */
-    float scale;      /* of depth */
-    float terminator;
-    pst_surface *out; /* NULL: not asked for */
-    vec3 *b;          /* count: albedo times normal, whichever way it faces; NULL: not asked for */
+    const img *depth;     /* NULL: distant lights */
+    float scale;          /* of depth */
+    const pst_lobe *lobe; /* NULL: Lambert's law alone */
+    vec3 *b;              /* count, albedo times normal, whichever way it faces; NULL: not asked for */
+    pst_shading *shading; /* count; with a lobe */
 } pst_field;
 
 /* cost: the pixels' robust losses, summed in their order whatever the number of threads. */
 status pst_field_fit(const pst_field *f, double *cost);
+
+/* The same, started from the field's shading. */
+status pst_field_refine(const pst_field *f, double *cost);
+
+/* Fits again from the four neighbours' results where they differ, and keeps what costs less. slot: a pixel's place in
+ * the list, -1 outside. *moved: pixels that took another's. */
+status pst_field_spread(const pst_field *f, const int32_t *slot, size_t *moved);
+
+/* Normal, albedo and residual into the surface's pictures. */
+status pst_field_store(const pst_field *f, pst_surface *out);
 
 /* Grey values (the mean of the channels, each under unit intensity) of count pixels and whether they are usable (1, 0):
  * one pixel's all pictures together, pst_padded(pictures) a pixel, the next pixel's stride behind. */

@@ -21,6 +21,8 @@ typedef struct near_job {
     pst_surface *out;
     pst_field sample; /* for the scale */
     pst_camera camera;
+    pst_lobe lobe;
+    pst_shading *shading; /* a pixel */
 } near_job;
 
 static void fill_plane(const pst_problem *p, float distance, img *depth)
@@ -80,9 +82,11 @@ static status fit_normals(const near_job *job)
                    .count = p->pixel_count,
                    .depth = &job->out->depth,
                    .scale = 1,
-                   .out = job->out};
+                   .lobe = &job->lobe,
+                   .shading = job->shading};
     double cost;
-    return pst_field_fit(&f, &cost);
+    status s = pst_field_fit(&f, &cost);
+    return s == OK ? pst_field_store(&f, job->out) : s;
 }
 
 static status iterate(near_job *job, bool scale_known)
@@ -110,24 +114,37 @@ static status iterate(near_job *job, bool scale_known)
     return s == OK ? fit_normals(job) : s;
 }
 
+/* From a plane at the distance that is known or most likely. */
+static status solve(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    bool scale_known = job->camera.mean_distance > 0;
+    job->camera.perspective = true;
+    if (!scale_known) job->camera.mean_distance = fmaxf(light_reach(p->capture), 1e-6f);
+    fill_plane(p, job->camera.mean_distance, &job->out->depth);
+    float scale = 1;
+    status s = scale_known ? OK : best_scale(job, 1, 1.3f, 8, &scale);
+    rescale(job, scale);
+    return s == OK ? iterate(job, scale_known) : s;
+}
+
 status pst_solve_near(const pst_problem *p, pst_surface *out)
 {
-    near_job job = {.problem = p, .out = out, .sample = {.problem = p}, .camera = p->capture->camera};
-    bool scale_known = job.camera.mean_distance > 0;
+    near_job job = {.problem = p,
+                    .out = out,
+                    .sample = {.problem = p},
+                    .camera = p->capture->camera,
+                    .lobe = {.masking = 0.4f, .tail = 2}};
+    job.shading = calloc(p->pixel_count, sizeof *job.shading);
+    if (!job.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
     uint32_t *pixel = NULL;
     status s = img_new(&out->depth, p->capture->width, p->capture->height, 1);
     if (s == OK) s = pst_field_sample(p, SAMPLE, &pixel, &job.sample.count);
-    if (s != OK) return s;
-    job.sample.pixel = pixel;
-    job.camera.perspective = true;
-    if (!scale_known) job.camera.mean_distance = fmaxf(light_reach(p->capture), 1e-6f);
-    fill_plane(p, job.camera.mean_distance, &out->depth);
-    if (!scale_known) {
-        float scale = 1;
-        s = best_scale(&job, 1, 1.3f, 8, &scale);
-        rescale(&job, scale);
+    if (s == OK) {
+        job.sample.pixel = pixel;
+        s = solve(&job);
     }
-    if (s == OK) s = iterate(&job, scale_known);
+    free(job.shading);
     free(pixel);
     return s;
 }

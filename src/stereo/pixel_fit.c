@@ -17,7 +17,7 @@ enum { STEPS = 6, POLISH = 4 };
 static const float widest = 0.45f, narrowest = 0.05f, narrowing = 0.6444f; /* (0.05 / 0.45)^(1/5) */
 
 /* Ranks of the starts' darkest and brightest observations: many shadows and highlights, few shadows, few of either. */
-static const float window[][2] = {{0.2f, 0.6f}, {0.3f, 0.8f}, {0.1f, 0.95f}};
+static const float window[][2] = {{0.2f, 0.6f}, {0.3f, 0.8f}, {0.1f, 0.95f}, {0.7f, 0.97f}};
 enum { STARTS = sizeof window / sizeof *window };
 
 /* albedo · (n·l − τ) = b · (l − τ n): linear in b for the last n. */
@@ -51,7 +51,7 @@ static float reweigh(const pst_observations *o, vec3 b, float width, float *rest
         float fit = b.x * o->x[i] + b.y * o->y[i] + b.z * o->z[i] - offset;
         float r = o->value[i] - (fit > 0 ? fit : 0);
         float t = r * r * inverse, g = 1 / (1 + t);
-        cost += o->usable[i] * t * g;
+        cost += o->usable[i] * (PST_IS_SHADOW(o->value[i], r) ? PST_SHADOW_COST : 1) * t * g;
         w[i] = fit > 0 ? o->usable[i] * g * g : 0;
     }
     return cost;

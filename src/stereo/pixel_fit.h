@@ -11,12 +11,17 @@
 #include "base/vec.h"
 
 /* Lengths are rounded up to whole vectors, so that loops over lights have no remainder; the padding is not usable. */
-enum { PST_LANES = 16, PST_MAX_LIGHTS = 1024 };
+enum { PST_LANES = 8, PST_MAX_LIGHTS = 1024 };
 
 static inline int pst_padded(int count)
 {
     return (count + PST_LANES - 1) / PST_LANES * PST_LANES;
 }
+
+/* An observation below a quarter of the fit is taken for a shadow, which costs less than any other outlier: shadows may
+ * well be the most that a pixel sees. */
+#define PST_SHADOW_COST 0.1f
+#define PST_IS_SHADOW(value, residual) (3 * (value) < -(residual))
 
 typedef struct pst_observations {
     int padded;

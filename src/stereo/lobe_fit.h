@@ -1,0 +1,54 @@
+/* One pixel's surface from its values under many lights: Lambert's law plus one specular lobe, with cast shadows, light
+ * from elsewhere and what the lobe does not explain as outliers.
+ *
+ *     pst_lobe_data data;
+ *     pst_lobe_prepare(&observations, view, &data);
+ *     pst_shading found = pst_lobe_fit(&data, &lobe);
+ *
+ * The radiance under a light l is  a max(0, n·l − τ) + s G(n·l) (1 + u (1 − (n·h)²))^−γ,  h half way between l and the
+ * view. With γ = 2 this is the GGX distribution (u = 1/α² − 1; Walter et al. 2007); smaller γ has longer tails, γ = 8
+ * is close to Beckmann's and to Blinn's cosine power. G(c) = c / (c (1 − k) + k) is Schlick's masking toward the light
+ * (k = 1: a cosine). Fresnel's factor is constant to a percent for lights of the camera's side and goes into s. */
+#ifndef MERLIN_STEREO_LOBE_FIT_H
+#define MERLIN_STEREO_LOBE_FIT_H
+
+#include "stereo/pixel_fit.h"
+
+/* What all pixels share. */
+typedef struct pst_lobe {
+    int tail;         /* γ: 2, 4 or 8 */
+    float masking;    /* k */
+    float terminator; /* τ */
+    float focal;      /* pixels, of the camera under distant lights; 0: seen from afar */
+} pst_lobe;
+
+typedef struct pst_shading {
+    vec3 normal;     /* unit */
+    float albedo;    /* a */
+    float gloss;     /* s */
+    float sharpness; /* log u */
+    float cost;      /* sum of the robust loss over the usable observations, each in [0, 1] */
+} pst_shading;
+
+typedef struct pst_lobe_data {
+    pst_observations seen; /* borrowed */
+    float level;           /* a value that is ordinary for the pixel; residuals are in its unit */
+    float hx[PST_MAX_LIGHTS], hy[PST_MAX_LIGHTS], hz[PST_MAX_LIGHTS];
+    float shadowy[PST_MAX_LIGHTS];   /* what less an observation costs if it is a shadow */
+    float precision[PST_MAX_LIGHTS]; /* usable / (level² + what the value is above it, squared) */
+} pst_lobe_data;
+
+/* view: unit, to the camera. */
+void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out);
+
+/* The best of several starts: Lambert's fit, and the normal that the brightest observations mirror. */
+pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe);
+
+/* The best near a start. */
+pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start);
+
+/* weight gets each observation's share in the fit, in [0, 1]; specular (may be NULL) what of it is the lobe. */
+void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight,
+                    float *specular);
+
+#endif
