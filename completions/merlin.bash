@@ -20,7 +20,7 @@ _merlin() {
         return
     fi
     if [[ $command == eval ]] && ((COMP_CWORD == 2)) && [[ $current != -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "stereo" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "stereo photos" -- "$current")
         return
     fi
     case $previous in
