@@ -9,10 +9,10 @@ _merlin() {
             --sphere --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
-        [train]="--data --output --resume --init --note --threads --quiet --help"
+        [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
             --help"
-        [bench]="--model --config --batch --quick --json --quiet --help"
+        [bench]="--model --config --batch --stereo --quick --json --quiet --help"
         [info]="--tensors --json --help"
     )
     if ((COMP_CWORD == 1)); then
