@@ -41,31 +41,23 @@ static status open_photo(work *w)
 
 /* ---- draws ---- */
 
-static void add_albedo(const pst_surface *s, img *albedo)
-{
-    size_t values = 3 * (size_t)albedo->width * (size_t)albedo->height, channels = (size_t)s->albedo.channels;
-    for (size_t i = 0; i < values; i++)
-        albedo->data[i] += s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)] / DRAW_MOST;
-}
-
-static status solve_draw(work *w, int draw, stereo_result *out)
+static status solve_draw(work *w, int draw)
 {
     pst_surface found;
     status s = draw_solve(&w->relit.capture, draw, w->photo->method, &found);
     if (s != OK) return s;
-    add_albedo(&found, &out->albedo);
     w->normals[w->draws++] = found.normal;
     found.normal = (img){0};
     pst_surface_free(&found);
     return OK;
 }
 
-static status solve_all(work *w, stereo_result *out)
+static status solve_all(work *w)
 {
     int (*stop)(void) = w->photo->params.stop;
     status s = OK;
     for (int d = 0; d < DRAW_MOST && s == OK; d++)
-        s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : solve_draw(w, d, out);
+        s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : solve_draw(w, d);
     return s;
 }
 
@@ -137,7 +129,8 @@ static status result_new(work *w, stereo_result *out)
         .error_name = "spread of the normals", .error_white = SPREAD_WHITE, .camera = w->relit.capture.camera};
     status s = img_copy(&out->mask, &w->relit.capture.mask);
     if (s == OK) s = img_new(&out->normal, side, side, 3);
-    if (s == OK) s = img_new(&out->albedo, side, side, 3);
+    /* the pictures were made from it: a solver can only blur it with highlights */
+    if (s == OK) s = img_copy(&out->albedo, &w->relit.maps.albedo);
     if (s == OK) s = img_new(&out->error, side, side, 1);
     return s;
 }
@@ -157,7 +150,7 @@ status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *repor
     *out = (stereo_result){0};
     status s = open_photo(&w);
     if (s == OK) s = result_new(&w, out);
-    if (s == OK) s = solve_all(&w, out);
+    if (s == OK) s = solve_all(&w);
     if (s == OK) {
         average_all(&w, out, report);
         pst_integration how = {.preserve_edges = p->preserve_edges};
