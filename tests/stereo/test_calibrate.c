@@ -223,7 +223,7 @@ static void a_real_matte_ball_comes_out_round(void **state)
             count++;
         }
     print_message("gray: %.2f degrees over %.0f pixels\n", sum / count, count);
-    assert_true(sum / count < 5); /* the goal; 4.3 measured */
+    assert_true(sum / count < 5); /* the goal; 4.6 measured */
     pst_surface_free(&found);
     pst_capture_free(&capture);
     pst_calibration_free(&c);
