@@ -15,12 +15,12 @@ typedef enum field_task { FIT, REFINE, SPREAD, MODEL, STORE } field_task;
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    const int32_t *slot; /* spread */
-    pst_shading *next;   /* spread: to take the place of the field's */
+    const int32_t *slot;   /* spread */
+    pst_shading *next;     /* spread: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
-    pst_surface *out;    /* store */
-    float *x, *y, *z;    /* distant lights, padded */
-    float *cost;         /* a pixel */
+    pst_surface *out;      /* store */
+    float *x, *y, *z;      /* distant lights, padded */
+    float *cost;           /* a pixel */
     double total;
 } fit_job;
 

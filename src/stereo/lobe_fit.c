@@ -358,8 +358,8 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
     for (int i = 0; i < o->padded; i++) {
         float nl = n.x * o->x[i] + n.y * o->y[i] + n.z * o->z[i];
         float nh = n.x * d->hx[i] + n.y * d->hy[i] + n.z * d->hz[i], lit = fmaxf(nl, 0);
-        model[i] = at->albedo * fmaxf(nl - lobe->terminator, 0) +
-                   at->gloss * lobe_at(&tail, u, fmaxf(1 - nh * nh, 0), lit, k);
+        model[i] =
+            at->albedo * fmaxf(nl - lobe->terminator, 0) + at->gloss * lobe_at(&tail, u, fmaxf(1 - nh * nh, 0), lit, k);
         float r = o->value[i] - model[i], t = r * r * d->precision[i] * narrow, q = 1 / (1 + t);
         weight[i] = nl > lobe->terminator ? o->usable[i] * q * q : 0;
     }

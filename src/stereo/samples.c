@@ -13,7 +13,7 @@
 /* Fewer lit pixels than this do not span the lights; the shadowed are then taken too. */
 enum { ENOUGH = 24 };
 /* In a pixel's ordinary brightness: below is a shadow, above a highlight, which counts as this much. */
-static const float dark = 0.05f, bright = 1.8f;
+static const float dark = 0.05f, bright = 1.2f;
 
 status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
 {

@@ -28,7 +28,7 @@ typedef struct semi_job {
     pst_field field;
     pst_lobe lobe;
     float *weight, *model, *value, *usable; /* count × padded */
-    float *ratio;                            /* count */
+    float *ratio;                           /* count */
     size_t padded;
     double cost;
 } semi_job;

@@ -5,9 +5,10 @@
  *    is left between the factors.
  * 2. Prior: all lights are equally strong. It leaves a rotation or reflection (H. Hayakawa, Photometric stereo under a
  *    light source with arbitrary motion, JOSA A 11(11), 1994).
- * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using integrability,
- *    CVPR 1997): that fixes the rotation, searched for over all of them, but for a sign, convex or concave; the object
- *    is taken to be convex: near its outline it faces outward.
+ * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
+ * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
+ * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
+ * outward.
  * 4. With the lights found, surface, highlights and lights are refined in turn, and the robust solver does the rest. */
 #include <lapacke.h>
 #include <math.h>
@@ -22,6 +23,8 @@ enum { SAMPLE = 1500, REFITS = 8, PASSES = 5, GRID = 24 };
 
 /* Of the strengths' quadric: its smallest axis' share of its largest. */
 #define FLATTEST 0.02
+/* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
+#define FRONTAL 0.8
 
 typedef struct lights3 {
     int count;
@@ -109,26 +112,39 @@ static bool integrability_row(const pseudo *f, size_t at, double row[6])
     return true;
 }
 
+static double row_length(const double row[6])
+{
+    double square = 0;
+    for (int j = 0; j < 6; j++)
+        square += row[j] * row[j];
+    return sqrt(square);
+}
+
 /* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
- * depth jumps), for the minors (A3 × A1, A3 × A2) of the last pass. */
+ * depth jumps, and where the surface turns most), for the minors (A3 × A1, A3 × A2) of the last pass. */
 static status integrability_form(const pseudo *f, const double minor[6], double *scale, double form[36])
 {
     const pst_problem *p = f->problem;
-    double row[6], absolute = 0;
+    double row[6], absolute = 0, lengths = 0, length;
     size_t count = 0;
     memset(form, 0, 36 * sizeof *form);
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        if (!integrability_row(f, p->pixel[i], row)) continue;
+        lengths += row_length(row);
+        count++;
+    }
+    if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+    length = fmax(lengths / (double)count, 1e-12);
     for (size_t i = 0; i < p->pixel_count; i++) {
         if (!integrability_row(f, p->pixel[i], row)) continue;
         double r = 0;
         for (int j = 0; j < 6; j++)
             r += row[j] * minor[j];
-        double w = 1 / (1 + r * r / (*scale * *scale));
+        double steep = row_length(row) / length, w = 1 / ((1 + r * r / (*scale * *scale)) * (1 + steep * steep));
         for (int j = 0; j < 36; j++)
             form[j] += w * row[j / 6] * row[j % 6];
         absolute += fabs(r);
-        count++;
     }
-    if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
     *scale = fmax(absolute / (double)count, 1e-12);
     return OK;
 }
@@ -191,9 +207,18 @@ static void descend(const double form[36], double reach, double a[9])
     }
 }
 
-/* The rotation that makes the surface most integrable. Where the surface faces is no matter of the grid's phase. */
-static status rotate(const pseudo *f, double a[9])
+static vec3 mean_light(const lights3 *l)
 {
+    vec3 sum = {0, 0, 0};
+    for (int k = 0; k < l->count; k++)
+        sum = vec3_add(sum, vec3_make(l->x[k], l->y[k], l->z[k]));
+    return vec3_normalize(sum);
+}
+
+/* Of the rotations that leave the lights' mean on the camera's side, the one that makes the surface most integrable. */
+static status rotate(const pseudo *f, const lights3 *l, double a[9])
+{
+    vec3 mean = mean_light(l);
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     double form[36], minor[6] = {0}, scale = HUGE_VAL, best = HUGE_VAL;
     status s = integrability_form(f, minor, &scale, form);
@@ -205,7 +230,7 @@ static status rotate(const pseudo *f, double a[9])
         turned(about_x, trial, tilted);
         turned(last, tilted, trial);
         double value = form_at(form, trial);
-        if (value >= best) continue;
+        if (value >= best || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
         best = value;
         memcpy(a, trial, sizeof trial);
     }
@@ -285,7 +310,7 @@ static status resolve(pseudo *f, lights3 *l)
     transform_lights(whiten, l);
     for (size_t i = 0; i < f->problem->pixel_count; i++)
         f->b[i] = transform(unwhiten, f->b[i]);
-    s = rotate(f, a);
+    s = rotate(f, l, a);
     if (s != OK) return s;
     double outward = outwardness(f, a, &toward);
     for (int j = 0; j < 6; j++)
