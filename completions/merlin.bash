@@ -9,7 +9,7 @@ _merlin() {
             --sphere --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
-        [train]="--data --output --resume --init --note --threads --quiet --help"
+        [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
             --help"
         [bench]="--model --config --batch --quick --json --quiet --help"
@@ -20,7 +20,7 @@ _merlin() {
         return
     fi
     if [[ $command == eval ]] && ((COMP_CWORD == 2)) && [[ $current != -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "stereo" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "stereo photos" -- "$current")
         return
     fi
     case $previous in

@@ -13,10 +13,13 @@
 static const char help[] =
     "usage: merlin eval --data DIR --model W [options]\n"
     "       merlin eval --means DIR -o FILE.exr\n"
-    "       merlin eval stereo --data DIR [options]\n\n"
+    "       merlin eval stereo --data DIR [options]\n"
+    "       merlin eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures a model on samples it was not trained on (a folder made by merlin render), beside two trivial answers:\n"
     "the data set's mean maps, and maps inflated from the mask. The second form computes the mean maps of a folder of\n"
-    "training data, to be given to the first. The third measures photometric stereo (merlin eval stereo --help).\n\n"
+    "training data, to be given to the first. The third measures photometric stereo (merlin eval stereo --help), the "
+    "fourth\n"
+    "shows photographs taken apart by several weights side by side (merlin eval photos --help).\n\n"
     "  --data DIR         held-out samples\n"
     "  --model W          weights to measure\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
@@ -158,6 +161,7 @@ static int run_evaluation(const eval_request *r)
 int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
     eval_request r = {.options = {.figure_rows = 8, .stopped = cli_interrupted}};
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, ":o:h", long_options, NULL)) != -1;) {

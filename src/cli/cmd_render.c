@@ -27,7 +27,7 @@ static const char help[] =
     "  --targets K     also K images under random lights in front, with cast shadows\n"
     "  --bounces       also keep bounce 2 and bounce 3 apart\n"
     "  --spp N         camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
-    "  --paths N       indirect paths a pixel (default 8)\n"
+    "  --paths N       indirect paths a pixel (default 8); environment light takes five for every eight\n"
     "  --threads T     threads (default: all processors)\n"
     "  --quiet         no progress bar\n"
     "  --json          a report as JSON on stdout\n"
@@ -71,7 +71,7 @@ static status take_number(int option, const char *text, request *r)
         image->targets = (int)value;
         return s;
     case 'r':
-        s = cli_int("--spp", text, 1, RENDER_MAX_STRATA * RENDER_MAX_STRATA, &value);
+        s = cli_int("--spp", text, 1, VISIBILITY_MAX_STRATA * VISIBILITY_MAX_STRATA, &value);
         image->strata = (int)lround(sqrt((double)value));
         if (s == OK && (image->strata * image->strata != value || (value > 1 && image->strata % 2)))
             return fail(ERROR_USAGE, "--spp must be 1, 4, 16, 36 or 64, not %s", text);

@@ -16,6 +16,7 @@ static void help(void)
          "                      validation.csv, curves.png and seconds.txt\n"
          "  -r, --resume        go on from DIR's checkpoint\n"
          "  -i, --init W        start from these weights (to fine-tune them)\n"
+         "      --init-shared W start from those of another model's weights that fit by name and shape\n"
          "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"
          "  -t, --threads N     processor threads (default: all)\n"
          "  -q, --quiet         no progress bar\n"
@@ -24,11 +25,14 @@ static void help(void)
          "Interrupted (Ctrl-C), it writes a checkpoint first.");
 }
 
+enum { OPTION_INIT_SHARED = 256 };
+
 static const struct option options[] = {
     {"data", required_argument, NULL, 'd'},
     {"output", required_argument, NULL, 'o'},
     {"resume", no_argument, NULL, 'r'},
     {"init", required_argument, NULL, 'i'},
+    {"init-shared", required_argument, NULL, OPTION_INIT_SHARED},
     {"note", required_argument, NULL, 'n'},
     {"threads", required_argument, NULL, 't'},
     {"quiet", no_argument, NULL, 'q'},
@@ -62,7 +66,9 @@ int cmd_train(int argc, char **argv)
             o.resume = true;
             break;
         case 'i':
+        case OPTION_INIT_SHARED:
             o.init = optarg;
+            o.init_shared = c == OPTION_INIT_SHARED;
             break;
         case 'n':
             o.note = optarg;

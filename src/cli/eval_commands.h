@@ -5,4 +5,7 @@
 /* merlin eval stereo; argv[0] is "stereo". Returns the exit status. */
 int eval_stereo(int argc, char **argv);
 
+/* merlin eval photos; argv[0] is "photos". Returns the exit status. */
+int eval_photos(int argc, char **argv);
+
 #endif

@@ -46,6 +46,7 @@ status maps_check(const merlin_maps *maps);
 typedef struct stage {
     surface full, low;
     img low_photo;              /* radiance */
+    img flash;                  /* `low` under it, bounce 1 */
     shadow_caster caster;       /* empty unless shadows are cast */
     const env_map *environment; /* lights beside the point light, or NULL; borrowed */
     float white;                /* the radiance that becomes 1: the photograph's, unless changed */

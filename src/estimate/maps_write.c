@@ -6,20 +6,13 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/api.h"
-#include "estimate/exposure.h"
+#include "estimate/overview.h"
 #include "estimate/staging.h"
-#include "image/figure.h"
 #include "image/write.h"
 
 /* ---- one file each ---- */
 
-enum { TILES = 8, TILE_SIZE = 256, COLUMNS = 4 };
-static const vec3 from_left = {-0.67f, 0.47f, -0.43f}, from_right = {0.77f, 0.28f, -0.43f};
-
-typedef struct overview {
-    stage stage;
-    img normal, roughness, depth, reconstruction, left, right;
-} overview;
+enum { TILE_SIZE = 256, COLUMNS = 4 };
 
 typedef struct job {
     const merlin_maps *maps;
@@ -101,59 +94,11 @@ static status write_report(const job *j, const char *path)
 
 /* ---- the overview ---- */
 
-static void overview_free(overview *o)
-{
-    stage_free(&o->stage);
-    img *images[] = {&o->normal, &o->roughness, &o->depth, &o->reconstruction, &o->left, &o->right};
-    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
-        img_free(images[i]);
-}
-
-/* What the sheet shows as sRGB is the value itself. */
-static status show_values(const img *values, img *out)
-{
-    status s = img_copy(out, values);
-    if (s != OK) return s;
-    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
-    for (size_t i = 0; i < count; i++)
-        out->data[i] = srgb_decode(out->data[i]);
-    return OK;
-}
-
-/* Before the files are written side by side, because the network uses every processor itself. */
-static status make_overview(network *n, const merlin_maps *maps, overview *o)
-{
-    status s = stage_new(maps, maps->size, MERLIN_BY_BRDF, &o->stage);
-    if (s != OK) return s;
-    /* an underexposed photograph is shown as it should have been exposed */
-    o->stage.white = EXPOSURE_WHITE;
-    size_t count = 3 * (size_t)maps->size * (size_t)maps->size;
-    for (size_t i = 0; i < count; i++)
-        o->stage.low_photo.data[i] /= EXPOSURE_WHITE;
-    const surface *full = &o->stage.full;
-    s = figure_normals(&full->normal, &full->mask, &o->normal);
-    if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
-    if (s == OK) s = show_values(&full->roughness, &o->roughness);
-    if (s == OK) s = stage_relight(n, &o->stage, vec3_make(0, 0, 0), &o->reconstruction);
-    if (s == OK) s = stage_relight(n, &o->stage, from_left, &o->left);
-    if (s == OK) s = stage_relight(n, &o->stage, from_right, &o->right);
-    return s;
-}
-
 static status write_overview(const job *j, const char *path)
 {
-    const overview *o = &j->overview;
-    const figure_tile tiles[TILES] = {
-        {"photograph", &o->stage.low_photo},
-        {"albedo", &o->stage.full.albedo},
-        {"normal", &o->normal},
-        {"roughness", &o->roughness},
-        {"depth", &o->depth},
-        {"reconstruction", &o->reconstruction},
-        {"light from the left", &o->left},
-        {"light from the right", &o->right},
-    };
-    return figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
+    figure_tile tiles[OVERVIEW_TILES];
+    overview_tiles(&j->overview, tiles);
+    return figure_sheet(path, tiles, OVERVIEW_TILES, COLUMNS, TILE_SIZE);
 }
 
 /* ---- all of them ---- */
@@ -217,7 +162,8 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const char *fold
     if (!b) return fail(ERROR_MEMORY, "no memory to write %s", folder);
     b->job.maps = maps;
     b->stop = stop;
-    status s = make_overview(model->network, maps, &b->job.overview);
+    /* before the files are written side by side, because the network uses every processor itself */
+    status s = overview_new(model->network, maps, &b->job.overview);
     if (s == OK && !maps->reconstruction.data)
         s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to write");
     if (s == OK) s = write_through(b, folder);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "estimate/api.h"
+#include "estimate/bounce.h"
 #include "estimate/relight_env.h"
 #include "image/resize.h"
 
@@ -27,6 +28,7 @@ void stage_free(stage *s)
     surface_free(&s->full);
     surface_free(&s->low);
     img_free(&s->low_photo);
+    img_free(&s->flash);
     shadow_caster_free(&s->caster);
 }
 
@@ -104,6 +106,7 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
         out->full = whole;
     }
     if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
+    if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
     if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
     if (s != OK) stage_free(out);
     return s;
@@ -171,7 +174,9 @@ static status add_environment(const stage *s, img *low, img *full, img *ambient)
 static status add_indirect(network *n, const stage *s, const img *low, const img *ambient, img *full)
 {
     img indirect = {0}, large = {0};
-    status result = network_indirect(n, &s->low, low, ambient->data ? ambient : NULL, &indirect);
+    const img *more = ambient->data ? ambient : NULL;
+    status result = network_indirect(n, &s->low, low, more, &indirect);
+    if (result == OK) result = bounce_follow(&s->flash, low, more, &indirect);
     if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, full->width, full->height, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "estimate/shadow.h"
 #include "eval/metrics.h"
 #include "eval/predict.h"
 #include "eval/sheet.h"
@@ -46,7 +47,7 @@ double eval_score(const eval_scores *scores, eval_row row, eval_answer answer)
 double eval_best_trivial(const eval_scores *scores, eval_row row)
 {
     double best = NAN;
-    for (int answer = EVAL_MEAN; answer < EVAL_ANSWERS; answer++) {
+    for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++) {
         double score = eval_score(scores, row, (eval_answer)answer);
         best = row >= EVAL_RECONSTRUCTION ? fmax(best, score) : fmin(best, score);
     }
@@ -111,10 +112,10 @@ static status score_reconstruction(evaluation *e, subject *on)
     return s;
 }
 
-/* The trivial answers relight by rendering alone, so both of the model's ways are held against the same figures. */
+/* The trivial answers relight by rendering alone, so all of the model's ways are held against the same figures. */
 static void repeat_trivial(eval_scores *scores, eval_row from, eval_row to)
 {
-    for (int answer = EVAL_MEAN; answer < EVAL_ANSWERS; answer++) {
+    for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++) {
         scores->sum[to][answer] = scores->sum[from][answer];
         scores->count[to][answer] = scores->count[from][answer];
     }
@@ -198,6 +199,43 @@ static status score_brdf_targets(evaluation *e, subject *on)
     return s;
 }
 
+/* The true maps under one light with the true indirect light: what relighting by BRDF itself leaves out. */
+static status score_true_maps(subject *on, const sample_target *t, const shadow_caster *caster, const img *target)
+{
+    const sample *s = on->sample;
+    const eval_row rows[] = {EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS};
+    img lit = {0}, seen = {0};
+    status st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, t->light, &lit);
+    if (st == OK) st = shadow_cast(caster, t->light, lit.width, lit.height, &seen);
+    for (int i = 0; st == OK && i < 2; i++) {
+        img full = {0};
+        if (i == 1) shadow_darken(&seen, &lit);
+        st = eval_picture(&lit, &t->indirect, &on->mask, &full);
+        if (st == OK) st = note_similarity(&on->scores, rows[i], EVAL_TRUE_MAPS, &full, target);
+        img_free(&full);
+    }
+    img_free(&lit);
+    img_free(&seen);
+    return st;
+}
+
+static status score_shadows(evaluation *e, subject *on, int first, const relighting *r)
+{
+    const eval_maps *truth = &on->truth;
+    shadow_caster caster;
+    status s = eval_predict_shadows(e->model, &on->mask, on->sample->fov, r->lights, &e->prediction);
+    if (s == OK) s = shadow_caster_new(&truth->depth, &truth->normal, &on->mask, on->sample->fov, &caster);
+    if (s != OK) return s;
+    for (int i = 0; s == OK && i < r->count; i++) {
+        const img *target = &r->targets[i];
+        s = note_similarity(&on->scores, EVAL_TRACED_SHADOWS, EVAL_MODEL, &e->prediction.shadowed[i], target);
+        if (s == OK) s = score_true_maps(on, &on->sample->targets[first + i], &caster, target);
+    }
+    repeat_trivial(&on->scores, EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS);
+    shadow_caster_free(&caster);
+    return s;
+}
+
 static status score_traced_targets(evaluation *e, subject *on)
 {
     status s = OK;
@@ -207,6 +245,7 @@ static status score_traced_targets(evaluation *e, subject *on)
         if (s != OK) return s;
         s = eval_predict(e->model, &on->image, &on->mask, r.lights, &e->prediction);
         if (s == OK) s = score_relighting(e, on, &r);
+        if (s == OK) s = score_shadows(e, on, first, &r);
         relighting_free(&r);
     }
     return s;

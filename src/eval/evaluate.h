@@ -28,6 +28,7 @@ typedef enum eval_row {
     EVAL_RELIT_BRDF,     /* the estimated maps rendered, against the same */
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
+    EVAL_TRACED_SHADOWS, /* the maps' own cast shadows added */
     EVAL_ROWS
 } eval_row;
 
@@ -36,6 +37,7 @@ typedef enum eval_answer {
     EVAL_MEAN,      /* the data set's mean maps */
     EVAL_INFLATED,  /* maps inflated from the mask */
     EVAL_UNCHANGED, /* the input itself, as a relit picture */
+    EVAL_TRUE_MAPS, /* no trivial answer: the true maps rendered, with the true indirect light */
     EVAL_ANSWERS
 } eval_answer;
 

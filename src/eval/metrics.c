@@ -2,10 +2,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/parallel.h"
 
-enum { REACH = 5, WINDOW = 2 * REACH + 1, MOMENTS = 5 };
+/* CHUNK: windows of a row that are taken together, so that the loops over them are vectors. */
+enum { REACH = 5, WINDOW = 2 * REACH + 1, MOMENTS = 5, CHUNK = 64 };
 
 double eval_mse(const img *a, const img *b, const img *mask)
 {
@@ -65,47 +67,63 @@ static void gaussian(double weights[WINDOW])
         weights[i] /= sum;
 }
 
-/* Row y of x, y, x², y², xy, each filtered along the row. */
-static void filter_row(void *context, size_t y)
+/* CHUNK windows of row y: the weighted sums of x, y, x², y², xy along the row. */
+static void filter_chunk(const ssim_work *w, const float *a, const float *b, int count, double *out)
 {
-    const ssim_work *w = context;
     int channels = w->a->channels;
-    double *out = w->rows + y * MOMENTS * (size_t)w->width;
-    for (int i = 0; i < MOMENTS * w->width; i++)
-        out[i] = 0;
-    const float *a = img_at(w->a, 0, (int)y) + w->channel, *b = img_at(w->b, 0, (int)y) + w->channel;
-    for (int k = 0; k < WINDOW; k++) {
-        double g = w->weights[k];
-        for (int x = 0; x < w->width; x++) {
-            double p = a[(x + k) * channels], q = b[(x + k) * channels];
-            out[x] += g * p;
-            out[w->width + x] += g * q;
-            out[2 * w->width + x] += g * p * p;
-            out[3 * w->width + x] += g * q * q;
-            out[4 * w->width + x] += g * p * q;
-        }
+    double values[MOMENTS][CHUNK + WINDOW] = {0};
+    for (int x = 0; x < count + WINDOW - 1; x++) {
+        double p = a[x * channels], q = b[x * channels];
+        values[0][x] = p;
+        values[1][x] = q;
+        values[2][x] = p * p;
+        values[3][x] = q * q;
+        values[4][x] = p * q;
+    }
+    for (int i = 0; i < MOMENTS; i++) {
+        double sums[CHUNK] = {0};
+        for (int k = 0; k < WINDOW; k++)
+            for (int x = 0; x < CHUNK; x++)
+                sums[x] += w->weights[k] * values[i][x + k];
+        memcpy(out + i * w->width, sums, (size_t)count * sizeof *sums);
     }
 }
 
-static double similarity(const double m[MOMENTS])
+static void filter_row(void *context, size_t y)
 {
-    const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
-    double vp = m[2] - m[0] * m[0], vq = m[3] - m[1] * m[1], cov = m[4] - m[0] * m[1];
-    return (2 * m[0] * m[1] + c1) * (2 * cov + c2) / ((m[0] * m[0] + m[1] * m[1] + c1) * (vp + vq + c2));
+    const ssim_work *w = context;
+    double *out = w->rows + y * MOMENTS * (size_t)w->width;
+    for (int x = 0; x < w->width; x += CHUNK) {
+        int count = w->width - x < CHUNK ? w->width - x : CHUNK;
+        filter_chunk(w, img_at(w->a, x, (int)y) + w->channel, img_at(w->b, x, (int)y) + w->channel, count, out + x);
+    }
 }
 
+static double similarity(double p, double q, double pp, double qq, double pq)
+{
+    const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+    double vp = pp - p * p, vq = qq - q * q, cov = pq - p * q;
+    return (2 * p * q + c1) * (2 * cov + c2) / ((p * p + q * q + c1) * (vp + vq + c2));
+}
+
+/* The windows from row y on. */
 static void compare_row(void *context, size_t y)
 {
     const ssim_work *w = context;
+    size_t width = (size_t)w->width;
     double sum = 0;
-    for (int x = 0; x < w->width; x++) {
-        double m[MOMENTS] = {0};
-        for (int k = 0; k < WINDOW; k++) {
-            const double *row = w->rows + (y + (size_t)k) * MOMENTS * (size_t)w->width + x;
-            for (int i = 0; i < MOMENTS; i++)
-                m[i] += w->weights[k] * row[(size_t)i * (size_t)w->width];
+    for (size_t first = 0; first < width; first += CHUNK) {
+        size_t count = width - first < CHUNK ? width - first : CHUNK;
+        double m[MOMENTS][CHUNK] = {0};
+        for (size_t k = 0; k < WINDOW; k++) {
+            for (size_t i = 0; i < MOMENTS; i++) {
+                const double *row = w->rows + ((y + k) * MOMENTS + i) * width + first;
+                for (size_t x = 0; x < count; x++)
+                    m[i][x] += w->weights[k] * row[x];
+            }
         }
-        sum += similarity(m);
+        for (size_t x = 0; x < count; x++)
+            sum += similarity(m[0][x], m[1][x], m[2][x], m[3][x], m[4][x]);
     }
     w->means[y] = sum / w->width;
 }

@@ -3,6 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "estimate/bounce.h"
+#include "estimate/shadow.h"
+#include "estimate/smooth.h"
+
 struct eval_model {
     model_config config;
     nn_params *params;
@@ -67,12 +71,14 @@ status eval_prediction_new(const eval_model *m, eval_prediction *out)
 {
     *out = (eval_prediction){0};
     status s = eval_maps_new(&out->maps, m->size, m->size);
+    if (s == OK) s = img_new(&out->direct, m->size, m->size, 3);
     if (s == OK) s = img_new(&out->reconstruction, m->size, m->size, 3);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         if (s == OK) s = img_new(&out->by_network[i], m->size, m->size, 3);
         if (s == OK) s = img_new(&out->by_brdf[i], m->size, m->size, 3);
         if (s == OK) s = img_new(&out->full_by_network[i], m->size, m->size, 3);
         if (s == OK) s = img_new(&out->full_by_brdf[i], m->size, m->size, 3);
+        if (s == OK) s = img_new(&out->shadowed[i], m->size, m->size, 3);
     }
     if (s != OK) eval_prediction_free(out);
     return s;
@@ -81,12 +87,14 @@ status eval_prediction_new(const eval_model *m, eval_prediction *out)
 void eval_prediction_free(eval_prediction *p)
 {
     eval_maps_free(&p->maps);
+    img_free(&p->direct);
     img_free(&p->reconstruction);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         img_free(&p->by_network[i]);
         img_free(&p->by_brdf[i]);
         img_free(&p->full_by_network[i]);
         img_free(&p->full_by_brdf[i]);
+        img_free(&p->shadowed[i]);
     }
 }
 
@@ -130,31 +138,44 @@ static void add_indirect(const img *direct, const float *indirect, img *out)
         out->data[i] = clip(direct->data[i] + (indirect ? indirect[i] : 0));
 }
 
-/* What bounces add to the four pictures in `direct`, given the maps that the program has just estimated. */
-static status run_indirect(eval_model *m, const img direct[EVAL_LIGHTS], img full[EVAL_LIGHTS])
+/* The network's bounces for the four pictures in `direct`, given the maps that the program has just estimated; NULL for
+ * a variant without. */
+static status run_indirect(eval_model *m, const img direct[EVAL_LIGHTS], const float **indirect)
 {
+    static const struct {
+        const char *name;
+        size_t channels;
+    } maps[] = {{"albedo", 3}, {"normal", 3}, {"roughness", 1}, {"depth", 1}};
     size_t pixels = (size_t)m->size * (size_t)m->size;
-    const float *added = NULL;
-    if (m->indirect) {
-        static const struct {
-            const char *name;
-            size_t channels;
-        } maps[] = {{"albedo", 3}, {"normal", 3}, {"roughness", 1}, {"depth", 1}};
-        for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
-            memcpy(nn_input_data(m->indirect, maps[k].name), nn_output_data(m->program, maps[k].name),
-                   EVAL_LIGHTS * pixels * maps[k].channels * sizeof(float));
-        memcpy(nn_input_data(m->indirect, "mask"), nn_input_data(m->program, "mask"),
-               EVAL_LIGHTS * pixels * sizeof(float));
-        float *to = nn_input_data(m->indirect, "direct");
-        for (size_t i = 0; i < EVAL_LIGHTS; i++)
-            memcpy(to + i * pixels * 3, direct[i].data, pixels * 3 * sizeof(float));
-        status s = nn_forward(m->indirect);
-        if (s != OK) return s;
-        added = nn_output_data(m->indirect, "indirect");
-    }
+    *indirect = NULL;
+    if (!m->indirect) return OK;
+    for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
+        memcpy(nn_input_data(m->indirect, maps[k].name), nn_output_data(m->program, maps[k].name),
+               EVAL_LIGHTS * pixels * maps[k].channels * sizeof(float));
+    memcpy(nn_input_data(m->indirect, "mask"), nn_input_data(m->program, "mask"), EVAL_LIGHTS * pixels * sizeof(float));
+    float *to = nn_input_data(m->indirect, "direct");
     for (size_t i = 0; i < EVAL_LIGHTS; i++)
-        add_indirect(&direct[i], added ? added + i * pixels * 3 : NULL, &full[i]);
-    return OK;
+        memcpy(to + i * pixels * 3, direct[i].data, pixels * 3 * sizeof(float));
+    status s = nn_forward(m->indirect);
+    if (s == OK) *indirect = nn_output_data(m->indirect, "indirect");
+    return s;
+}
+
+/* full = direct + bounces, as merlin relight adds them. */
+static status add_bounces(eval_model *m, const img *flash, const img direct[EVAL_LIGHTS], img full[EVAL_LIGHTS])
+{
+    const float *indirect;
+    size_t values = 3 * (size_t)m->size * (size_t)m->size;
+    img bounces = {0};
+    status s = run_indirect(m, direct, &indirect);
+    if (s == OK) s = img_new(&bounces, m->size, m->size, 3);
+    for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        if (indirect) memcpy(bounces.data, indirect + i * values, values * sizeof *indirect);
+        s = bounce_follow(flash, &direct[i], NULL, &bounces);
+        if (s == OK) add_indirect(&direct[i], bounces.data, &full[i]);
+    }
+    img_free(&bounces);
+    return s;
 }
 
 status eval_predict(eval_model *m, const img *image, const img *mask, const vec3 lights[EVAL_LIGHTS],
@@ -170,15 +191,52 @@ status eval_predict(eval_model *m, const img *image, const img *mask, const vec3
     take(m->program, "normal", 0, &out->maps.normal);
     take(m->program, "roughness", 0, &out->maps.roughness);
     take(m->program, "depth", 0, &out->maps.depth);
-    take(m->program, "direct", 0, &out->reconstruction);
-    add_indirect(&out->reconstruction, nn_output_data(m->program, "indirect"), &out->reconstruction);
+    take(m->program, "direct", 0, &out->direct);
+    add_indirect(&out->direct, nn_output_data(m->program, "indirect"), &out->reconstruction);
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
         take(m->program, "relit_direct", i, &out->by_network[i]);
         take(m->program, "relit_brdf", i, &out->by_brdf[i]);
         clip_image(&out->by_network[i]);
         clip_image(&out->by_brdf[i]);
     }
-    s = run_indirect(m, out->by_brdf, out->full_by_brdf);
-    if (s == OK && eval_model_relights(m)) s = run_indirect(m, out->by_network, out->full_by_network);
+    s = add_bounces(m, &out->direct, out->by_brdf, out->full_by_brdf);
+    if (s == OK && eval_model_relights(m)) s = add_bounces(m, &out->direct, out->by_network, out->full_by_network);
     return s;
+}
+
+/* From shape as estimate gives it. */
+static status caster_of(const eval_maps *maps, const img *mask, float fov, shadow_caster *out)
+{
+    img depth = {0}, normal = {0};
+    status s = img_copy(&depth, &maps->depth);
+    if (s == OK) s = img_copy(&normal, &maps->normal);
+    if (s == OK) s = smooth_inside(&depth, mask);
+    if (s == OK) s = smooth_inside(&normal, mask);
+    if (s == OK) s = shadow_caster_new(&depth, &normal, mask, fov, out);
+    img_free(&depth);
+    img_free(&normal);
+    return s;
+}
+
+static status cast_shadow(const shadow_caster *caster, vec3 light, img *image)
+{
+    img seen = {0};
+    status s = shadow_cast(caster, light, image->width, image->height, &seen);
+    if (s == OK) shadow_darken(&seen, image);
+    img_free(&seen);
+    return s;
+}
+
+status eval_predict_shadows(eval_model *m, const img *mask, float fov, const vec3 lights[EVAL_LIGHTS],
+                            eval_prediction *p)
+{
+    shadow_caster caster;
+    status s = caster_of(&p->maps, mask, fov, &caster);
+    if (s != OK) return s;
+    for (int i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        memcpy(p->shadowed[i].data, p->by_brdf[i].data, 3 * (size_t)m->size * (size_t)m->size * sizeof(float));
+        s = cast_shadow(&caster, lights[i], &p->shadowed[i]);
+    }
+    shadow_caster_free(&caster);
+    return s == OK ? add_bounces(m, &p->direct, p->shadowed, p->shadowed) : s;
 }

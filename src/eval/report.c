@@ -8,22 +8,24 @@ typedef struct row_text {
     double scale; /* as printed for a person: the paper's tables give errors times 100 */
     eval_goal_kind kind;
     double goal;
+    double paper; /* MERLiN's figure in the paper, in the row's own unit; 0: none */
 } row_text;
 
 static const row_text rows[EVAL_ROWS] = {
-    [EVAL_ALBEDO] = {"albedo", "albedo error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
-    [EVAL_NORMAL] = {"normal", "normal error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
-    [EVAL_ANGLE] = {"normal_degrees", "normal angle (degrees)", 1, EVAL_NO_GOAL, 0},
-    [EVAL_DEPTH] = {"depth", "depth error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6},
-    [EVAL_ROUGHNESS] = {"roughness", "roughness error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.8},
-    [EVAL_RECONSTRUCTION] = {"reconstruction_ssim", "reconstruction SSIM", 1, EVAL_AT_LEAST, 0.90},
-    [EVAL_RELIT_NETWORK] = {"relight_network_ssim", "relit by network, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05},
-    [EVAL_RELIT_BRDF] = {"relight_brdf_ssim", "relit by BRDF, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05},
-    [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0},
-    [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0},
+    [EVAL_ALBEDO] = {"albedo", "albedo error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6, 0.03787},
+    [EVAL_NORMAL] = {"normal", "normal error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6, 0.03311},
+    [EVAL_ANGLE] = {"normal_degrees", "normal angle (degrees)", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_DEPTH] = {"depth", "depth error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6, 0.00975},
+    [EVAL_ROUGHNESS] = {"roughness", "roughness error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.8, 0.08267},
+    [EVAL_RECONSTRUCTION] = {"reconstruction_ssim", "reconstruction SSIM", 1, EVAL_AT_LEAST, 0.90, 0},
+    [EVAL_RELIT_NETWORK] = {"relight_network_ssim", "relit by network, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05, 0.819},
+    [EVAL_RELIT_BRDF] = {"relight_brdf_ssim", "relit by BRDF, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05, 0.894},
+    [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_TRACED_SHADOWS] = {"traced_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
 };
 
-static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged"};
+static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged", "true_maps"};
 
 eval_verdict eval_judge(const eval_scores *scores, eval_row row)
 {
@@ -47,6 +49,11 @@ static void print_number(FILE *stream, double value, const char *format)
         fprintf(stream, format, value);
 }
 
+static void print_score(FILE *stream, const eval_scores *scores, eval_row row, eval_answer answer)
+{
+    print_number(stream, rows[row].scale * eval_score(scores, row, answer), "%10.4f");
+}
+
 static void print_goal(FILE *stream, const eval_verdict *v)
 {
     static const char *const relations[] = {"", "ratio <= %.2f", "SSIM >= %.2f", "best + %.2f"};
@@ -57,13 +64,16 @@ static void print_goal(FILE *stream, const eval_verdict *v)
 
 static void print_rows(const eval_scores *scores, FILE *stream)
 {
-    fprintf(stream, "%-24s%10s%10s%10s%10s%10s   %-14s %s\n", "", "model", "mean maps", "inflated", "unchanged",
-            "vs best", "goal", "holds");
+    fprintf(stream, "%-24s%10s%10s%10s%10s%10s%10s%10s   %-14s %s\n", "", "model", "paper", "true maps", "mean maps",
+            "inflated", "unchanged", "vs best", "goal", "holds");
     for (int row = 0; row < EVAL_ROWS; row++) {
         if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
         fprintf(stream, "%-24s", rows[row].label);
-        for (int answer = 0; answer < EVAL_ANSWERS; answer++)
-            print_number(stream, rows[row].scale * eval_score(scores, (eval_row)row, (eval_answer)answer), "%10.4f");
+        print_score(stream, scores, (eval_row)row, EVAL_MODEL);
+        print_number(stream, rows[row].paper > 0 ? rows[row].scale * rows[row].paper : NAN, "%10.3f");
+        print_score(stream, scores, (eval_row)row, EVAL_TRUE_MAPS);
+        for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++)
+            print_score(stream, scores, (eval_row)row, (eval_answer)answer);
         eval_verdict v = eval_judge(scores, (eval_row)row);
         if (row >= EVAL_RECONSTRUCTION)
             print_number(stream, v.margin, "%+10.4f");
@@ -81,7 +91,7 @@ static void print_classes(const eval_report *report, FILE *stream)
         const char *label;
     } shown[] = {{EVAL_ALBEDO, "albedo"},       {EVAL_NORMAL, "normal"},           {EVAL_DEPTH, "depth"},
                  {EVAL_ROUGHNESS, "roughness"}, {EVAL_RECONSTRUCTION, "reconst."}, {EVAL_RELIT_NETWORK, "network"},
-                 {EVAL_RELIT_BRDF, "BRDF"}};
+                 {EVAL_RELIT_BRDF, "BRDF"},     {EVAL_TRACED_SHADOWS, "traced"}};
     enum { SHOWN = sizeof shown / sizeof shown[0] };
     fprintf(stream, "\n%-14s%8s", "class", "samples");
     for (int i = 0; i < SHOWN; i++)
@@ -131,6 +141,7 @@ static void add_scores(cJSON *o, const eval_scores *scores)
         eval_verdict v = eval_judge(scores, (eval_row)row);
         add_number(r, "ratio", v.ratio);
         add_number(r, "margin", v.margin);
+        if (rows[row].paper > 0) cJSON_AddNumberToObject(r, "paper", rows[row].paper);
         if (v.kind == EVAL_NO_GOAL) continue;
         cJSON_AddNumberToObject(r, "goal", v.goal);
         cJSON_AddBoolToObject(r, "holds", v.holds);

@@ -15,50 +15,6 @@ enum { AT_WEIGHT = 0, AT_GUIDE = 1, AT_PAIRS = AT_GUIDE + GUIDE, AT_MAP = AT_PAI
 /* Coefficients of one map channel, behind one plane of weight: a (3 values) and b. */
 enum { PER_CHANNEL = GUIDE + 1 };
 
-static void box_line(const float *in, float *out, int count, size_t step, int planes, int radius, double *sums)
-{
-    memset(sums, 0, (size_t)planes * sizeof *sums);
-    for (int i = -radius; i < count; i++) {
-        int enters = i + radius, leaves = i - radius - 1;
-        if (enters < count)
-            for (int p = 0; p < planes; p++)
-                sums[p] += in[(size_t)enters * step + (size_t)p];
-        if (leaves >= 0)
-            for (int p = 0; p < planes; p++)
-                sums[p] -= in[(size_t)leaves * step + (size_t)p];
-        if (i >= 0)
-            for (int p = 0; p < planes; p++)
-                out[(size_t)i * step + (size_t)p] = (float)sums[p];
-    }
-}
-
-/* Sums over (2 radius + 1)² windows in time that does not depend on the radius; running sums in double so that adding
- * and taking away leaves no trace. scratch: same size. */
-static status box_sums(img *image, img *scratch, int radius)
-{
-    int planes = image->channels;
-    size_t line = (size_t)image->width * (size_t)planes;
-    int failed = 0;
-#pragma omp parallel
-    {
-        double *sums = malloc((size_t)planes * sizeof *sums);
-        if (!sums) {
-#pragma omp atomic write
-            failed = 1;
-        }
-#pragma omp for schedule(static)
-        for (int y = 0; y < image->height; y++)
-            if (sums)
-                box_line(img_at(image, 0, y), img_at(scratch, 0, y), image->width, (size_t)planes, planes, radius,
-                         sums);
-#pragma omp for schedule(static)
-        for (int x = 0; x < image->width; x++)
-            if (sums) box_line(img_at(scratch, x, 0), img_at(image, x, 0), image->height, line, planes, radius, sums);
-        free(sums);
-    }
-    return failed ? fail(ERROR_MEMORY, "no memory to filter an image") : OK;
-}
-
 static float guide_value(const img *guide, size_t pixel, int c)
 {
     return guide->data[pixel * (size_t)guide->channels + (size_t)(guide->channels == GUIDE ? c : 0)];
@@ -252,11 +208,11 @@ static status find_coefficients(const img *low, const img *low_mask, const img *
     status s = img_new(&stats, low->width, low->height, planes);
     if (s == OK) s = img_new(&scratch, low->width, low->height, planes);
     if (s == OK) fill_statistics(low, low_mask, guide, &stats);
-    if (s == OK) s = box_sums(&stats, &scratch, radius);
+    if (s == OK) s = img_box_sums(&stats, &scratch, radius);
     if (s == OK) s = img_new(coefficients, low->width, low->height, 1 + low->channels * PER_CHANNEL);
     if (s == OK) s = img_new(&scratch2, low->width, low->height, coefficients->channels);
     if (s == OK) solve_windows(&stats, low->channels, epsilon, coefficients);
-    if (s == OK) s = box_sums(coefficients, &scratch2, radius);
+    if (s == OK) s = img_box_sums(coefficients, &scratch2, radius);
     img_free(&stats);
     img_free(&scratch);
     img_free(&scratch2);

@@ -144,7 +144,8 @@ static void estimate_environment(network *n)
     for (int i = 0; i < 2; i++)
         parts[i] = nn_spatial_mean(g, n->encoder[MODEL_LEVELS - 2 + i]);
     nn_node *y = nn_relu(g, nn_linear(g, nn_concat(g, parts, 2), "environment.fc1", ENVIRONMENT_FEATURES));
-    n->environment_code = nn_float(g, nn_linear(g, y, "environment.fc2", MODEL_SH));
+    /* small from the first step on, lest a dazzling environment teach the maps to be black */
+    n->environment_code = nn_float(g, nn_scale_shift(g, nn_linear(g, y, "environment.fc2", MODEL_SH), 0.1f, 0.0f));
 }
 
 /* What the lamp of the rendering layer does not: direct is all of bounce 1, environment (or NULL) the part of it that

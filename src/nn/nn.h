@@ -132,6 +132,8 @@ void nn_params_touch(nn_params *params);
 /* Copies the tensors of a safetensors file (nn/safetensors.h; F32, F16 or BF16) into same-named parameters. Missing,
  * extra or differently shaped tensors are an error that names one. */
 status nn_params_load(nn_params *params, const char *path);
+/* From another model's file: what fits by name and shape; the rest stays as it is. Nothing that fits is an error. */
+status nn_params_load_shared(nn_params *params, const char *path);
 /* The same from a file that is open already; path for messages. */
 status nn_params_take(nn_params *params, const struct st_file *f, const char *path);
 

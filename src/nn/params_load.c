@@ -2,13 +2,18 @@
 #include "nn/params.h"
 #include "nn/safetensors.h"
 
-static status check_tensor(const nn_param *p, const st_tensor *t, const char *path)
+static bool is_of_shape(const st_tensor *t, const nn_param *p)
 {
-    if (!t) return fail(ERROR_INPUT, "%s: tensor %s is missing", path, p->name);
     bool same = t->rank == p->rank;
     for (int i = 0; same && i < p->rank; i++)
         same = t->shape[i] == p->shape[i];
-    if (!same) return fail(ERROR_INPUT, "%s: tensor %s has another shape than the model's", path, p->name);
+    return same;
+}
+
+static status check_tensor(const nn_param *p, const st_tensor *t, const char *path)
+{
+    if (!t) return fail(ERROR_INPUT, "%s: tensor %s is missing", path, p->name);
+    if (!is_of_shape(t, p)) return fail(ERROR_INPUT, "%s: tensor %s has another shape than the model's", path, p->name);
     if (t->type == ST_I64) return fail(ERROR_INPUT, "%s: tensor %s is not of a float type", path, p->name);
     return OK;
 }
@@ -30,6 +35,32 @@ status nn_params_take(nn_params *params, const st_file *f, const char *path)
     }
     nn_params_touch(params);
     return OK;
+}
+
+static status take_shared(nn_params *params, const st_file *f, const char *path)
+{
+    size_t taken = 0;
+    for (size_t i = 0; i < params->count; i++) {
+        const nn_param *p = &params->items[i];
+        const st_tensor *t = st_find(f, p->name);
+        if (!t || !is_of_shape(t, p) || t->type == ST_I64) continue;
+        status s = st_to_float(t, p->value);
+        if (s != OK) return fail_in(s, "%s: tensor %s", path, p->name);
+        taken++;
+    }
+    if (taken == 0) return fail(ERROR_INPUT, "%s: no tensor fits the model", path);
+    nn_params_touch(params);
+    return OK;
+}
+
+status nn_params_load_shared(nn_params *params, const char *path)
+{
+    st_file *f;
+    status s = st_open(path, &f);
+    if (s != OK) return s;
+    s = take_shared(params, f, path);
+    st_close(f);
+    return s;
 }
 
 status nn_params_load(nn_params *params, const char *path)

@@ -24,19 +24,21 @@ static float luminance(const float *c)
     return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
 }
 
-static float texel_solid_angle(const img *map, int y)
+/* Solid angle of a texel of row y: latlong_solid_angle, from the stored cosines. */
+static float texel_solid_angle(const environment *env, int y)
 {
-    return latlong_solid_angle(y, map->width, map->height);
+    return (env->cosines[y] - env->cosines[y + 1]) * 2 * pi / (float)env->map.width;
 }
 
-static float mean_luminance(const img *map)
+static float mean_luminance(const environment *env)
 {
+    const img *map = &env->map;
     double sum = 0;
     for (int y = 0; y < map->height; y++) {
         double row = 0;
         for (int x = 0; x < map->width; x++)
             row += luminance(img_at(map, x, y));
-        sum += row * texel_solid_angle(map, y);
+        sum += row * texel_solid_angle(env, y);
     }
     return (float)(sum / (4 * 3.14159265358979));
 }
@@ -60,7 +62,7 @@ static void fill_distribution(environment *env, float floor_luminance)
         row[0] = 0;
         for (int x = 0; x < w; x++)
             row[x + 1] = row[x] + luminance(img_at(&env->map, x, y)) + floor_luminance;
-        env->rows[y + 1] = env->rows[y] + row[w] * texel_solid_angle(&env->map, y);
+        env->rows[y + 1] = env->rows[y] + row[w] * texel_solid_angle(env, y);
         normalize_cumulative(row, w);
     }
     normalize_cumulative(env->rows, h);
@@ -70,7 +72,7 @@ static void project_sh(environment *env)
 {
     memset(env->sh, 0, sizeof env->sh);
     for (int y = 0; y < env->map.height; y++) {
-        float angle = texel_solid_angle(&env->map, y);
+        float angle = texel_solid_angle(env, y);
         for (int x = 0; x < env->map.width; x++) {
             const float *c = img_at(&env->map, x, y);
             vec3 d = latlong_direction(((float)x + 0.5f) / (float)env->map.width,
@@ -85,12 +87,15 @@ static status finish(environment *env, float exposure)
 {
     size_t w = (size_t)env->map.width, h = (size_t)env->map.height;
     env->rows = malloc((h + 1) * sizeof *env->rows);
+    env->cosines = malloc((h + 1) * sizeof *env->cosines);
     env->columns = malloc(h * (w + 1) * sizeof *env->columns);
-    if (!env->rows || !env->columns) {
+    if (!env->rows || !env->cosines || !env->columns) {
         environment_free(env);
         return fail(ERROR_MEMORY, "out of memory for an environment map");
     }
-    float mean = mean_luminance(&env->map), scale = mean > 0 ? exposure / mean : 0;
+    for (size_t y = 0; y <= h; y++)
+        env->cosines[y] = cosf(pi * (float)y / (float)h);
+    float mean = mean_luminance(env), scale = mean > 0 ? exposure / mean : 0;
     for (size_t i = 0; i < 3 * w * h; i++)
         env->map.data[i] *= scale;
     fill_distribution(env, 0.05f * exposure);
@@ -129,20 +134,20 @@ void environment_free(environment *env)
 {
     img_free(&env->map);
     free(env->rows);
+    free(env->cosines);
     free(env->columns);
     *env = (environment){0};
 }
 
-vec3 environment_radiance(const environment *env, vec3 d)
+/* At a place in texels. */
+static vec3 radiance_at(const environment *env, float x, float y)
 {
-    float x, y;
     int w = env->map.width, h = env->map.height;
-    place_of(env, d, &x, &y);
     x -= 0.5f;
     y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
     int x0 = (int)floorf(x), y0 = (int)y, y1 = y0 + 1 < h ? y0 + 1 : y0;
     float fx = x - (float)x0, fy = y - (float)y0;
-    int left = (x0 + w) % w, right = (x0 + 1 + w) % w;
+    int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w, right = left + 1 < w ? left + 1 : 0;
     const float *a = img_at(&env->map, left, y0), *b = img_at(&env->map, right, y0);
     const float *c = img_at(&env->map, left, y1), *e = img_at(&env->map, right, y1);
     float out[3];
@@ -155,29 +160,48 @@ vec3 environment_radiance(const environment *env, vec3 d)
 static float texel_pdf(const environment *env, int x, int y)
 {
     const float *row = env->columns + (size_t)y * (size_t)(env->map.width + 1);
-    return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]) / texel_solid_angle(&env->map, y);
+    return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]) / texel_solid_angle(env, y);
 }
 
-real environment_pdf(const environment *env, vec3 d)
+static float pdf_at(const environment *env, float x, float y)
 {
-    float x, y;
-    place_of(env, d, &x, &y);
     int i = (int)x, j = (int)y;
     if (i >= env->map.width) i = env->map.width - 1;
     if (j >= env->map.height) j = env->map.height - 1;
     return texel_pdf(env, i, j);
 }
 
+vec3 environment_radiance(const environment *env, vec3 d)
+{
+    float x, y;
+    place_of(env, d, &x, &y);
+    return radiance_at(env, x, y);
+}
+
+real environment_pdf(const environment *env, vec3 d)
+{
+    float x, y;
+    place_of(env, d, &x, &y);
+    return pdf_at(env, x, y);
+}
+
+vec3 environment_look(const environment *env, vec3 d, real *pdf)
+{
+    float x, y;
+    place_of(env, d, &x, &y);
+    *pdf = pdf_at(env, x, y);
+    return radiance_at(env, x, y);
+}
+
 /* The interval of a cumulative sum that holds u, and where in it. */
 static int find_interval(const float *cumulative, int count, float u, float *within)
 {
-    int low = 0, high = count;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (cumulative[middle] <= u)
-            low = middle;
-        else
-            high = middle;
+    int low = 0;
+    /* without branches, which nobody could predict */
+    for (int left = count; left > 1;) {
+        int half = left / 2;
+        low += cumulative[low + half] <= u ? half : 0;
+        left -= half;
     }
     float width = cumulative[low + 1] - cumulative[low];
     *within = width > 0 ? fminf(0.9999f, (u - cumulative[low]) / width) : 0.5f;
@@ -190,10 +214,10 @@ vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real 
     int w = env->map.width, h = env->map.height;
     int y = find_interval(env->rows, h, u1, &fy);
     int x = find_interval(env->columns + (size_t)y * (size_t)(w + 1), w, u2, &fx);
-    float top = cosf(pi * (float)y / (float)h), bottom = cosf(pi * (float)(y + 1) / (float)h);
+    float top = env->cosines[y], bottom = env->cosines[y + 1];
     float cosine = top + fy * (bottom - top), s = sqrtf(fmaxf(0, 1 - cosine * cosine));
     float around = (((float)x + fx) / (float)w - 0.5f) * 2 * pi;
     *d = vec3_make(s * sinf(around), cosine, -s * cosf(around));
     *pdf = texel_pdf(env, x, y);
-    return environment_radiance(env, *d);
+    return radiance_at(env, (float)x + fx, acosf(cosine) / pi * (float)h);
 }

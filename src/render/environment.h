@@ -19,6 +19,7 @@ enum { ENVIRONMENT_WIDTH = 256, ENVIRONMENT_HEIGHT = 128 };
 typedef struct environment {
     img map;        /* 3 channels */
     float *rows;    /* height + 1: cumulative probability of rows */
+    float *cosines; /* height + 1: of the polar angle at the rows' borders */
     float *columns; /* height × (width + 1): cumulative probability within a row */
     float sh[9][3]; /* radiance coefficients */
 } environment;
@@ -33,6 +34,8 @@ void environment_free(environment *env);
 vec3 environment_radiance(const environment *env, vec3 d);
 /* Density of environment_sample at d, 1/sr. */
 real environment_pdf(const environment *env, vec3 d);
+/* Both at once. */
+vec3 environment_look(const environment *env, vec3 d, real *pdf);
 /* Draws a direction about as often as the map is bright there; returns its radiance. */
 vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real *pdf);
 

@@ -161,7 +161,7 @@ static status check_options(const render_options *o)
     if (m->size < 1 || m->size > 4096) return fail(ERROR_USAGE, "image size %d is not within 1..4096", m->size);
     if (!(m->fov >= 1 && m->fov <= 150))
         return fail(ERROR_USAGE, "field of view %g is not within 1..150", (double)m->fov);
-    if (m->strata < 1 || m->strata > RENDER_MAX_STRATA || (m->strata > 1 && m->strata % 2))
+    if (m->strata < 1 || m->strata > VISIBILITY_MAX_STRATA || (m->strata > 1 && m->strata % 2))
         return fail(ERROR_USAGE, "%d x %d rays a pixel: must be 1, 4, 16, 36 or 64 in all", m->strata, m->strata);
     if (m->paths < 1) return fail(ERROR_USAGE, "at least one path a pixel is needed");
     if (m->targets < 0 || m->targets > SAMPLE_MAX_TARGETS)

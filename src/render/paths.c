@@ -1,8 +1,9 @@
 #include "render/paths.h"
 
 #include "optics/brdf.h"
+#include "render/bundle.h"
 
-static const vec3 white = {1, 1, 1}, black = {0, 0, 0};
+static const vec3 black = {0, 0, 0};
 
 static vec3 reflect(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view)
 {
@@ -10,10 +11,12 @@ static vec3 reflect(const trace_scene *scene, const scn_surface *at, vec3 l, vec
     return brdf_eval(at->albedo, at->roughness, at->normal, l, view);
 }
 
-static real density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view)
+/* The same with the density of scatter at l. */
+static vec3 reflect_density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view, real *pdf)
 {
-    if (scene->diffuse_only) return brdf_clamp(vec3_dot(at->normal, l), 0, 1) / BRDF_PI;
-    return brdf_pdf(at->albedo, at->roughness, at->normal, l, view);
+    if (!scene->diffuse_only) return brdf_eval_pdf(at->albedo, at->roughness, at->normal, l, view, pdf);
+    *pdf = brdf_clamp(vec3_dot(at->normal, l), 0, 1) / BRDF_PI;
+    return vec3_scale(at->albedo, 1 / BRDF_PI);
 }
 
 /* Both normals must face l: the shading normal for the BRDF, the true one lest light pass through the surface. */
@@ -31,9 +34,8 @@ static bool scatter(const trace_scene *scene, const scn_surface *at, vec3 view, 
     else
         *l = brdf_sample(at->albedo, at->roughness, at->normal, view, start.u1, start.u2, choice);
     if (!faces(at, *l)) return false;
-    *pdf = density(scene, at, *l, view);
+    vec3 f = reflect_density(scene, at, *l, view, pdf);
     if (*pdf < (real)1e-6) return false;
-    vec3 f = reflect(scene, at, *l, view);
     *throughput = vec3_mul(*throughput, vec3_scale(f, vec3_dot(at->normal, *l) / *pdf));
     return true;
 }
@@ -42,18 +44,6 @@ static vec3 clamp_path(vec3 c)
 {
     return vec3_make(c.x < PATH_CLAMP ? c.x : PATH_CLAMP, c.y < PATH_CLAMP ? c.y : PATH_CLAMP,
                      c.z < PATH_CLAMP ? c.z : PATH_CLAMP);
-}
-
-path_start path_start_at(int i, int count, real shift1, real shift2)
-{
-    uint32_t bits = (uint32_t)i;
-    bits = ((bits >> 1) & 0x55555555u) | ((bits & 0x55555555u) << 1);
-    bits = ((bits >> 2) & 0x33333333u) | ((bits & 0x33333333u) << 2);
-    bits = ((bits >> 4) & 0x0f0f0f0fu) | ((bits & 0x0f0f0f0fu) << 4);
-    bits = __builtin_bswap32(bits);
-    real a = ((real)i + shift1) / (real)count, b = (real)(bits >> 8) * (real)0x1p-24 + shift2;
-    /* below 1 even after rounding: the samplers divide by what is left of 1 */
-    return (path_start){brdf_clamp(a, 0, (real)0.9999999), b >= 1 ? b - 1 : b};
 }
 
 static path_start random_start(rng *r)
@@ -83,56 +73,131 @@ vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, co
     return trace_occluded(scene, origin, vec3_scale(to_light, 1 / distance), distance) ? black : radiance;
 }
 
-void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light, path_start start,
-                      rng *r, vec3 bounce[2])
+/* Bounce 2 of a path that has met `hit`, and bounce 3. */
+static void follow_point_light(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
+                               const point_light *light, const path_source *source, vec3 bounce[2])
 {
+    vec3 throughput = lanes_at(&b->throughput, lane), l;
+    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    scn_surface from, to;
+    real pdf;
+    trace_surface_at(scene, hit, v, &from);
+    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, point_light_direct(scene, &from, v, light))));
+    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, b->index[lane]);
+    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, b->index[lane]).u2;
+    if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) return;
+    if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
+    v = vec3_scale(l, -1);
+    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light))));
+}
+
+void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
+                       const path_source *source, int count, vec3 bounce[2])
+{
+    bundle b;
+    trace_hit hits[TRACE_PACKET];
     bounce[0] = bounce[1] = black;
-    vec3 throughput = white, v = view, l;
-    scn_surface from = *at, to;
-    for (int b = 0; b < 2; b++) {
-        real pdf;
-        if (b > 0) start = random_start(r);
-        if (!scatter(scene, &from, v, start, rng_uniform(r), &l, &pdf, &throughput)) return;
-        if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
-        v = vec3_scale(l, -1);
-        bounce[b] = clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light)));
-        from = to;
+    for (int done = 0; done < count; done += TRACE_PACKET) {
+        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
+        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
+        bundle_scatter(&b, source->sequence, scene->diffuse_only);
+        trace_packet(scene, &b.rays, hits);
+        for (int i = 0; i < abreast; i++)
+            if (hits[i].distance >= 0) follow_point_light(scene, &b, i, &hits[i], light, source, bounce);
     }
 }
 
 /* The environment's light at one surface, by a direction drawn from the map. */
-static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, rng *r)
+static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
+                               path_start u)
 {
-    real u1 = rng_uniform(r), u2 = rng_uniform(r), light_pdf;
-    vec3 l, radiance = environment_sample(env, u1, u2, &l, &light_pdf);
+    real light_pdf;
+    vec3 l, radiance = environment_sample(env, u.u1, u.u2, &l, &light_pdf);
     if (!faces(at, l)) return black;
-    real weight = 1 / (light_pdf + density(scene, at, l, view));
-    vec3 f = vec3_scale(reflect(scene, at, l, view), vec3_dot(at->normal, l) * weight);
-    vec3 result = vec3_mul(f, radiance);
+    real pdf;
+    vec3 f = reflect_density(scene, at, l, view, &pdf);
+    vec3 result = vec3_mul(vec3_scale(f, vec3_dot(at->normal, l) / (light_pdf + pdf)), radiance);
     if (result.x + result.y + result.z <= 0) return black;
     return trace_occluded(scene, trace_leave(at), l, 1e4f) ? black : result;
 }
 
-vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, path_start start,
-                      rng *r)
+/* The map's light along a direction that was drawn from the BRDF with this density. */
+static vec3 environment_seen(const environment *env, vec3 l, real pdf)
 {
-    enum { SURFACES = 3 };
-    vec3 sum = black, throughput = white, v = view, l;
-    scn_surface from = *at, to;
-    for (int b = 0; b < SURFACES; b++) {
+    real light_pdf;
+    vec3 radiance = environment_look(env, l, &light_pdf);
+    return vec3_scale(radiance, pdf / (pdf + light_pdf));
+}
+
+/* The light that a path brings once it has met `hit`: from the map at up to two more surfaces. */
+static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
+                               const environment *env, rng *r)
+{
+    enum { MORE_SURFACES = 2 };
+    vec3 sum = black, throughput = lanes_at(&b->throughput, lane), l;
+    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    scn_surface from, to;
+    trace_surface_at(scene, hit, v, &from);
+    for (int left = MORE_SURFACES; left > 0; left--) {
         real pdf;
-        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, r));
+        vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, random_start(r)));
         sum = vec3_add(sum, clamp_path(direct));
-        if (b > 0) start = random_start(r);
+        path_start start = random_start(r);
         if (!scatter(scene, &from, v, start, rng_uniform(r), &l, &pdf, &throughput)) break;
         if (!trace_surface(scene, trace_leave(&from), l, &to)) {
-            real weight = pdf / (pdf + environment_pdf(env, l));
-            vec3 seen = vec3_scale(vec3_mul(throughput, environment_radiance(env, l)), weight);
-            sum = vec3_add(sum, clamp_path(seen));
+            sum = vec3_add(sum, clamp_path(vec3_mul(throughput, environment_seen(env, l, pdf))));
             break;
         }
         v = vec3_scale(l, -1);
         from = to;
+    }
+    return sum;
+}
+
+/* The map's light at the first surfaces, by directions drawn from the map. */
+static vec3 first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q)
+{
+    lanes radiance = {0};
+    float light_pdf[TRACE_PACKET] = {0};
+    vec3 sum = black;
+    for (int i = 0; i < b->count; i++) {
+        path_start u = sequence_at(q, SEQUENCE_LIGHT, b->index[i]);
+        vec3 l;
+        lanes_put(&radiance, i, environment_sample(env, u.u1, u.u2, &l, &light_pdf[i]));
+        b->rays.dx[i] = l.x;
+        b->rays.dy[i] = l.y;
+        b->rays.dz[i] = l.z;
+    }
+    bundle_reflect(b, light_pdf, scene->diffuse_only);
+    trace_packet_free(scene, &b->rays);
+    for (int i = 0; i < b->count; i++)
+        if (b->rays.valid[i])
+            sum = vec3_add(sum, clamp_path(vec3_mul(lanes_at(&b->throughput, i), lanes_at(&radiance, i))));
+    return sum;
+}
+
+vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
+                       int count)
+{
+    bundle b;
+    trace_hit hits[TRACE_PACKET];
+    vec3 sum = black;
+    for (int done = 0; done < count; done += TRACE_PACKET) {
+        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
+        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
+        for (int i = abreast; i < TRACE_PACKET; i++)
+            b.rays.dx[i] = b.rays.dy[i] = b.rays.dz[i] = 1;
+        sum = vec3_add(sum, first_environment_direct(scene, &b, env, source->sequence));
+        bundle_scatter(&b, source->sequence, scene->diffuse_only);
+        trace_packet(scene, &b.rays, hits);
+        for (int i = 0; i < abreast; i++) {
+            vec3 l = vec3_make(b.rays.dx[i], b.rays.dy[i], b.rays.dz[i]), brought = black;
+            if (hits[i].distance >= 0)
+                brought = follow_environment(scene, &b, i, &hits[i], env, source->random);
+            else if (b.rays.valid[i])
+                brought = clamp_path(vec3_mul(lanes_at(&b.throughput, i), environment_seen(env, l, b.pdf[i])));
+            sum = vec3_add(sum, brought);
+        }
     }
     return sum;
 }

@@ -7,6 +7,7 @@
 
 #include "base/rng.h"
 #include "render/environment.h"
+#include "render/sequence.h"
 #include "render/trace.h"
 
 /* Radiance that a single path may bring, per bounce and channel. Rare paths of tiny probability would otherwise leave
@@ -19,25 +20,32 @@ typedef struct point_light {
     bool at_eye; /* a flash: whatever the camera sees is lit, so no shadow rays from there */
 } point_light;
 
-/* Where in the unit square a path starts: the sequence spreads a pixel's paths evenly. */
-typedef struct path_start {
-    real u1, u2;
-} path_start;
-
-/* Start number i of count, shifted at random per pixel (Hammersley points, Cranley & Patterson 1976). */
-path_start path_start_at(int i, int count, real shift1, real shift2);
+/* What decides a path: numbers of the sequence at its first surfaces, where they matter most, and random ones behind.
+ */
+typedef struct path_source {
+    const sequence *sequence;
+    uint32_t index; /* of the first path in the sequence */
+    rng *random;
+} path_source;
 
 /* Bounce 1: radiance toward view, without looking for shadows. */
 vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
 /* The same, zero where another surface or the surface's own back is in the way. */
 vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
-/* Bounces 2 and 3 along one path. */
-void point_light_path(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light, path_start start,
-                      rng *r, vec3 bounce[2]);
+/* The points of a surface that one pixel shows: paths start at them in turn. */
+typedef struct path_points {
+    const scn_surface *at;
+    const vec3 *view; /* unit, from each point to the eye */
+    int count;
+} path_points;
 
-/* Radiance from the environment by one path of at most three surfaces; both the map and the BRDF are sampled and
- * combined by the balance heuristic (Veach & Guibas 1995). */
-vec3 environment_path(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env, path_start start,
-                      rng *r);
+/* Bounces 2 and 3, the sums over `count` paths. */
+void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
+                       const path_source *source, int count, vec3 bounce[2]);
+
+/* Radiance from the environment, the sum over `count` paths of at most three surfaces; both the map and the BRDF are
+ * sampled and combined by the balance heuristic (Veach & Guibas 1995). */
+vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
+                       int count);
 
 #endif

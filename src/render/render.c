@@ -1,25 +1,28 @@
 #include "render/render.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "optics/camera.h"
 #include "optics/light.h"
 #include "render/paths.h"
 #include "render/smooth.h"
 #include "render/streams.h"
+#include "render/visibility.h"
 
-enum { MAX_POINTS = RENDER_MAX_STRATA * RENDER_MAX_STRATA };
+/* What a layer's paths are drawn from. */
+typedef struct layer_source {
+    sequence sequence;
+    rng random;
+} layer_source;
 
 typedef struct renderer {
     trace_scene *scene;
     const image_settings *settings;
     const environment *env;
-    camera eye;
+    visibility *visibility;
     point_light flash, lights[SAMPLE_MAX_TARGETS];
-    rng jitter, indirect, target, surroundings;
+    layer_source indirect, target, surroundings;
     sample *out;
 } renderer;
 
@@ -27,64 +30,24 @@ typedef struct renderer {
 typedef struct pixel {
     int x, y, count;
     float coverage;
-    scn_surface at[MAX_POINTS];
-    vec3 view[MAX_POINTS];
+    scn_surface at[VISIBILITY_MAX_POINTS];
+    vec3 view[VISIBILITY_MAX_POINTS];
 } pixel;
 
-/* ---- visibility ------------------------------------------------------------------------------------------------ */
-
-/* One ray per cell of the pixel's strata; directions and hits in cell order. Returns how many hit. */
-static int cast_pixel(renderer *r, const pixel *p, vec3 *direction, trace_hit *hit)
+static void see_pixel(renderer *r, int x, int y, pixel *p)
 {
-    int n = r->settings->strata, cells = n * n, met = 0;
-    for (int i = 0; i < cells; i++) {
-        int column = i % n, row = i / n;
-        float dx = ((float)column + rng_uniform(&r->jitter)) / (float)n;
-        float dy = ((float)row + rng_uniform(&r->jitter)) / (float)n;
-        direction[i] = camera_ray(&r->eye, (float)p->x + dx, (float)p->y + dy);
-    }
-    for (int i = 0; i < cells; i += TRACE_PACKET)
-        trace_camera_rays(r->scene, direction + i, cells - i < TRACE_PACKET ? cells - i : TRACE_PACKET, hit + i);
-    for (int i = 0; i < cells; i++)
-        met += hit[i].distance >= 0;
-    return met;
-}
-
-/* Whether the pixel lies inside one surface: fully covered, without a jump in depth. */
-static bool is_plain(const renderer *r, const trace_hit *hit, int met)
-{
-    int cells = r->settings->strata * r->settings->strata;
-    float nearest = hit[0].distance, farthest = nearest;
-    if (met < cells) return false;
-    for (int i = 1; i < cells; i++) {
-        nearest = fminf(nearest, hit[i].distance);
-        farthest = fmaxf(farthest, hit[i].distance);
-    }
-    return farthest - nearest < 6 * camera_pixel_size(&r->eye) * nearest;
-}
-
-/* One cell in every row and every column: row j's is column (2j + 1) mod (n + 1), a permutation for even n. */
-static bool is_chosen(int cell, int n)
-{
-    return n == 1 || cell % n == (2 * (cell / n) + 1) % (n + 1);
-}
-
-static void see_pixel(renderer *r, pixel *p)
-{
-    vec3 direction[MAX_POINTS];
-    trace_hit hit[MAX_POINTS];
-    int n = r->settings->strata, met = cast_pixel(r, p, direction, hit);
-    bool plain = met > 0 && is_plain(r, hit, met);
-    p->coverage = (float)met / (float)(n * n);
-    p->count = 0;
-    for (int i = 0; i < n * n && met > 0; i++) {
-        if (hit[i].distance < 0 || (plain && !is_chosen(i, n))) continue;
-        vec3 view = vec3_scale(direction[i], -1);
-        scn_surface *at = &p->at[p->count];
-        trace_surface_at(r->scene, &hit[i], view, at);
+    pixel_hits seen;
+    visibility_pixel(r->visibility, x, y, &seen);
+    p->x = x;
+    p->y = y;
+    p->coverage = seen.coverage;
+    p->count = seen.count;
+    for (int i = 0; i < seen.count; i++) {
+        scn_surface *at = &p->at[i];
+        p->view[i] = vec3_scale(seen.direction[i], -1);
+        trace_surface_at(r->scene, &seen.hit[i], p->view[i], at);
         /* the stored normal must face the camera plane too; off the axis, facing the eye does not imply it */
         if (at->normal.z < 0.01f) at->normal = vec3_normalize(vec3_make(at->normal.x, at->normal.y, 0.01f));
-        p->view[p->count++] = view;
     }
 }
 
@@ -124,33 +87,27 @@ static vec3 mean_direct(renderer *r, const pixel *p, const point_light *light)
     return vec3_scale(sum, p->coverage / (float)p->count);
 }
 
-static void mean_indirect(renderer *r, const pixel *p, const point_light *light, rng *generator, vec3 bounce[2])
+static path_source source_of(layer_source *layer, const pixel *p, int paths)
+{
+    return (path_source){&layer->sequence, sequence_index(p->x, p->y) * (uint32_t)paths, &layer->random};
+}
+
+static void mean_indirect(renderer *r, const pixel *p, const point_light *light, layer_source *layer, vec3 bounce[2])
 {
     int paths = r->settings->paths;
-    float shift1 = rng_uniform(generator), shift2 = rng_uniform(generator);
-    bounce[0] = bounce[1] = vec3_make(0, 0, 0);
-    for (int i = 0; i < paths; i++) {
-        vec3 path[2];
-        int at = i % p->count;
-        point_light_path(r->scene, &p->at[at], p->view[at], light, path_start_at(i, paths, shift1, shift2), generator,
-                         path);
-        bounce[0] = vec3_add(bounce[0], path[0]);
-        bounce[1] = vec3_add(bounce[1], path[1]);
-    }
+    path_source source = source_of(layer, p, paths);
+    path_points points = {p->at, p->view, p->count};
+    point_light_paths(r->scene, &points, light, &source, paths, bounce);
     for (int b = 0; b < 2; b++)
         bounce[b] = vec3_scale(bounce[b], p->coverage / (float)paths);
 }
 
 static vec3 mean_environment(renderer *r, const pixel *p)
 {
-    int paths = r->settings->paths;
-    float shift1 = rng_uniform(&r->surroundings), shift2 = rng_uniform(&r->surroundings);
-    vec3 sum = {0, 0, 0};
-    for (int i = 0; i < paths; i++) {
-        int at = i % p->count;
-        sum = vec3_add(sum, environment_path(r->scene, &p->at[at], p->view[at], r->env,
-                                             path_start_at(i, paths, shift1, shift2), &r->surroundings));
-    }
+    int paths = (5 * r->settings->paths + 7) / 8;
+    path_source source = source_of(&r->surroundings, p, paths);
+    path_points points = {p->at, p->view, p->count};
+    vec3 sum = environment_paths(r->scene, &points, r->env, &source, paths);
     return vec3_scale(sum, p->coverage / (float)paths);
 }
 
@@ -158,9 +115,7 @@ static void render_pixel(renderer *r, int x, int y)
 {
     pixel p;
     vec3 bounce[2];
-    p.x = x;
-    p.y = y;
-    see_pixel(r, &p);
+    see_pixel(r, x, y, &p);
     if (p.count == 0) return;
     store_maps(r, &p);
     store(&r->out->direct, &p, mean_direct(r, &p, &r->flash), 1);
@@ -223,6 +178,13 @@ static status smooth_layers(sample *out)
     return s;
 }
 
+static layer_source layer_of(uint64_t seed, uint64_t index, int stream)
+{
+    layer_source layer = {.random = rng_at(seed, index, (uint64_t)stream)};
+    layer.sequence = sequence_of(&layer.random);
+    return layer;
+}
+
 status render_image(trace_scene *scene, const image_settings *settings, uint64_t seed, uint64_t index,
                     const environment *env, sample *out)
 {
@@ -240,13 +202,19 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     renderer r = {.scene = scene,
                   .settings = settings,
                   .env = env,
-                  .eye = {settings->size, settings->size, settings->fov},
                   .flash = {{0, 0, 0}, LIGHT_POWER, true},
-                  .jitter = rng_at(seed, index, STREAM_JITTER),
-                  .indirect = rng_at(seed, index, STREAM_INDIRECT),
-                  .target = rng_at(seed, index, STREAM_TARGET),
-                  .surroundings = rng_at(seed, index, STREAM_SURROUNDINGS),
+                  .indirect = layer_of(seed, index, STREAM_INDIRECT),
+                  .target = layer_of(seed, index, STREAM_TARGET),
+                  .surroundings = layer_of(seed, index, STREAM_SURROUNDINGS),
                   .out = out};
+    const camera eye = {settings->size, settings->size, settings->fov};
+    rng jitter = rng_at(seed, index, STREAM_JITTER);
+    uint64_t key = (uint64_t)rng_u32(&jitter) << 32;
+    s = visibility_new(scene, &eye, settings->strata, key | rng_u32(&jitter), &r.visibility);
+    if (s != OK) {
+        sample_free(out);
+        return s;
+    }
     rng lights = rng_at(seed, index, STREAM_LIGHTS);
     for (int t = 0; t < settings->targets; t++) {
         float u1 = rng_uniform(&lights), u2 = rng_uniform(&lights);
@@ -257,6 +225,7 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     for (int y = 0; y < settings->size; y++)
         for (int x = 0; x < settings->size; x++)
             render_pixel(&r, x, y);
+    visibility_free(r.visibility);
     s = smooth_layers(out);
     if (s != OK) sample_free(out);
     return s;

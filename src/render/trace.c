@@ -121,6 +121,54 @@ void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, tr
     }
 }
 
+/* Counts them, and fills what Embree wants aligned. */
+static void fill_rays(trace_scene *scene, const ray_packet *from, struct RTCRay16 *to, int valid[TRACE_PACKET])
+{
+    int count = 0;
+    for (int i = 0; i < TRACE_PACKET; i++)
+        count -= valid[i] = from->valid[i];
+    scene->rays += (uint64_t)count;
+    for (int i = 0; i < TRACE_PACKET; i++) {
+        to->org_x[i] = from->x[i];
+        to->org_y[i] = from->y[i];
+        to->org_z[i] = from->z[i];
+        to->tnear[i] = to->time[i] = 0;
+        to->dir_x[i] = from->dx[i];
+        to->dir_y[i] = from->dy[i];
+        to->dir_z[i] = from->dz[i];
+        to->tfar[i] = FLT_MAX;
+        to->mask[i] = 0xffffffffu;
+        to->id[i] = to->flags[i] = 0;
+    }
+}
+
+void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRACE_PACKET])
+{
+    struct RTCRayHit16 packet;
+    struct RTCIntersectContext context;
+    _Alignas(64) int valid[TRACE_PACKET];
+    fill_rays(scene, rays, &packet.ray, valid);
+    memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID); /* RTC_INVALID_GEOMETRY_ID */
+    rtcInitIntersectContext(&context);
+    rtcIntersect16(valid, bvh_of(scene), &context, &packet);
+    for (int i = 0; i < TRACE_PACKET; i++) {
+        bool met = rays->valid[i] && packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        hits[i] = (trace_hit){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i], met ? packet.ray.tfar[i] : -1.0f};
+    }
+}
+
+void trace_packet_free(trace_scene *scene, ray_packet *rays)
+{
+    struct RTCRay16 packet;
+    struct RTCIntersectContext context;
+    _Alignas(64) int valid[TRACE_PACKET];
+    fill_rays(scene, rays, &packet, valid);
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, bvh_of(scene), &context, &packet);
+    for (int i = 0; i < TRACE_PACKET; i++)
+        if (packet.tfar[i] < 0) rays->valid[i] = 0;
+}
+
 /* n moved toward the unit d until n·d is at least `least`. */
 static vec3 bend_toward(vec3 n, vec3 d, real least)
 {

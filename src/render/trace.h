@@ -50,6 +50,18 @@ enum { TRACE_PACKET = 16 };
 /* Up to TRACE_PACKET rays from the origin of space at once. */
 void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, trace_hit *hits);
 
+/* Rays of any kind: origins and unit directions; valid: -1 for those to be traced, else 0. */
+typedef struct ray_packet {
+    float x[TRACE_PACKET], y[TRACE_PACKET], z[TRACE_PACKET];
+    float dx[TRACE_PACKET], dy[TRACE_PACKET], dz[TRACE_PACKET];
+    int valid[TRACE_PACKET];
+} ray_packet;
+
+/* What each of the traced rays meets first. */
+void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRACE_PACKET]);
+/* Clears valid where anything lies in the way, however far. */
+void trace_packet_free(trace_scene *scene, ray_packet *rays);
+
 /* The surface at a hit, seen along -view (view: unit, from the surface to the eye): both normals turned to the viewer's
  * side, the shading normal bent until the viewer sees it at least grazing. */
 void trace_surface_at(const trace_scene *scene, const trace_hit *hit, vec3 view, scn_surface *out);

@@ -11,6 +11,7 @@ float noise_gradient(vec3 p, uint32_t seed)
     float x = p.x - fx, y = p.y - fy, z = p.z - fz;
     int ix = (int)fx, iy = (int)fy, iz = (int)fz;
     float n[8];
+#pragma omp simd
     for (int c = 0; c < 8; c++) {
         int cx = c & 1, cy = (c >> 1) & 1, cz = c >> 2;
         uint32_t h = noise_hash(ix + cx, iy + cy, iz + cz, seed);
@@ -55,25 +56,38 @@ float noise_turbulence(vec3 p, int octaves, uint32_t seed)
     return sum / total;
 }
 
+/* The cells around a point's own, and behind them some so far away that they never matter: a whole number of vectors.
+ */
+enum { CELLS = 27, LANES = 32, AWAY = 1000 };
+static const int cell_x[LANES] = {-1, 0, 1,  -1, 0, 1,  -1, 0, 1,  -1, 0, 1,    -1,   0,    1,    -1,
+                                  0,  1, -1, 0,  1, -1, 0,  1, -1, 0,  1, AWAY, AWAY, AWAY, AWAY, AWAY};
+static const int cell_y[LANES] = {-1, -1, -1, 0, 0,  0,  1,  1, 1, -1, -1, -1, 0, 0,
+                                  0,  1,  1,  1, -1, -1, -1, 0, 0, 0,  1,  1,  1};
+static const int cell_z[LANES] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0,
+                                  0,  0,  0,  0,  1,  1,  1,  1,  1,  1, 1, 1, 1};
+
 noise_cell noise_cellular(vec3 p, uint32_t seed)
 {
     float fx = floorf(p.x), fy = floorf(p.y), fz = floorf(p.z);
-    float x = p.x - fx, y = p.y - fy, z = p.z - fz;
-    noise_cell cell = {1e9f, 1e9f, 0};
-    for (int c = 0; c < 27; c++) {
-        int cx = c % 3 - 1, cy = c / 3 % 3 - 1, cz = c / 9 - 1;
-        uint32_t h = noise_hash((int)fx + cx, (int)fy + cy, (int)fz + cz, seed);
-        float dx = (float)cx + (float)(h & 1023) / 1023 - x, dy = (float)cy + (float)((h >> 10) & 1023) / 1023 - y;
-        float dz = (float)cz + (float)((h >> 20) & 1023) / 1023 - z, d = dx * dx + dy * dy + dz * dz;
-        if (d < cell.first) {
-            cell.second = cell.first;
-            cell.first = d;
-            cell.id = h;
-        } else if (d < cell.second) {
-            cell.second = d;
-        }
+    float x = p.x - fx, y = p.y - fy, z = p.z - fz, distance[LANES];
+    int ix = (int)fx, iy = (int)fy, iz = (int)fz;
+    uint32_t id[LANES];
+#pragma omp simd
+    for (int c = 0; c < LANES; c++) {
+        uint32_t h = noise_hash(ix + cell_x[c], iy + cell_y[c], iz + cell_z[c], seed);
+        float dx = (float)cell_x[c] + (float)(int)(h & 1023) / 1023 - x;
+        float dy = (float)cell_y[c] + (float)(int)((h >> 10) & 1023) / 1023 - y;
+        float dz = (float)cell_z[c] + (float)(int)((h >> 20) & 1023) / 1023 - z;
+        distance[c] = dx * dx + dy * dy + dz * dz;
+        id[c] = h;
     }
-    cell.first = sqrtf(cell.first);
-    cell.second = sqrtf(cell.second);
-    return cell;
+    float first = 1e9f, second = 1e9f;
+    int nearest = 0;
+    for (int c = 0; c < CELLS; c++) {
+        float d = distance[c];
+        second = d < second ? (d < first ? first : d) : second;
+        nearest = d < first ? c : nearest;
+        first = d < first ? d : first;
+    }
+    return (noise_cell){sqrtf(first), sqrtf(second), id[nearest]};
 }

@@ -146,8 +146,9 @@ static void scale_environment(const trn_view *v, float strength)
         v->sh[i] *= strength;
 }
 
-/* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Light of later
- * bounces does not exceed the first's: what does is a highlight that the coefficients do not know. */
+/* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Shadows do not
+ * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is
+ * not as the coefficients say. */
 static void add_environment(const trn_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
@@ -157,7 +158,7 @@ static void add_environment(const trn_view *v, const float sh[9][3])
     subtract_highlights(v, sh, rest);
     for (size_t i = 0; i < values; i++) {
         v->direct[i] += shaded[i];
-        v->indirect[i] += fminf(rest[i] - shaded[i], fmaxf(shaded[i], 0));
+        v->indirect[i] += fminf(fmaxf(rest[i], 0) - shaded[i], fmaxf(shaded[i], 0));
     }
 }
 

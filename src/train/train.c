@@ -107,7 +107,9 @@ static status build(run *r)
     trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
     status s = model_build(&r->model, MODEL_TRAINING, &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
-    if (s == OK && r->options->init) s = nn_params_load(r->params, r->options->init);
+    if (s == OK && r->options->init)
+        s = r->options->init_shared ? nn_params_load_shared(r->params, r->options->init)
+                                    : nn_params_load(r->params, r->options->init);
     if (s != OK) return s;
     nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
     s = nn_adam_new(r->params, &adam, &r->adam);

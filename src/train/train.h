@@ -17,6 +17,7 @@
 typedef struct trn_options {
     const char *config, *data, *output;
     const char *init; /* weights to start from, or NULL */
+    bool init_shared; /* init is another model's: start from what fits by name and shape */
     const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
     bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
     bool quiet;

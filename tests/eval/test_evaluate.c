@@ -131,6 +131,9 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_int_equal(r.all.count[EVAL_TRACED_NETWORK][EVAL_MODEL], 5);
     /* the targets of this sample are the flash picture itself */
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_UNCHANGED) - 1) < 1e-9);
+    /* which the true maps give back, with nothing in shadow, to half floats' 0.05 % */
+    assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_TRUE_MAPS) - 1) < 5e-4);
+    assert_true(fabs(eval_score(&r.all, EVAL_TRACED_SHADOWS, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(file_exists(f->figure));
 }
 

@@ -92,6 +92,32 @@ static void tensors_that_do_not_fit_are_refused(void **state)
     nn_params_free(a);
 }
 
+static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
+{
+    (void)state;
+    nn_params *a = new_params(1), *b = new_params(2), *before = new_params(2);
+    st_tensor tensors[MOST];
+    size_t count = describe(a, tensors);
+    /* a stranger, one missing, one of another shape */
+    tensors[0].shape[0] = 3;
+    tensors[0].shape[1] = 4;
+    tensors[1].name = "stranger";
+    nn_params_at(a, 2)->value[0] = 42;
+    assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
+    assert_int_equal(nn_params_load_shared(b, path), OK);
+    for (size_t i = 0; i < count; i++) {
+        const nn_param *expected = nn_params_at(i < 2 ? before : a, i);
+        assert_memory_equal(nn_params_at(b, i)->value, expected->value, expected->count * sizeof(float));
+    }
+    assert_true(nn_params_at(b, 2)->value[0] == 42);
+    assert_int_equal(st_write(path, tensors, 2, NULL, 0), OK);
+    assert_int_equal(nn_params_load_shared(b, path), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "no tensor fits"));
+    nn_params_free(a);
+    nn_params_free(b);
+    nn_params_free(before);
+}
+
 static int make_file(void **state)
 {
     (void)state;
@@ -110,6 +136,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(saved_parameters_are_loaded),
         cmocka_unit_test(tensors_that_do_not_fit_are_refused),
+        cmocka_unit_test(tensors_that_fit_are_shared_and_the_rest_stays),
     };
     return cmocka_run_group_tests(tests, make_file, remove_file);
 }

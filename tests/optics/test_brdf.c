@@ -188,8 +188,13 @@ static void sampling_agrees_with_its_density(void **state)
             double a = rng_uniform(&r), b = rng_uniform(&r), c = rng_uniform(&r);
             vec3 l = brdf_sample(grey, roughness[i], n, v, a, b, c);
             double cosine = vec3_dot(n, l);
-            if (cosine > 0)
-                sum += brdf_eval(grey, roughness[i], n, l, v).x * cosine / brdf_pdf(grey, roughness[i], n, l, v);
+            if (cosine <= 0) continue;
+            double pdf, f = brdf_eval_pdf(grey, roughness[i], n, l, v, &pdf).x;
+            sum += f * cosine / pdf;
+            if (s < 100) { /* the same formulas, in another order */
+                assert_close(f, brdf_eval(grey, roughness[i], n, l, v).x, 1e-9);
+                assert_close(pdf, brdf_pdf(grey, roughness[i], n, l, v), 1e-9);
+            }
         }
         double expected = 0.5 + specular_albedo(roughness[i], vec3_dot(n, v));
         /* the estimate's relative deviation is at most about 1/sqrt(400000) = 0.0016; three of those and the grid's */

@@ -154,11 +154,15 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         scn_surface at = {p, floor_normal, floor_normal, {0.5f, 0.5f, 0.5f}, 0.4f};
         point_light flash = {{0, 0, 0}, 5.95f, true};
         rng r = rng_at(7, (uint64_t)k, 0);
+        sequence spread = sequence_of(&r);
+        path_source source = {&spread, 0, &r};
         double sum[2] = {0, 0};
-        for (int i = 0; i < PATHS; i++) {
+        vec3 view = vec3_normalize(vec3_scale(p, -1));
+        path_points points = {&at, &view, 1};
+        enum { ABREAST = 100 };
+        for (; source.index < PATHS; source.index += ABREAST) {
             vec3 bounce[2];
-            path_start start = path_start_at(i, PATHS, 0.3f, 0.7f);
-            point_light_path(&s.scene, &at, vec3_normalize(vec3_scale(p, -1)), &flash, start, &r, bounce);
+            point_light_paths(&s.scene, &points, &flash, &source, ABREAST, bounce);
             sum[0] += bounce[0].x;
             sum[1] += bounce[1].x;
         }

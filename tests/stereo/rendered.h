@@ -28,6 +28,8 @@ typedef struct rendering {
     trace_scene scene;
     pst_capture *capture;
     rng random;
+    sequence spread;
+    uint32_t next; /* path of the sequence */
 } rendering;
 
 /* Two rings and a few between: what capture domes have. */
@@ -63,8 +65,7 @@ static inline vec3 rendered_shade(const rendering *r, const scn_surface *at, vec
 }
 
 /* Radiance by one light, straight and by way of other surfaces. */
-static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 view, const pst_light *from, int path,
-                                     float shift)
+static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 view, const pst_light *from)
 {
     bool led = r->how->leds;
     static const float far = 500;
@@ -77,9 +78,10 @@ static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 v
         sum = vec3_scale(rendered_shade(r, at, view, l), power);
     if (r->how->paths > 0) {
         point_light source = {.position = position, .power = led ? 1 : far * far};
+        path_points point = {at, &view, 1};
+        path_source drawn = {&r->spread, r->next++, &r->random};
         vec3 bounce[2];
-        point_light_path(&r->scene, at, view, &source, path_start_at(path, r->how->paths, shift, shift), &r->random,
-                         bounce);
+        point_light_paths(&r->scene, &point, &source, &drawn, 1, bounce);
         sum = vec3_add(sum, vec3_add(bounce[0], bounce[1]));
     }
     /* the lobe is applied to all that the LED sends, as seen from the surface */
@@ -131,9 +133,8 @@ static inline void rendered_pixel(rendering *r, int i, int j)
     int paths = how->paths > points ? how->paths : points;
     for (int k = 0; k < how->lights; k++) {
         vec3 sum = {0, 0, 0};
-        float shift = rng_uniform(&r->random);
         for (int s = 0; s < paths; s++)
-            sum = vec3_add(sum, rendered_radiance(r, &at[s % points], view[s % points], &c->light[k], s, shift));
+            sum = vec3_add(sum, rendered_radiance(r, &at[s % points], view[s % points], &c->light[k]));
         sum = vec3_scale(sum, 1 / (float)paths);
         float rgb[3] = {sum.x, sum.y, sum.z};
         for (int ch = 0; ch < channels; ch++)
@@ -145,6 +146,7 @@ static inline void rendered_capture(const rendered *how, const scn_object *objec
 {
     trace_device *device;
     rendering r = {.how = how, .capture = c, .random = rng_at(1, 2, 3)};
+    r.spread = sequence_of(&r.random);
     capture_new(c, how->size, how->lights, how->grey ? 1 : 3);
     for (int k = 0; k < how->lights; k++) {
         if (how->leds)

@@ -1,0 +1,204 @@
+/* merlin eval photos: photographs taken apart by several weights, side by side in one picture. */
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/progress.h"
+#include "cli/cli.h"
+#include "cli/eval_commands.h"
+#include "cli/photos.h"
+#include "estimate/overview.h"
+#include "image/resize.h"
+
+static const char help[] =
+    "usage: merlin eval photos PHOTO|FOLDER... --model W [--model W2 ...] -o FILE.png\n\n"
+    "Real photographs have no truth to measure against, but can be looked at: a row a photograph, with the photograph "
+    "and\n"
+    "then albedo, normal, roughness, depth, reconstruction and two new lights, each by all of the weights side by "
+    "side.\n\n"
+    "      --model W        weights; once for each column of tiles, before and after say, at most 4\n"
+    "  -o, --output F.png   the picture\n"
+    "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
+    "      --quiet          no progress\n"
+    "  -h, --help           this text\n";
+
+enum { MOST_MODELS = 4, MOST_PHOTOS = 64, TILE = 160, LABEL_SIZE = 48 };
+enum { OPTION_MODEL = 256, OPTION_MASK, OPTION_QUIET };
+
+static const struct option long_options[] = {
+    {"model", required_argument, NULL, OPTION_MODEL},
+    {"mask", required_argument, NULL, OPTION_MASK},
+    {"output", required_argument, NULL, 'o'},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"help", no_argument, NULL, 'h'},
+    {0},
+};
+
+typedef struct request {
+    const char *models[MOST_MODELS], *mask, *output;
+    int model_count;
+    bool quiet, help;
+} request;
+
+static status take_option(int option, const char *value, request *r)
+{
+    switch (option) {
+    case OPTION_MODEL:
+        if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
+        r->models[r->model_count++] = value;
+        return OK;
+    case OPTION_MASK:
+        r->mask = value;
+        return OK;
+    case 'o':
+        r->output = value;
+        return OK;
+    case OPTION_QUIET:
+        r->quiet = true;
+        return OK;
+    case 'h':
+        r->help = true;
+        return OK;
+    default:
+        return fail(ERROR_USAGE, "unknown option, or its value is missing");
+    }
+}
+
+static status parse(int argc, char **argv, request *r)
+{
+    int option;
+    opterr = 0;
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
+        status s = take_option(option, optarg, r);
+        if (s != OK || r->help) return s;
+    }
+    if (optind == argc) return fail(ERROR_USAGE, "no photograph given");
+    if (r->model_count == 0) return fail(ERROR_USAGE, "--model W is missing");
+    return r->output ? OK : fail(ERROR_USAGE, "-o FILE.png is missing");
+}
+
+/* ---- the picture ---- */
+
+/* A row a photograph: the photograph, then each of the other tiles by every weights. */
+typedef struct comparison {
+    const request *request;
+    const photo_list *photos;
+    int columns;
+    img *images;                /* photographs × columns, of the tiles' size */
+    char (*labels)[LABEL_SIZE]; /* of as many */
+    progress progress;
+} comparison;
+
+static size_t tile_count(const comparison *c)
+{
+    return c->photos->count * (size_t)c->columns;
+}
+
+static status comparison_new(const request *r, const photo_list *photos, comparison *c)
+{
+    *c = (comparison){.request = r, .photos = photos, .columns = 1 + (OVERVIEW_TILES - 1) * r->model_count};
+    if (photos->count > MOST_PHOTOS)
+        return fail(ERROR_USAGE, "%zu photographs are too many for one picture; %d fit", photos->count, MOST_PHOTOS);
+    c->images = calloc(tile_count(c), sizeof *c->images);
+    c->labels = calloc(tile_count(c), sizeof *c->labels);
+    return c->images && c->labels ? OK : fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
+}
+
+static void comparison_free(comparison *c)
+{
+    for (size_t i = 0; c->images && i < tile_count(c); i++)
+        img_free(&c->images[i]);
+    free(c->images);
+    free(c->labels);
+}
+
+static status put_tiles(comparison *c, size_t photo, int model, const overview *o)
+{
+    figure_tile tiles[OVERVIEW_TILES];
+    overview_tiles(o, tiles);
+    int models = c->request->model_count;
+    for (int t = model == 0 ? 0 : 1; t < OVERVIEW_TILES; t++) {
+        size_t at = photo * (size_t)c->columns + (size_t)(t == 0 ? 0 : 1 + (t - 1) * models + model);
+        status s = img_resize(tiles[t].image, TILE, TILE, &c->images[at]);
+        if (s != OK) return s;
+        if (t == 0 || models == 1)
+            snprintf(c->labels[at], LABEL_SIZE, "%s", tiles[t].label);
+        else
+            snprintf(c->labels[at], LABEL_SIZE, "%d: %s", model + 1, tiles[t].label);
+    }
+    return OK;
+}
+
+static status take_apart(comparison *c, merlin_model *m, size_t photo, int model)
+{
+    const photo_job *job = &c->photos->at[photo];
+    merlin_image picture = {0}, mask = {0};
+    merlin_maps maps = {0};
+    overview o = {0};
+    status s = photo_read(job, &picture, &mask);
+    if (s == OK) s = (status)merlin_estimate(m, &picture, &mask, NULL, &maps);
+    if (s == OK) s = overview_new(m->network, &maps, &o);
+    if (s == OK) s = put_tiles(c, photo, model, &o);
+    overview_free(&o);
+    merlin_maps_free(&maps);
+    merlin_image_free(&picture);
+    merlin_image_free(&mask);
+    return s == OK ? OK : fail_in(s, "%s", job->photo);
+}
+
+static status run_model(comparison *c, int model)
+{
+    merlin_model *m = NULL;
+    size_t count = c->photos->count;
+    status s = (status)merlin_model_open(c->request->models[model], &m);
+    for (size_t i = 0; i < count && s == OK; i++) {
+        s = cli_interrupted() ? fail(ERROR_STOPPED, "interrupted; nothing was written") : take_apart(c, m, i, model);
+        if (s == OK) progress_update(&c->progress, (size_t)model * count + i + 1, NULL);
+    }
+    merlin_model_close(m);
+    return s;
+}
+
+static status write_sheet(const comparison *c)
+{
+    size_t count = tile_count(c);
+    figure_tile *tiles = malloc(count * sizeof *tiles);
+    if (!tiles) return fail(ERROR_MEMORY, "no memory for %zu tiles", count);
+    for (size_t i = 0; i < count; i++)
+        tiles[i] = (figure_tile){c->labels[i], &c->images[i]};
+    status s = figure_sheet(c->request->output, tiles, (int)count, c->columns, TILE);
+    free(tiles);
+    return s;
+}
+
+static status compare(const request *r, const photo_list *photos)
+{
+    comparison c;
+    status s = comparison_new(r, photos, &c);
+    if (s == OK) {
+        progress_begin(&c.progress, "taking apart", "photographs", 0, photos->count * (size_t)r->model_count, r->quiet);
+        for (int model = 0; model < r->model_count && s == OK; model++)
+            s = run_model(&c, model);
+        progress_end(&c.progress);
+    }
+    if (s == OK) s = write_sheet(&c);
+    if (s == OK && !r->quiet) printf("%s: %zu photographs by %d weights\n", r->output, photos->count, r->model_count);
+    comparison_free(&c);
+    return s;
+}
+
+int eval_photos(int argc, char **argv)
+{
+    request r = {0};
+    if (parse(argc, argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
+    if (r.help) return fputs(help, stdout) < 0;
+    photo_list photos;
+    status s = photo_list_make(argv + optind, argc - optind, r.mask, NULL, &photos);
+    if (s != OK) return cli_fail("eval photos", s);
+    cli_catch_interrupts();
+    s = compare(&r, &photos);
+    photo_list_free(&photos);
+    return s == OK ? 0 : cli_fail("eval photos", s);
+}
