@@ -223,9 +223,10 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9])
     double form[36], minor[6] = {0}, scale = HUGE_VAL, best = HUGE_VAL;
     status s = integrability_form(f, minor, &scale, form);
     for (int k = 0; s == OK && k < GRID * GRID * GRID; k++) {
+        const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
         double trial[9], tilted[9], step = 6.283185307 / GRID;
-        double about_z[3] = {0, 0, step * (k % GRID)}, about_x[3] = {step * (k / GRID % GRID), 0, 0};
-        double last[3] = {0, 0, step * (k / GRID / GRID)};
+        double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
+        double last[3] = {0, 0, step * index[2]};
         turned(about_z, identity, trial);
         turned(about_x, trial, tilted);
         turned(last, tilted, trial);
