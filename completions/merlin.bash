@@ -12,7 +12,7 @@ _merlin() {
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
             --help"
-        [bench]="--model --config --batch --quick --json --quiet --help"
+        [bench]="--model --config --batch --stereo --quick --json --quiet --help"
         [info]="--tensors --json --help"
     )
     if ((COMP_CWORD == 1)); then

@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 #include "cli/photos.h"
 #include "eval/bench.h"
+#include "eval/bench_stereo.h"
 #include "model/model.h"
 #include "train/checkpoint.h"
 
@@ -19,22 +20,30 @@ static const char help[] =
     "      --model W       weights (default: those merlin estimate takes)\n"
     "      --config C.json random weights of this configuration instead\n"
     "      --batch N       pictures in a training step (default 16)\n"
-    "      --quick         fewer runs\n"
+    "      --stereo        photometric stereo by least squares instead: 32 pictures of 12 megapixels, against the "
+    "rate\n"
+    "                      at which this machine copies memory\n"
+    "      --quick         fewer runs, smaller pictures\n"
     "      --json          report on standard output as JSON\n"
     "      --quiet         no progress\n"
     "  -h, --help          this text\n";
 
 static const struct option long_options[] = {
-    {"model", required_argument, NULL, 'm'}, {"config", required_argument, NULL, 'c'},
-    {"batch", required_argument, NULL, 'b'}, {"quick", no_argument, NULL, 'f'},
-    {"json", no_argument, NULL, 'j'},        {"quiet", no_argument, NULL, 'q'},
-    {"help", no_argument, NULL, 'h'},        {0},
+    {"model", required_argument, NULL, 'm'},
+    {"config", required_argument, NULL, 'c'},
+    {"batch", required_argument, NULL, 'b'},
+    {"quick", no_argument, NULL, 'f'},
+    {"stereo", no_argument, NULL, 's'},
+    {"json", no_argument, NULL, 'j'},
+    {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},
+    {0},
 };
 
 typedef struct bench_request {
     bench_options options;
     const char *model, *config;
-    bool json, help;
+    bool stereo, json, help;
 } bench_request;
 
 static status parse_option(int option, const char *value, bench_request *r)
@@ -54,6 +63,9 @@ static status parse_option(int option, const char *value, bench_request *r)
         break;
     case 'f':
         r->options.quick = true;
+        break;
+    case 's':
+        r->stereo = true;
         break;
     case 'j':
         r->json = true;
@@ -127,6 +139,23 @@ static status run_with_model(const bench_request *r)
     return s;
 }
 
+static status run_stereo(const bench_request *r)
+{
+    const bench_options *o = &r->options;
+    bench_stereo_report report;
+    status s = bench_stereo(&(bench_stereo_options){o->quick, o->quiet, o->stopped}, &report);
+    if (s != OK) return s;
+    if (!r->json) {
+        bench_stereo_print(&report, stdout);
+        return OK;
+    }
+    char *json = bench_stereo_json(&report);
+    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
+    puts(json);
+    free(json);
+    return OK;
+}
+
 int cmd_bench(int argc, char **argv)
 {
     bench_request r = {.options = {.program = "/proc/self/exe", .stopped = cli_interrupted}};
@@ -139,8 +168,10 @@ int cmd_bench(int argc, char **argv)
     }
     if (r.help) return fputs(help, stdout) < 0;
     if (optind < argc) return cli_usage("bench", "unexpected argument \"%s\"", argv[optind]);
+    if (r.stereo && (r.model || r.config || r.options.batch))
+        return cli_usage("bench", "--stereo goes without --model, --config and --batch");
     if (r.model && r.config) return cli_usage("bench", "--model and --config exclude each other");
     cli_catch_interrupts();
-    status s = r.config ? run_with_random_weights(&r) : run_with_model(&r);
+    status s = r.stereo ? run_stereo(&r) : r.config ? run_with_random_weights(&r) : run_with_model(&r);
     return s == OK ? 0 : cli_fail("bench", s);
 }

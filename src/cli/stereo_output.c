@@ -192,16 +192,47 @@ static status write_all(const stereo_files *files, const staging *t, const stere
     char *path = s == OK ? staging_path(t, "report.json") : NULL;
     if (s == OK) s = path ? write_report(report, path) : fail(ERROR_MEMORY, "no memory for a file name");
     free(path);
-    for (int i = 0; i < files->mesh_count && s == OK; i++)
-        s = write_mesh(r, files->mesh[i]);
+    return s;
+}
+
+/* A mesh with a name of its own is made aside in the folder where it is wanted, for it may bring other files along. */
+static status stage_mesh(const char *path, const stereo_result *r, staging **out)
+{
+    *out = NULL;
+    if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
+    status s = folder ? staging_begin(folder, out) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(folder);
+    if (s != OK) return fail_in(s, "cannot write %s", path);
+    char *aside = staging_path(*out, slash ? slash + 1 : path);
+    s = aside ? write_mesh(r, aside) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(aside);
+    return s;
+}
+
+/* The folder first: it has the most to fail. */
+static status commit_all(staging **t, int count)
+{
+    status s = OK;
+    for (int i = 0; i < count; i++)
+        s = s == OK ? staging_commit(t[i]) : staging_abort(t[i], s);
     return s;
 }
 
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report)
 {
-    staging *t;
-    status s = staging_begin(files->folder, &t);
+    staging *t[1 + STEREO_MOST_MESHES] = {NULL};
+    int count = 1;
+    status s = staging_begin(files->folder, &t[0]);
     if (s != OK) return s;
-    s = write_all(files, t, r, report);
-    return s == OK ? staging_commit(t) : staging_abort(t, s);
+    s = write_all(files, t[0], r, report);
+    for (int i = 0; i < files->mesh_count && s == OK; i++) {
+        s = stage_mesh(files->mesh[i], r, &t[count]);
+        count += t[count] != NULL;
+    }
+    if (s == OK) return commit_all(t, count);
+    while (count > 0)
+        s = staging_abort(t[--count], s);
+    return s;
 }

@@ -29,8 +29,8 @@ typedef struct stereo_files {
     int (*stop)(void);
 } stereo_files;
 
-/* maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json and the meshes:
- * all or, after a failure, none in the folder. */
+/* maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json and the meshes,
+ * wherever those are wanted: all or, after a failure to write, none. */
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report);
 
 /* The surface turned by 45 degrees about the vertical axis and lit from the camera: side × side, 1 channel, linear. */

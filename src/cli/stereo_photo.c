@@ -1,6 +1,7 @@
 #include "cli/stereo_photo.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "cli/photos.h"
 #include "eval/draws.h"
@@ -99,15 +100,24 @@ static float average(const work *w, size_t pixel, float *mean)
     return sqrtf(square);
 }
 
+/* Where the draws contradict each other, as they do along a silhouette that few lights reach, they say nothing. */
+static bool believe_network(const work *w, size_t pixel, stereo_result *out)
+{
+    if (out->error.data[pixel] <= SPREAD_WHITE) return false;
+    memcpy(out->normal.data + 3 * pixel, w->relit.maps.normal.data + 3 * pixel, 3 * sizeof(float));
+    return true;
+}
+
 static void average_all(const work *w, stereo_result *out, cJSON *report)
 {
-    double spread = 0, off = 0, count = 0;
+    double spread = 0, off = 0, count = 0, left = 0;
     size_t pixels = (size_t)out->mask.width * (size_t)out->mask.height;
     for (size_t i = 0; i < pixels; i++) {
         if (out->mask.data[i] <= 0.5f) continue;
         out->error.data[i] = average(w, i, out->normal.data + 3 * i);
         spread += (double)out->error.data[i];
         off += (double)angle(normal_at(&out->normal, i), normal_at(&w->relit.maps.normal, i));
+        left += believe_network(w, i, out);
         count++;
     }
     cJSON_AddStringToObject(report, "model", merlin_model_name(w->model));
@@ -117,6 +127,7 @@ static void average_all(const work *w, stereo_result *out, cJSON *report)
     cJSON_AddNumberToObject(report, "object_pixels", count);
     cJSON_AddNumberToObject(report, "normal_spread_mean_degrees", count > 0 ? spread / count : 0);
     cJSON_AddNumberToObject(report, "angle_to_network_normal_mean_degrees", count > 0 ? off / count : 0);
+    cJSON_AddNumberToObject(report, "pixels_left_to_the_network", left);
 }
 
 static status result_new(work *w, stereo_result *out)

@@ -16,8 +16,8 @@ typedef struct stereo_photo {
 } stereo_photo;
 
 /* 50 lights of the frontal hemisphere, five draws of 32 of them, all by a fixed seed. The result is the square around
- * the object: the draws' mean normal, and as error its spread over the draws in degrees. What was found is added to
- * the report. */
+ * the object: the draws' mean normal (the network's own where they spread over more than 20 degrees), and as error that
+ * spread in degrees. What was found is added to the report. */
 status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *report);
 
 #endif

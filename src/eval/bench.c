@@ -7,10 +7,9 @@
 #include "base/progress.h"
 #include "base/rng.h"
 #include "eval/bench_estimate.h"
+#include "eval/bench_time.h"
 #include "model/model.h"
 #include "render/generate.h"
-
-enum { MAX_RUNS = 64 };
 
 double bench_inference_peak(const nn_peak *peak)
 {
@@ -22,77 +21,9 @@ double bench_training_peak(const nn_peak *peak)
     return 3 / (1 / peak->forward + 1 / peak->backward_data + 1 / peak->backward_weights);
 }
 
-/* How long to measure: at least `least` runs, then on until `seconds` have passed. */
-typedef struct patience {
-    int least;
-    double seconds;
-} patience;
-
-static patience patience_of(const bench_options *o)
-{
-    return o->quick ? (patience){3, 0.5} : (patience){9, 4};
-}
-
-typedef status (*bench_work)(void *context);
-
-static int compare_seconds(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Median seconds of one call, after one that is not counted. */
-static status time_work(bench_work work, void *context, patience p, double *seconds)
-{
-    double times[MAX_RUNS];
-    int runs = 0;
-    status s = work(context);
-    for (double begun = clock_seconds(), now = begun; s == OK && runs < MAX_RUNS; runs++) {
-        if (runs >= p.least && now - begun > p.seconds) break;
-        double started = now;
-        s = work(context);
-        now = clock_seconds();
-        times[runs] = now - started;
-    }
-    if (s != OK) return s;
-    qsort(times, (size_t)runs, sizeof times[0], compare_seconds);
-    *seconds = times[runs / 2];
-    return OK;
-}
-
-typedef struct copy_work {
-    char *from, *to;
-} copy_work;
-
-static void copy_block(void *context, size_t begin, size_t end)
-{
-    const copy_work *c = context;
-    memcpy(c->to + begin, c->from + begin, end - begin);
-}
-
-enum { COPY_BYTES = 256 << 20 };
-
-static status copy_all(void *context)
-{
-    parallel_blocks(COPY_BYTES, copy_block, context);
-    return OK;
-}
-
 static status measure_copy(const bench_options *o, bench_report *out)
 {
-    copy_work c = {malloc(COPY_BYTES), malloc(COPY_BYTES)};
-    double seconds = 0;
-    status s;
-    if (c.from && c.to) {
-        memset(c.from, 1, COPY_BYTES); /* untouched pages are all one page of zeros */
-        s = time_work(copy_all, &c, patience_of(o), &seconds);
-    } else {
-        s = fail(ERROR_MEMORY, "no memory to measure the rate of copying");
-    }
-    free(c.from);
-    free(c.to);
-    if (s == OK) out->copy_rate = 2.0 * COPY_BYTES / seconds;
-    return s;
+    return bench_copy_rate(bench_patience_of(o->quick), &out->copy_rate);
 }
 
 typedef struct network_work {
@@ -160,7 +91,7 @@ static status measure_network(const bench_options *o, const char *weights, const
     s = build_network(&config, params, options, &w);
     if (s == OK) {
         fill_inputs(w.program, (size_t)options->batch * (size_t)options->height * (size_t)options->width);
-        s = time_work(run_network, &w, patience_of(o), &out->seconds);
+        s = bench_time(run_network, &w, bench_patience_of(o->quick), &out->seconds);
     }
     if (s == OK) {
         nn_cost cost = nn_program_cost(w.program);

@@ -37,7 +37,7 @@ typedef struct ls_light {
     uint16_t high;
 } ls_light;
 
-static void add_weighted(sums *s, int i, float w, const ls_light *l)
+static inline __attribute__((always_inline)) void add_weighted(sums *s, int i, float w, const ls_light *l)
 {
     s->matrix[0][i] += w * (l->x * l->x);
     s->matrix[1][i] += w * (l->x * l->y);
@@ -94,35 +94,102 @@ static void add_colour(sums *restrict s, const uint16_t *restrict code, int coun
     }
 }
 
-/* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
- * iteration for the best rank-one fit to all channels. */
-static void finish_pixel(const sums *s, int i, int channels, const pst_surface *out, size_t at)
+/* What a block's sums say, a component after the other, so that pixels go through vector registers together. */
+typedef struct answers {
+    float normal[3][BLOCK], albedo[3][BLOCK], residual[BLOCK];
+} answers;
+
+/* fmaxf and fminf promise something about NaN, which costs a call. */
+static inline float larger(float a, float b)
 {
-    float m[6], albedo[3] = {0};
-    vec3 right[3], sum = {0, 0, 0};
-    for (int k = 0; k < 6; k++)
-        m[k] = s->matrix[k][i];
-    for (int c = 0; c < channels; c++) {
-        right[c] = vec3_make(s->right[c][0][i], s->right[c][1][i], s->right[c][2][i]);
-        sum = vec3_add(sum, right[c]);
+    return a > b ? a : b;
+}
+
+static inline float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+/* pst_facing without a branch. */
+static inline vec3 facing(vec3 n)
+{
+    float scale = 1 / sqrtf(smaller(larger(vec3_dot(n, n), 1e-37f), 1e37f));
+    n = vec3_make(scale * n.x, scale * n.y, larger(scale * n.z, 1e-3f));
+    return vec3_scale(n, 1 / sqrtf(vec3_dot(n, n)));
+}
+
+typedef struct symmetric {
+    float xx, xy, xz, yy, yz, zz;
+} symmetric;
+
+static inline vec3 times(symmetric m, vec3 v)
+{
+    return vec3_make(m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+                     m.xz * v.x + m.yz * v.y + m.zz * v.z);
+}
+
+/* Damped as in pst_solve3. */
+static inline symmetric inverse(symmetric m)
+{
+    float damping = 1e-6f * (m.xx + m.yy + m.zz) + 1e-30f;
+    float xx = m.xx + damping, yy = m.yy + damping, zz = m.zz + damping;
+    float c0 = yy * zz - m.yz * m.yz, c1 = m.xz * m.yz - m.xy * zz, c2 = m.xy * m.yz - m.xz * yy;
+    float d = 1 / larger(xx * c0 + m.xy * c1 + m.xz * c2, 1e-37f);
+    return (symmetric){c0 * d,
+                       c1 * d,
+                       c2 * d,
+                       (xx * zz - m.xz * m.xz) * d,
+                       (m.xy * m.xz - xx * m.yz) * d,
+                       (xx * yy - m.xy * m.xy) * d};
+}
+
+static inline vec3 right_side(const sums *s, int channel, int i)
+{
+    return vec3_make(s->right[channel][0][i], s->right[channel][1][i], s->right[channel][2][i]);
+}
+
+/* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
+ * iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are zero and change nothing.
+ */
+static void answer(const sums *restrict s, int count, answers *restrict out)
+{
+#pragma omp simd
+    for (int i = 0; i < count; i++) {
+        symmetric m = {s->matrix[0][i], s->matrix[1][i], s->matrix[2][i],
+                       s->matrix[3][i], s->matrix[4][i], s->matrix[5][i]};
+        symmetric solve = inverse(m);
+        vec3 r = right_side(s, 0, i), g = right_side(s, 1, i), b = right_side(s, 2, i);
+        vec3 n = facing(times(solve, vec3_add(vec3_add(r, g), b)));
+        vec3 weighted = vec3_scale(r, larger(vec3_dot(r, n), 0));
+        weighted = vec3_fma(weighted, larger(vec3_dot(g, n), 0), g);
+        weighted = vec3_fma(weighted, larger(vec3_dot(b, n), 0), b);
+        n = facing(times(solve, weighted));
+        float share = 1 / larger(vec3_dot(n, times(m, n)), 1e-12f);
+        float red = larger(vec3_dot(r, n), 0), green = larger(vec3_dot(g, n), 0), blue = larger(vec3_dot(b, n), 0);
+        float explained = share * (red * red + green * green + blue * blue);
+        out->normal[0][i] = n.x;
+        out->normal[1][i] = n.y;
+        out->normal[2][i] = n.z;
+        out->albedo[0][i] = red * share;
+        out->albedo[1][i] = green * share;
+        out->albedo[2][i] = blue * share;
+        float fits = explained > 0 ? 1.0f : 0.0f;
+        out->residual[i] = fits * sqrtf(larger(s->square[i] - explained, 0) / larger(explained, 1e-37f));
     }
-    vec3 n = pst_facing(pst_solve3(m, sum));
-    if (channels == 3) {
-        vec3 weighted = {0, 0, 0};
-        for (int c = 0; c < 3; c++)
-            weighted = vec3_fma(weighted, fmaxf(vec3_dot(right[c], n), 0), right[c]);
-        n = pst_facing(pst_solve3(m, weighted));
+}
+
+static void store(const answers *a, int count, const float *mask, const pst_surface *out, size_t first)
+{
+    size_t channels = (size_t)out->albedo.channels;
+    float *normal = out->normal.data + 3 * first, *albedo = out->albedo.data + channels * first;
+    for (int i = 0; i < count; i++) {
+        if (mask[i] <= 0.5f) continue;
+        for (size_t k = 0; k < 3; k++)
+            normal[3 * (size_t)i + k] = a->normal[k][i];
+        for (size_t c = 0; c < channels; c++)
+            albedo[channels * (size_t)i + c] = a->albedo[c][i];
+        out->residual.data[first + (size_t)i] = a->residual[i];
     }
-    float energy = pst_quadratic3(m, n), fit = 0, residual = s->square[i];
-    for (int c = 0; c < channels; c++) {
-        float along = vec3_dot(right[c], n);
-        albedo[c] = energy > 1e-12f ? fmaxf(along / energy, 0) : 0;
-        fit += albedo[c] * albedo[c] * energy;
-        residual += albedo[c] * albedo[c] * energy - 2 * albedo[c] * along;
-    }
-    memcpy(out->normal.data + 3 * at, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-    memcpy(out->albedo.data + (size_t)channels * at, albedo, (size_t)channels * sizeof(float));
-    out->residual.data[at] = fit > 0 ? sqrtf(fmaxf(residual, 0) / fit) : 0;
 }
 
 static void solve_block(const ls_job *job, size_t first, int count)
@@ -149,8 +216,9 @@ static void solve_block(const ls_job *job, size_t first, int count)
         else
             add_colour(&s, code, count, &l);
     }
-    for (int i = 0; i < count; i++)
-        if (mask[i] > 0.5f) finish_pixel(&s, i, c->channels, job->out, first + (size_t)i);
+    answers a;
+    answer(&s, count, &a);
+    store(&a, count, mask, job->out, first);
 }
 
 static void solve_blocks(void *context, size_t begin, size_t end)

@@ -16,6 +16,16 @@ else
     complain "bench failed"
 fi
 
+if "$MERLIN" bench --stereo --quick --quiet --json >"$scratch/stereo.json"; then
+    mapfile -t working < <(grep -o '"working_bytes":[[:space:]]*[0-9]*' "$scratch/stereo.json" | grep -o '[0-9]*$')
+    # a megapixel of results is 34 MB; 24 more pictures of 6 MB each must not show
+    ((${#working[@]} == 2 && working[1] < working[0] + 4000000)) ||
+        complain "memory grows with the number of pictures: ${working[*]}"
+    grep -q '"bytes_per_second":[[:space:]]*[1-9]' "$scratch/stereo.json" || complain "no rate of photometric stereo"
+else
+    complain "bench --stereo failed"
+fi
+refuses 2 "goes without" "$MERLIN" bench --stereo --batch 4
 refuses 2 "--batch wants" "$MERLIN" bench --batch 0
 refuses 2 "exclude each other" "$MERLIN" bench --model a --config b
 refuses 2 "unexpected argument" "$MERLIN" bench more

@@ -56,10 +56,45 @@ rm -r sizes/stereo
 cp disc.merlin/overview.png sizes/dome_003.png
 refuses 1 'dome_003.png' stereo sizes -o none
 refuses 1 'missing.safetensors' stereo disc.hdr --model missing.safetensors -o none
+# every reader, each with one line and nothing written
+copy_of() { rm -rf "$1" && mkdir "$1" && cp dome/*.png "$1"; }
+copy_of text && echo "up and left" >text/lights.txt
+refuses 1 'text/lights.txt' stereo text -o none
+copy_of few && printf '0 0 1\n0 1 1\n' >few/lights.txt
+refuses 1 '6 pictures.*2 lights' stereo few -o none
+copy_of flat && printf '0 0 1\n0 1 1\n0 2 1\n0 3 1\n0 4 1\n0 5 1\n' >flat/lights.txt
+refuses 1 'one plane' stereo flat -o none
+copy_of broken && cp dome/dome.lp broken && head -c 200 dome/dome_002.png >broken/dome_002.png
+refuses 1 'dome_002.png' stereo broken -o none
+refuses 1 'overview.png' stereo dome --mask disc.merlin/overview.png -o none
+refuses 1 'overview.png' stereo dome --ambient disc.merlin/overview.png -o none
+printf 'lights\n6 64 64 100 32\n' >broken/led_params.txt
+refuses 1 'broken/led_params.txt' stereo broken -o none
+rm broken/led_params.txt broken/dome.lp
+refuses 1 'empty' stereo calibrate --sphere chrome empty -o none
+refuses 1 'dome_002.png' stereo calibrate --sphere matte broken -o none
+copy_of diligent && printf '0 0 1\n0 1 1\n1 0 1\n' >diligent/light_directions.txt
+(cd diligent && printf '%s\n' dome_00[0-3].png >filenames.txt)
+refuses 1 'filenames.txt names 4 pictures' stereo diligent -o none
+head -3 diligent/filenames.txt >three && mv three diligent/filenames.txt
+echo "1 1 x" >diligent/light_intensities.txt
+refuses 1 'light_intensities.txt' stereo diligent -o none
+printf '1 1 1\n1 1 1\n1 1 1\n' >diligent/light_intensities.txt
+echo "not from MATLAB" >diligent/Normal_gt.mat
+refuses 1 'Normal_gt.mat' stereo diligent -o none
 absent none empty/stereo sizes/stereo
 
 echo "places that cannot be written"
 refuses 1 '/proc/merlin' stereo dome --method ls -o /proc/merlin
 refuses 1 '/proc/a.ply' stereo dome --method ls --mesh /proc/a.ply -o none
-absent none
+refuses 1 '/proc/b.glb' stereo dome --method ls --mesh first.obj --mesh /proc/b.glb -o none
+mkdir folder.ply
+refuses 1 'folder.ply' stereo dome --method ls --mesh second.ply --mesh folder.ply -o none
+absent none first.obj first.mtl first.png second.ply
+limited() { (ulimit -f "$1" && shift && "$@"); }
+for blocks in 1 8 60; do # on a disk that is full soon, later, and only when the meshes come
+    refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls -o none
+    refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls --mesh third.ply --mesh third.obj -o none
+    absent none third.ply third.obj third.mtl third.png
+done
 finish
