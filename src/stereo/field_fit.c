@@ -10,16 +10,17 @@
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SPREAD, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SPREAD, MODEL, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    const int32_t *slot; /* spread */
-    pst_shading *next;   /* spread: to take the place of the field's */
-    pst_surface *out;    /* store */
-    float *x, *y, *z;    /* distant lights, padded */
-    float *cost;         /* a pixel */
+    const int32_t *slot;   /* spread */
+    pst_shading *next;     /* spread: to take the place of the field's */
+    float *weight, *model; /* model: padded lights a pixel */
+    pst_surface *out;      /* store */
+    float *x, *y, *z;      /* distant lights, padded */
+    float *cost;           /* a pixel */
     double total;
 } fit_job;
 
@@ -101,20 +102,19 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     const pst_capture *c = p->capture;
     const pst_observations *o = &d->seen;
     pst_surface *out = job->out;
-    float w[PST_MAX_LIGHTS], lobe[PST_MAX_LIGHTS];
-    pst_lobe_weigh(d, job->field->lobe, q, w, lobe);
+    float w[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS];
+    pst_lobe_weigh(d, job->field->lobe, q, w, model);
     vec3 n = pst_facing(q->normal);
     float albedo[3] = {0}, energy = 0, fit = 0, residual = 0;
     for (int k = 0; k < c->count; k++) {
         float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - job->field->lobe->terminator, 0);
         const uint16_t *code = c->picture[k] + at * (size_t)c->channels;
-        float wc = w[k] * cosine, model = q->albedo * cosine + lobe[k], r = o->value[k] - model;
+        float wc = w[k] * cosine, r = o->value[k] - model[k], lobe = model[k] - q->albedo * cosine;
         energy += wc * cosine;
         for (int ch = 0; ch < c->channels && wc > 0; ch++)
-            albedo[ch] +=
-                wc * ((float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) - lobe[k]);
+            albedo[ch] += wc * ((float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) - lobe);
         residual += w[k] * r * r;
-        fit += w[k] * model * model;
+        fit += w[k] * model[k] * model[k];
     }
     for (int ch = 0; ch < c->channels; ch++)
         albedo[ch] = energy > 1e-12f ? fmaxf(albedo[ch] / energy, 0) : 0;
@@ -202,6 +202,8 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
         pst_shading trial = pst_lobe_refine(&d, f->lobe, start[k]);
         if (trial.cost < job->next[i].cost) job->next[i] = trial;
     }
+    if (job->task == MODEL)
+        pst_lobe_weigh(&d, f->lobe, &f->shading[i], job->weight + i * (size_t)padded, job->model + i * (size_t)padded);
     if (job->task == STORE) store_pixel(job, at, &d, &f->shading[i], f->depth ? lights.power : NULL);
     job->cost[i] = f->shading[i].cost;
 }
@@ -262,6 +264,11 @@ status pst_field_refine(const pst_field *f, double *cost)
     status s = run(&job);
     *cost = job.total;
     return s;
+}
+
+status pst_field_model(const pst_field *f, float *weight, float *model)
+{
+    return run(&(fit_job){.field = f, .task = MODEL, .weight = weight, .model = model});
 }
 
 status pst_field_store(const pst_field *f, pst_surface *out)

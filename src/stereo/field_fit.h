@@ -31,6 +31,9 @@ status pst_field_refine(const pst_field *f, double *cost);
  * the list, -1 outside. *moved: pixels that took another's. */
 status pst_field_spread(const pst_field *f, const int32_t *slot, size_t *moved);
 
+/* Each observation's share in the fit and what the fit makes of it (both count × pst_padded(pictures)). */
+status pst_field_model(const pst_field *f, float *weight, float *model);
+
 /* Normal, albedo and residual into the surface's pictures. */
 status pst_field_store(const pst_field *f, pst_surface *out);
 

@@ -31,7 +31,7 @@ enum { TRIALS = sizeof trial_sharpness / sizeof *trial_sharpness };
 static const float dark = 0.01f;
 
 /* The median of what is not dark, to 4 percent: the interval is halved in logarithms. */
-static float ordinary_level(const pst_observations *o)
+float pst_ordinary_level(const pst_observations *o)
 {
     float top = 0, all = 0;
     for (int i = 0; i < o->padded; i++)
@@ -55,7 +55,7 @@ static float ordinary_level(const pst_observations *o)
 void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out)
 {
     out->seen = *o;
-    out->level = ordinary_level(o);
+    out->level = pst_ordinary_level(o);
     float level = out->level > 1e-12f ? out->level : 1e-12f;
 #pragma omp simd
     for (int i = 0; i < o->padded; i++) {
@@ -349,7 +349,7 @@ pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe)
     return other.cost < best.cost ? other : best;
 }
 
-void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *specular)
+void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model)
 {
     const pst_observations *o = &d->seen;
     const tail_choice tail = choose_tail(lobe->tail);
@@ -357,11 +357,10 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
     float u = expf(at->sharpness), k = lobe->masking, narrow = 1 / (narrowest * narrowest);
     for (int i = 0; i < o->padded; i++) {
         float nl = n.x * o->x[i] + n.y * o->y[i] + n.z * o->z[i];
-        float nh = n.x * d->hx[i] + n.y * d->hy[i] + n.z * d->hz[i], lit = nl > 0 ? nl : 0;
-        float lobe_value = lobe_at(&tail, u, fmaxf(1 - nh * nh, 0), lit, k);
-        float r = o->value[i] - at->albedo * fmaxf(nl - lobe->terminator, 0) - at->gloss * lobe_value;
-        float t = r * r * d->precision[i] * narrow, q = 1 / (1 + t);
+        float nh = n.x * d->hx[i] + n.y * d->hy[i] + n.z * d->hz[i], lit = fmaxf(nl, 0);
+        model[i] =
+            at->albedo * fmaxf(nl - lobe->terminator, 0) + at->gloss * lobe_at(&tail, u, fmaxf(1 - nh * nh, 0), lit, k);
+        float r = o->value[i] - model[i], t = r * r * d->precision[i] * narrow, q = 1 / (1 + t);
         weight[i] = nl > lobe->terminator ? o->usable[i] * q * q : 0;
-        if (specular) specular[i] = at->gloss * lobe_value;
     }
 }

@@ -38,6 +38,9 @@ typedef struct pst_lobe_data {
     float precision[PST_MAX_LIGHTS]; /* usable / (level² + what the value is above it, squared) */
 } pst_lobe_data;
 
+/* A value that is ordinary for the pixel: the median of those above a hundredth of its brightest. */
+float pst_ordinary_level(const pst_observations *o);
+
 /* view: unit, to the camera. */
 void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out);
 
@@ -47,8 +50,7 @@ pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe);
 /* The best near a start. */
 pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start);
 
-/* weight gets each observation's share in the fit, in [0, 1]; specular (may be NULL) what of it is the lobe. */
-void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight,
-                    float *specular);
+/* weight gets each observation's share in the fit, in [0, 1], model what the fit makes of it. */
+void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model);
 
 #endif

@@ -22,7 +22,7 @@ typedef struct near_job {
     pst_field sample; /* for the scale */
     pst_camera camera;
     pst_lobe lobe;
-    pst_shading *shading; /* a pixel */
+    pst_shading *shading; /* a pixel; the sample's for a while */
 } near_job;
 
 static void fill_plane(const pst_problem *p, float distance, img *depth)
@@ -89,28 +89,37 @@ static status fit_normals(const near_job *job)
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 
+/* The depth map by way of the normals; *moved: its largest change. */
+static status renew_depth(near_job *job, bool preserve_edges, float *moved)
+{
+    const pst_integration how = {.preserve_edges = preserve_edges};
+    img depth = {0};
+    status s = fit_normals(job);
+    if (s == OK) s = pst_integrate(&job->out->normal, &job->problem->capture->mask, &job->camera, &how, &depth);
+    if (s != OK) return s;
+    *moved = change(job->problem, &depth, &job->out->depth, job->camera.mean_distance);
+    img_free(&job->out->depth);
+    job->out->depth = depth;
+    return OK;
+}
+
 static status iterate(near_job *job, bool scale_known)
 {
     const pst_problem *p = job->problem;
     int iterations = p->iterations > 0 ? p->iterations : ITERATIONS;
-    pst_integration how = {0};
     status s = OK;
     float moved = 1, ratio = 1.2f;
     for (int k = 0; s == OK && k < iterations && moved > settled; k++) {
-        img depth = {0};
-        s = fit_normals(job);
-        if (s == OK) s = pst_integrate(&job->out->normal, &p->capture->mask, &job->camera, &how, &depth);
-        if (s != OK) break;
-        moved = change(p, &depth, &job->out->depth, job->camera.mean_distance);
-        img_free(&job->out->depth);
-        job->out->depth = depth;
-        if (scale_known) continue;
+        s = renew_depth(job, false, &moved);
+        if (s != OK || scale_known) continue;
         float scale = 1;
         s = best_scale(job, 1, ratio, 3, &scale);
         rescale(job, scale);
         moved = fmaxf(moved, fabsf(scale - 1));
         ratio = 1 + (ratio - 1) * 0.7f;
     }
+    /* steps in depth are let in at the end: that integration takes many times as long */
+    if (s == OK) s = renew_depth(job, true, &moved);
     return s == OK ? fit_normals(job) : s;
 }
 
@@ -134,7 +143,7 @@ status pst_solve_near(const pst_problem *p, pst_surface *out)
                     .out = out,
                     .sample = {.problem = p},
                     .camera = p->capture->camera,
-                    .lobe = {.masking = 0.4f, .tail = 2}};
+                    .lobe = {.masking = 0.28f, .tail = 2}};
     job.shading = calloc(p->pixel_count, sizeof *job.shading);
     if (!job.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
     uint32_t *pixel = NULL;
@@ -142,6 +151,8 @@ status pst_solve_near(const pst_problem *p, pst_surface *out)
     if (s == OK) s = pst_field_sample(p, SAMPLE, &pixel, &job.sample.count);
     if (s == OK) {
         job.sample.pixel = pixel;
+        job.sample.lobe = &job.lobe;
+        job.sample.shading = job.shading;
         s = solve(&job);
     }
     free(job.shading);

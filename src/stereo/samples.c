@@ -1,17 +1,19 @@
 #include "stereo/samples.h"
 
 #include <lapacke.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
 #include "stereo/field_fit.h"
+#include "stereo/lobe_fit.h"
 #include "stereo/pixel_fit.h"
 
 /* Fewer lit pixels than this do not span the lights; the shadowed are then taken too. */
 enum { ENOUGH = 24 };
-/* A value below this share of the pixel's brightest is a shadow. */
-static const float dark = 0.02f;
+/* In a pixel's ordinary brightness: below is a shadow, above a highlight, which counts as this much. */
+static const float dark = 0.05f, bright = 1.2f;
 
 status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
 {
@@ -42,16 +44,28 @@ void pst_samples_free(pst_samples *m)
     *m = (pst_samples){0};
 }
 
-static bool is_lit(const pst_samples *m, size_t i)
+static pst_observations observed(const pst_samples *m, size_t i)
+{
+    return (pst_observations){
+        .padded = (int)m->padded, .value = m->value + i * m->padded, .usable = m->usable + i * m->padded};
+}
+
+static bool is_lit(const pst_samples *m, size_t i, float level)
 {
     const float *v = m->value + i * m->padded, *u = m->usable + i * m->padded;
-    float top = 0, low = v[0];
-    for (int k = 0; k < m->lights; k++) {
-        if (u[k] <= 0) return false;
-        top = v[k] > top ? v[k] : top;
-        low = v[k] < low ? v[k] : low;
-    }
-    return low > dark * top;
+    for (int k = 0; k < m->lights; k++)
+        if (u[k] <= 0 || v[k] < dark * level) return false;
+    return level > 0;
+}
+
+/* Pixels count alike whatever their albedo, and highlights no more than a bright diffuse value. */
+static void add_pixel(const pst_samples *m, size_t i, float level, double *gram)
+{
+    size_t n = (size_t)m->lights;
+    const float *v = m->value + i * m->padded;
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = j; k < n; k++)
+            gram[j * n + k] += (double)fminf(v[j] / level, bright) * (double)fminf(v[k] / level, bright);
 }
 
 status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
@@ -60,15 +74,14 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
     double *gram = calloc(n * n + n, sizeof *gram);
     if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
     *lit = 0;
-    for (size_t i = 0; i < m->count; i++)
-        *lit += is_lit(m, i);
-    for (size_t i = 0; i < m->count; i++) {
-        const float *v = m->value + i * m->padded;
-        if (*lit >= ENOUGH && !is_lit(m, i)) continue;
-        for (size_t j = 0; j < n; j++)
-            for (size_t k = j; k < n; k++)
-                gram[j * n + k] += (double)v[j] * (double)v[k];
-    }
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < m->count; i++) {
+            pst_observations o = observed(m, i);
+            float level = pst_ordinary_level(&o);
+            bool all = is_lit(m, i, level);
+            if (pass == 0) *lit += all;
+            if (pass == 1 && level > 0 && (all || *lit < ENOUGH)) add_pixel(m, i, level, gram);
+        }
     double *eigenvalue = gram + n * n;
     int size = m->lights;
     lapack_int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', size, gram, size, eigenvalue);

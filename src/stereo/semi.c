@@ -3,19 +3,35 @@
  *
  * The matrix of values is diag(e) L B. Its column space U (rank three) is that of diag(e) L, so that
  * diag(1/e) U = L Q for some 3×3 Q: linear in 1/e and Q together, and solved by their one null vector. Shadows and
- * highlights bend U; from there intensities and surface alternate, each by robust weights. The mean intensity is 1. */
+ * highlights bend U; so that and equal intensities are two starts, from which intensities and a sample's surface, its
+ * highlights included (lobe_fit.h), alternate. The start that ends with the lower loss counts. The mean intensity is 1.
+ */
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/pixel_fit.h"
+#include "stereo/lobe_choice.h"
 #include "stereo/samples.h"
 
-enum { SAMPLE = 600, ITERATIONS = 20 };
+enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
 
 /* Intensities further apart than this are a failure of the rank constraint, not lamps. */
 static const double most_apart = 100;
+/* Of the albedo: a pixel less bright says little of its light. */
+static const float well_lit = 0.25f;
+
+/* The sample under intensities that change. */
+typedef struct semi_job {
+    pst_problem problem;
+    pst_light *light; /* the problem's */
+    pst_field field;
+    pst_lobe lobe;
+    float *weight, *model, *value, *usable; /* count × padded */
+    float *ratio;                           /* count */
+    size_t padded;
+    double cost;
+} semi_job;
 
 static void normalize(double *e, int count)
 {
@@ -64,75 +80,152 @@ static status from_rank(const pst_problem *p, const pst_samples *m, double *e)
     return s;
 }
 
-/* Each light's intensity given the surface, in one channel of the pictures (-1: grey). */
-static void from_surface(const pst_problem *p, const pst_samples *m, int channel, double *e)
+static void set_intensities(semi_job *job, const double *e)
 {
-    const pst_capture *c = p->capture;
-    for (int k = 0; k < m->lights; k++) {
-        double up = 0, down = 0;
-        for (size_t i = 0; i < m->count; i++) {
-            double w = m->weight[i * m->padded + (size_t)k], fit = vec3_dot(m->b[i], p->light[k].direction);
-            double v = m->value[i * m->padded + (size_t)k] * (channel < 0 ? e[k] : 1);
-            if (channel >= 0) v = c->picture[k][(size_t)m->pixel[i] * (size_t)c->channels + (size_t)channel] / 65535.0;
-            up += w * v * fit;
-            down += w * fit * fit;
+    for (int k = 0; k < job->problem.capture->count; k++)
+        for (int ch = 0; ch < 3; ch++)
+            job->light[k].intensity[ch] = (float)e[k];
+}
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The middle of most of the ratios: their median, then reweighted (Geman & McClure) about it. */
+static double typical(float *ratio, size_t count)
+{
+    static const double width = 0.1;
+    if (count == 0) return 1;
+    qsort(ratio, count, sizeof *ratio, ascending);
+    double middle = fmax((double)ratio[count / 2], 1e-6);
+    for (int round = 0; round < 5; round++) {
+        double sum = 0, weights = 0;
+        for (size_t i = 0; i < count; i++) {
+            double r = ((double)ratio[i] / middle - 1) / width, w = 1 / ((1 + r * r) * (1 + r * r));
+            sum += w * (double)ratio[i];
+            weights += w;
         }
-        e[k] = up > 1e-6 * down && down > 0 ? up / down : 1e-6;
+        middle = fmax(sum / weights, 1e-6);
     }
-    normalize(e, m->lights);
+    return middle;
 }
 
-static void scale_values(pst_samples *m, const float *raw, const double *e)
+/* Each light's intensity given the surface, in one channel of the pictures (-1: grey): what most of the pixels that it
+ * should light have in proportion. */
+static void from_surface(const semi_job *job, int channel, double *e)
 {
-    for (size_t i = 0; i < m->count; i++)
-        for (int k = 0; k < m->lights; k++)
-            m->value[i * m->padded + (size_t)k] = raw[i * m->padded + (size_t)k] / (float)e[k];
+    const pst_capture *c = job->problem.capture;
+    for (int k = 0; k < c->count; k++) {
+        size_t lit = 0;
+        for (size_t i = 0; i < job->field.count; i++) {
+            size_t at = i * job->padded + (size_t)k;
+            float v = job->value[at] * job->light[k].intensity[0];
+            if (channel >= 0)
+                v = (float)c->picture[k][(size_t)job->field.pixel[i] * (size_t)c->channels + (size_t)channel] / 65535;
+            if (job->usable[at] > 0 && job->model[at] > well_lit * job->field.shading[i].albedo)
+                job->ratio[lit++] = v / job->model[at];
+        }
+        e[k] = typical(job->ratio, lit);
+    }
+    normalize(e, c->count);
 }
 
-static status alternate(const pst_problem *p, pst_samples *m, double *e)
+/* The surface from the intensities, then the intensities from the surface. */
+static status improve(semi_job *job, bool choose, double *e)
 {
-    size_t padded = m->padded, floats = m->count * padded;
-    float *direction = calloc(3 * padded + floats, sizeof *direction);
-    if (!direction) return fail(ERROR_MEMORY, "no memory for %d lights", m->lights);
-    float *x = direction, *y = x + padded, *z = y + padded, *raw = z + padded;
-    memcpy(raw, m->value, floats * sizeof *raw);
-    for (int k = 0; k < m->lights; k++) {
-        x[k] = p->light[k].direction.x;
-        y[k] = p->light[k].direction.y;
-        z[k] = p->light[k].direction.z;
-    }
-    int iterations = p->iterations > 0 ? p->iterations : ITERATIONS;
-    for (int k = 0; k < iterations; k++) {
-        scale_values(m, raw, e);
-        pst_samples_fit(m, x, y, z);
-        from_surface(p, m, -1, e);
-    }
-    free(direction);
+    set_intensities(job, e);
+    status s = choose ? pst_lobe_choose(&job->field, &job->lobe) : OK;
+    if (s == OK) s = pst_field_fit(&job->field, &job->cost);
+    if (s == OK) s = pst_field_model(&job->field, job->weight, job->model);
+    if (s != OK) return s;
+    pst_gather(&job->problem, job->field.pixel, job->field.count, job->value, job->usable, job->padded);
+    from_surface(job, -1, e);
     return OK;
+}
+
+/* The lobe is chosen anew as the intensities come right. */
+static status improve_often(semi_job *job, int rounds, double *e)
+{
+    status s = OK;
+    for (int k = 0; s == OK && k < rounds; k++)
+        s = improve(job, k % 3 == 0, e);
+    return s;
+}
+
+/* From both starts; e becomes the better's. */
+static status start(semi_job *job, double *e)
+{
+    int count = job->problem.capture->count;
+    double *other = malloc((size_t)count * sizeof *other);
+    if (!other) return fail(ERROR_MEMORY, "no memory for %d lights", count);
+    for (int k = 0; k < count; k++)
+        other[k] = 1;
+    status s = improve_often(job, TRIAL_ROUNDS, e);
+    double cost = job->cost;
+    if (s == OK) s = improve_often(job, TRIAL_ROUNDS, other);
+    if (s == OK && job->cost < cost) memcpy(e, other, (size_t)count * sizeof *e);
+    free(other);
+    return s;
+}
+
+static status job_new(const pst_problem *p, pst_light *light, semi_job *job)
+{
+    uint32_t *pixel;
+    size_t n;
+    *job = (semi_job){.problem = *p, .light = light, .padded = (size_t)pst_padded(p->capture->count)};
+    job->problem.light = light;
+    status s = pst_field_sample(p, SAMPLE, &pixel, &n);
+    if (s != OK) return s;
+    job->field = (pst_field){.problem = &job->problem, .pixel = pixel, .count = n, .lobe = &job->lobe};
+    job->field.shading = calloc(n, sizeof *job->field.shading);
+    job->weight = malloc((4 * job->padded + 1) * n * sizeof *job->weight);
+    if (!job->field.shading || !job->weight) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", n);
+    job->model = job->weight + n * job->padded;
+    job->value = job->model + n * job->padded;
+    job->usable = job->value + n * job->padded;
+    job->ratio = job->usable + n * job->padded;
+    return OK;
+}
+
+static void job_free(semi_job *job)
+{
+    free((uint32_t *)job->field.pixel);
+    free(job->field.shading);
+    free(job->weight);
+}
+
+static status find_intensities(const pst_problem *p, semi_job *job, double *e)
+{
+    pst_samples m = {0};
+    status s = pst_samples_new(p, SAMPLE, &m);
+    if (s == OK) s = from_rank(p, &m, e);
+    pst_samples_free(&m);
+    if (s == OK) s = start(job, e);
+    return s == OK ? improve_often(job, p->iterations > 0 ? p->iterations : ITERATIONS, e) : s;
 }
 
 status pst_solve_semi(const pst_problem *p, pst_surface *out)
 {
-    int count = p->capture->count, channels = p->capture->channels;
-    pst_samples m = {0};
+    int count = p->capture->count;
+    semi_job job = {0};
     double *e = calloc((size_t)count, sizeof *e);
     out->light = malloc((size_t)count * sizeof *out->light);
     status s = e && out->light ? OK : fail(ERROR_MEMORY, "no memory for %d lights", count);
-    if (s == OK) s = pst_samples_new(p, SAMPLE, &m);
-    if (s == OK) s = from_rank(p, &m, e);
-    if (s == OK) s = alternate(p, &m, e);
-    for (int k = 0; s == OK && k < count; k++) {
-        out->light[k] = p->light[k];
-        for (int ch = 0; ch < 3; ch++)
-            out->light[k].intensity[ch] = (float)e[k];
+    if (s == OK) {
+        memcpy(out->light, p->light, (size_t)count * sizeof *out->light);
+        s = job_new(p, out->light, &job);
     }
-    for (int ch = 0; s == OK && channels == 3 && ch < 3; ch++) {
-        from_surface(p, &m, ch, e);
+    if (s == OK) s = find_intensities(p, &job, e);
+    if (s == OK) set_intensities(&job, e);
+    for (int ch = 0; s == OK && p->capture->channels == 3 && ch < 3; ch++) {
+        from_surface(&job, ch, e);
         for (int k = 0; k < count; k++)
             out->light[k].intensity[ch] = (float)e[k];
     }
     free(e);
-    pst_samples_free(&m);
+    job_free(&job);
     pst_problem known = *p;
     known.light = out->light;
     return s == OK ? pst_solve_robust(&known, out) : s;

@@ -11,7 +11,7 @@
 typedef enum pst_method {
     PST_AUTO,
     PST_LS,          /* Lambertian least squares (Woodham 1980), shadows and saturation left out */
-    PST_ROBUST,      /* highlights and cast shadows as outliers */
+    PST_ROBUST,      /* a specular lobe a pixel; cast shadows as outliers */
     PST_NEAR_LIGHTS, /* near point lights, perspective camera, alternating depth and normals */
     PST_SEMI,        /* directions known, intensities not */
     PST_UNCALIBRATED /* lights unknown; bas-relief ambiguity resolved by a stated prior */

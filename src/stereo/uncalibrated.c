@@ -1,13 +1,15 @@
 /* Distant lights of unknown direction.
  *
- * 1. The matrix of values is factored into lights and surface by its singular vectors (H. Hayakawa, Photometric stereo
- *    under a light source with arbitrary motion, JOSA A 11(11), 1994), which leaves an unknown 3×3 matrix between them;
- *    the factors are then refitted by robust weights, because shadows and highlights are not of rank three.
- * 2. Normals of a surface are integrable: what is left is the generalized bas-relief ambiguity (A. Yuille, D. Snow,
- *    Shape and albedo from multiple images using integrability, CVPR 1997; Belhumeur et al. 1999).
- * 3. Prior: all lights are equally strong. It fixes the bas-relief ambiguity but for a sign, convex or concave; the
- *    object is taken to be convex: near its outline it faces outward.
- * 4. With the lights found, the robust solver does the rest. */
+ * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors
+ *    are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3 matrix
+ *    is left between the factors.
+ * 2. Prior: all lights are equally strong. It leaves a rotation or reflection (H. Hayakawa, Photometric stereo under a
+ *    light source with arbitrary motion, JOSA A 11(11), 1994).
+ * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
+ * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
+ * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
+ * outward.
+ * 4. With the lights found, surface, highlights and lights are refined in turn, and the robust solver does the rest. */
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +19,12 @@
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 
-enum { SAMPLE = 1500, REFITS = 8, PASSES = 4, NEWTON_STEPS = 30 };
+enum { SAMPLE = 1500, REFITS = 8, PASSES = 5, GRID = 24 };
+
+/* Of the strengths' quadric: its smallest axis' share of its largest. */
+#define FLATTEST 0.02
+/* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
+#define FRONTAL 0.8
 
 typedef struct lights3 {
     int count;
@@ -36,14 +43,6 @@ static vec3 transform(const double m[9], vec3 v)
 {
     return vec3_make((float)(m[0] * v.x + m[1] * v.y + m[2] * v.z), (float)(m[3] * v.x + m[4] * v.y + m[5] * v.z),
                      (float)(m[6] * v.x + m[7] * v.y + m[8] * v.z));
-}
-
-static vec3 cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-    return vec3_make((float)out[0], (float)out[1], (float)out[2]);
 }
 
 /* Each light from the surface, by the surface's weights. */
@@ -113,82 +112,143 @@ static bool integrability_row(const pseudo *f, size_t at, double row[6])
     return true;
 }
 
-/* The minors (A3 × A1, A3 × A2) by iteratively reweighted least squares (Cauchy's loss): the equation fails across
- * depth jumps. */
-static status minors(const pseudo *f, double minor[6])
+static double row_length(const double row[6])
+{
+    double square = 0;
+    for (int j = 0; j < 6; j++)
+        square += row[j] * row[j];
+    return sqrt(square);
+}
+
+/* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
+ * depth jumps, and where the surface turns most), for the minors (A3 × A1, A3 × A2) of the last pass. */
+static status integrability_form(const pseudo *f, const double minor[6], double *scale, double form[36])
 {
     const pst_problem *p = f->problem;
-    double scale = HUGE_VAL, row[6];
-    memset(minor, 0, 6 * sizeof *minor);
-    for (int pass = 0; pass < PASSES; pass++) {
-        double a[36] = {0}, eigenvalue[6], absolute = 0;
-        size_t count = 0;
-        for (size_t i = 0; i < p->pixel_count; i++) {
-            if (!integrability_row(f, p->pixel[i], row)) continue;
-            double r = 0;
-            for (int j = 0; j < 6; j++)
-                r += row[j] * minor[j];
-            double w = 1 / (1 + r * r / (scale * scale));
-            for (int j = 0; j < 36; j++)
-                a[j] += w * row[j / 6] * row[j % 6];
-            count++;
-        }
-        if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
-        if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 6, a, 6, eigenvalue) != 0 || !(eigenvalue[1] > 0))
-            return fail(ERROR_INPUT, "the surface is too flat to solve without known lights");
+    double row[6], absolute = 0, lengths = 0, length;
+    size_t count = 0;
+    memset(form, 0, 36 * sizeof *form);
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        if (!integrability_row(f, p->pixel[i], row)) continue;
+        lengths += row_length(row);
+        count++;
+    }
+    if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+    length = fmax(lengths / (double)count, 1e-12);
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        if (!integrability_row(f, p->pixel[i], row)) continue;
+        double r = 0;
         for (int j = 0; j < 6; j++)
-            minor[j] = a[6 * j];
-        for (size_t i = 0; i < p->pixel_count; i++) {
-            if (!integrability_row(f, p->pixel[i], row)) continue;
-            double r = 0;
-            for (int j = 0; j < 6; j++)
-                r += row[j] * minor[j];
-            absolute += fabs(r);
+            r += row[j] * minor[j];
+        double steep = row_length(row) / length, w = 1 / ((1 + r * r / (*scale * *scale)) * (1 + steep * steep));
+        for (int j = 0; j < 36; j++)
+            form[j] += w * row[j / 6] * row[j % 6];
+        absolute += fabs(r);
+    }
+    *scale = fmax(absolute / (double)count, 1e-12);
+    return OK;
+}
+
+/* Rotation matrix of a rotation vector times a, row-major. */
+static void turned(const double turn[3], const double a[9], double out[9])
+{
+    double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
+    double u[3] = {1, 0, 0}, r[9];
+    for (int j = 0; angle > 1e-12 && j < 3; j++)
+        u[j] = turn[j] / angle;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            r[3 * i + j] = u[i] * u[j] * (1 - c) + (i == j ? c : 0);
+    r[1] -= s * u[2];
+    r[3] += s * u[2];
+    r[2] += s * u[1];
+    r[6] -= s * u[1];
+    r[5] -= s * u[0];
+    r[7] += s * u[0];
+    for (int i = 0; i < 9; i++)
+        out[i] = r[i / 3 * 3] * a[i % 3] + r[i / 3 * 3 + 1] * a[3 + i % 3] + r[i / 3 * 3 + 2] * a[6 + i % 3];
+}
+
+/* A rotation's minors: A3 × A1 = A2, A3 × A2 = −A1. */
+static void minors_of(const double a[9], double minor[6])
+{
+    for (int j = 0; j < 3; j++) {
+        minor[j] = a[3 + j];
+        minor[3 + j] = -a[j];
+    }
+}
+
+static double form_at(const double form[36], const double a[9])
+{
+    double minor[6], sum = 0;
+    minors_of(a, minor);
+    for (int j = 0; j < 36; j++)
+        sum += form[j] * minor[j / 6] * minor[j % 6];
+    return sum;
+}
+
+/* Downhill from a by turns about the axes that are halved when none helps. */
+static void descend(const double form[36], double reach, double a[9])
+{
+    double best = form_at(form, a), trial[9];
+    while (reach > 1e-4) {
+        bool better = false;
+        for (int k = 0; k < 6; k++) {
+            double turn[3] = {0};
+            turn[k / 2] = k % 2 ? reach : -reach;
+            turned(turn, a, trial);
+            double value = form_at(form, trial);
+            if (value >= best) continue;
+            best = value;
+            better = true;
+            memcpy(a, trial, sizeof trial);
         }
-        scale = fmax(absolute / (double)count, 1e-12);
+        if (!better) reach /= 2;
     }
-    return OK;
 }
 
-/* A, up to a bas-relief transformation, from c = A3 × A1 and d = A3 × A2: A3 is normal to both. */
-static status matrix_of(const double minor[6], double a[9])
+static vec3 mean_light(const lights3 *l)
 {
-    double unit[3], length;
-    cross(minor, minor + 3, unit);
-    length = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);
-    if (!(length > 1e-12)) return fail(ERROR_INPUT, "the surface is too flat to solve without known lights");
-    for (int j = 0; j < 3; j++)
-        a[6 + j] = unit[j] / length;
-    cross(minor, a + 6, a);
-    cross(minor + 3, a + 6, a + 3);
-    return OK;
+    vec3 sum = {0, 0, 0};
+    for (int k = 0; k < l->count; k++)
+        sum = vec3_add(sum, vec3_make(l->x[k], l->y[k], l->z[k]));
+    return vec3_normalize(sum);
 }
 
-static double strength(const double g[3], vec3 l)
+/* Of the rotations that leave the lights' mean on the camera's side, the one that makes the surface most integrable. */
+static status rotate(const pseudo *f, const lights3 *l, double a[9])
 {
-    double z = g[0] * l.x + g[1] * l.y + g[2] * l.z;
-    return log((double)l.x * l.x + (double)l.y * l.y + z * z + 1e-30);
-}
-
-/* Spread of the lights' strengths under the bas-relief transformation of last row g. */
-static double spread(const double g[3], const lights3 *l, double *mean)
-{
-    double sum = 0, square = 0;
-    for (int k = 0; k < l->count; k++) {
-        double v = strength(g, vec3_make(l->x[k], l->y[k], l->z[k]));
-        sum += v;
-        square += v * v;
+    vec3 mean = mean_light(l);
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double form[36], minor[6] = {0}, scale = HUGE_VAL, best = HUGE_VAL;
+    status s = integrability_form(f, minor, &scale, form);
+    for (int k = 0; s == OK && k < GRID * GRID * GRID; k++) {
+        const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
+        double trial[9], tilted[9], step = 6.283185307 / GRID;
+        double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
+        double last[3] = {0, 0, step * index[2]};
+        turned(about_z, identity, trial);
+        turned(about_x, trial, tilted);
+        turned(last, tilted, trial);
+        double value = form_at(form, trial);
+        if (value >= best || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
+        best = value;
+        memcpy(a, trial, sizeof trial);
     }
-    *mean = sum / l->count;
-    return square / l->count - *mean * *mean;
+    for (int pass = 0; s == OK && pass < PASSES; pass++) {
+        descend(form, pass == 0 ? 0.3 : 0.05, a);
+        minors_of(a, minor);
+        s = integrability_form(f, minor, &scale, form);
+    }
+    return s;
 }
 
-/* x² + y² + (g·l)² = k is lᵀ Q l = 1 with Q = (diag(1, 1, 0) + g gᵀ) / k, linear in the six numbers of Q; flat relief
- * where no g of that form exists. */
-static status linear_relief(const lights3 *l, double g[3])
+/* lᵀ Q l = 1 for all lights, linear in the six numbers of Q; whiten then makes them unit vectors: l = whiten l',
+ * b = unwhiten b'. */
+static status equal_strengths(const lights3 *l, double whiten[9], double unwhiten[9])
 {
     int n = l->count;
-    double *a = calloc((size_t)n * 7, sizeof *a);
+    double *a = calloc((size_t)n * 7, sizeof *a), eigenvalue[3];
     if (!a) return fail(ERROR_MEMORY, "no memory for %d lights", n);
     double *q = a + 6 * n; /* the right-hand side first, xx xy xz yy yz zz then */
     for (int k = 0; k < n; k++) {
@@ -196,51 +256,28 @@ static status linear_relief(const lights3 *l, double g[3])
         memcpy(a + 6 * k, &(double[6]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z}, 6 * sizeof *a);
         q[k] = 1;
     }
-    memcpy(g, &(double[3]){0, 0, 1}, 3 * sizeof *g);
     lapack_int info = LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n, 6, 1, a, 6, q, 1);
-    if (info == 0 && q[5] > 0) {
-        double inverse = (q[0] - q[2] * q[2] / q[5] + q[3] - q[4] * q[4] / q[5]) / 2;
-        if (inverse > 0) {
-            g[2] = sqrt(q[5] / inverse);
-            g[0] = q[2] / q[5] * g[2];
-            g[1] = q[4] / q[5] * g[2];
-        }
-    }
+    double m[9] = {q[0], q[1], q[2], q[1], q[3], q[4], q[2], q[4], q[5]};
     free(a);
+    if (info == 0) info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, m, 3, eigenvalue);
+    if (info != 0 || !(eigenvalue[2] > 0))
+        return fail(ERROR_INPUT, "the lights found are not of a kind: are they equally strong?");
+    for (int j = 0; j < 9; j++) {
+        /* not positive: highlights have bent the factors */
+        double root = sqrt(fmax(eigenvalue[j / 3], FLATTEST * eigenvalue[2]));
+        whiten[j] = root * m[j % 3 * 3 + j / 3];
+        unwhiten[j] = m[j % 3 * 3 + j / 3] / root;
+    }
     return OK;
 }
 
-/* Gauss-Newton on the logarithms of the strengths, each step halved until it helps. */
-static void refine_relief(const lights3 *l, double g[3])
+static void transform_lights(const double m[9], lights3 *l)
 {
-    double mean, best = spread(g, l, &mean);
-    for (int step = 0; step < NEWTON_STEPS; step++) {
-        float a[6] = {0};
-        vec3 right = {0, 0, 0};
-        for (int k = 0; k < l->count; k++) {
-            vec3 v = vec3_make(l->x[k], l->y[k], l->z[k]);
-            double z = g[0] * v.x + g[1] * v.y + g[2] * v.z, log_strength = strength(g, v);
-            vec3 slope = vec3_scale(v, (float)(2 * z / exp(log_strength)));
-            a[0] += slope.x * slope.x;
-            a[1] += slope.x * slope.y;
-            a[2] += slope.x * slope.z;
-            a[3] += slope.y * slope.y;
-            a[4] += slope.y * slope.z;
-            a[5] += slope.z * slope.z;
-            right = vec3_fma(right, (float)(mean - log_strength), slope);
-        }
-        vec3 move = pst_solve3(a, right);
-        bool better = false;
-        for (double share = 1; !better && share > 0.01; share /= 2) {
-            double trial[3] = {g[0] + share * move.x, g[1] + share * move.y, g[2] + share * move.z}, trial_mean;
-            double value = spread(trial, l, &trial_mean);
-            better = value < best;
-            if (!better) continue;
-            best = value;
-            mean = trial_mean;
-            memcpy(g, trial, sizeof trial);
-        }
-        if (!better) return;
+    for (int k = 0; k < l->count; k++) {
+        vec3 v = transform(m, vec3_make(l->x[k], l->y[k], l->z[k]));
+        l->x[k] = v.x;
+        l->y[k] = v.y;
+        l->z[k] = v.z;
     }
 }
 
@@ -265,43 +302,23 @@ static double outwardness(const pseudo *f, const double surface[9], double *towa
     return sum;
 }
 
-/* The pseudo lights become directions: l = G A^-T l', b = G^-T A b'. */
-static status resolve(const pseudo *f, lights3 *l)
+/* The pseudo lights become directions. */
+static status resolve(pseudo *f, lights3 *l)
 {
-    double minor[6], a[9] = {0}, g[3], cofactor[9], toward;
-    status s = minors(f, minor);
-    if (s == OK) s = matrix_of(minor, a);
+    double whiten[9], unwhiten[9], a[9], toward;
+    status s = equal_strengths(l, whiten, unwhiten);
     if (s != OK) return s;
-    cross(a + 3, a + 6, cofactor);
-    cross(a + 6, a, cofactor + 3);
-    cross(a, a + 3, cofactor + 6);
-    double determinant = a[0] * cofactor[0] + a[1] * cofactor[1] + a[2] * cofactor[2];
-    for (int j = 0; j < 9; j++)
-        cofactor[j] /= determinant;
-    for (int k = 0; k < l->count; k++) {
-        vec3 v = transform(cofactor, vec3_make(l->x[k], l->y[k], l->z[k]));
-        l->x[k] = v.x;
-        l->y[k] = v.y;
-        l->z[k] = v.z;
-    }
-    s = linear_relief(l, g);
+    transform_lights(whiten, l);
+    for (size_t i = 0; i < f->problem->pixel_count; i++)
+        f->b[i] = transform(unwhiten, f->b[i]);
+    s = rotate(f, l, a);
     if (s != OK) return s;
-    refine_relief(l, g);
-    if (!(fabs(g[2]) > 1e-6)) return fail(ERROR_INPUT, "the bas-relief ambiguity cannot be resolved from these lights");
-    double surface[9];
-    for (int j = 0; j < 3; j++) {
-        surface[6 + j] = a[6 + j] / g[2];
-        surface[j] = a[j] - g[0] * surface[6 + j];
-        surface[3 + j] = a[3 + j] - g[1] * surface[6 + j];
-    }
-    double outward = outwardness(f, surface, &toward);
-    float z_sign = toward < 0 ? -1 : 1, xy_sign = outward < 0 ? -1 : 1;
-    for (int k = 0; k < l->count; k++) {
-        vec3 v = vec3_make(l->x[k], l->y[k], l->z[k]);
-        l->z[k] = z_sign * (float)(g[0] * v.x + g[1] * v.y + g[2] * v.z);
-        l->x[k] = xy_sign * v.x;
-        l->y[k] = xy_sign * v.y;
-    }
+    double outward = outwardness(f, a, &toward);
+    for (int j = 0; j < 6; j++)
+        a[j] *= outward < 0 ? -1 : 1;
+    for (int j = 6; j < 9; j++)
+        a[j] *= toward < 0 ? -1 : 1;
+    transform_lights(a, l);
     return OK;
 }
 

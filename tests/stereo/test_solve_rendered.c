@@ -80,6 +80,84 @@ static void robust_bears_indirect_light_and_few_bits(void **state)
     assert_true(rendered_angle(&how, 14, PST_ROBUST) < 1.35 * robust_bound);
 }
 
+/* Strengths of 0.4 to 1, and the same without the directions too, equal strengths then. */
+static void unknown_light_is_found_despite_highlights(void **state)
+{
+    (void)state;
+    scn_object object;
+    pst_capture c;
+    generate(9, &object);
+    rendered_capture(&glossy, &object, &c);
+    c.lighting = PST_UNKNOWN_LIGHT;
+    double uncalibrated = solve_angle(&c, PST_AUTO);
+    c.lighting = PST_DISTANT;
+    c.intensities_known = false;
+    for (int k = 0; k < c.count; k++)
+        for (int i = 0; i < c.width * c.height * c.channels; i++)
+            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.4f + 0.15f * (float)(k * 7 % 5)));
+    double semi = solve_angle(&c, PST_AUTO);
+    print_message("object 9: uncalibrated %.2f, semi %.2f degrees\n", uncalibrated, semi);
+    assert_true(semi < robust_bound);
+    assert_true(uncalibrated < 15);
+    scn_object_free(&object);
+    capture_drop(&c);
+}
+
+/* Mean share of the depth by which it is off, once its scale is aligned. */
+static double depth_error(const pst_capture *c, const img *depth)
+{
+    double product = 0, square = 0, off = 0, count = 0;
+    for (int i = 0; i < c->width * c->height; i++) {
+        if (c->mask.data[i] < 0.5f) continue;
+        product += (double)depth->data[i] * (double)c->depth_true.data[i];
+        square += (double)depth->data[i] * (double)depth->data[i];
+    }
+    for (int i = 0; i < c->width * c->height; i++) {
+        if (c->mask.data[i] < 0.5f) continue;
+        off += fabs((double)depth->data[i] * product / square / (double)c->depth_true.data[i] - 1);
+        count++;
+    }
+    return off / count;
+}
+
+static void check_leds(uint64_t index, const rendered *how, double angle_bound)
+{
+    scn_object object;
+    pst_capture c;
+    pst_surface s;
+    generate(index, &object);
+    rendered_capture(how, &object, &c);
+    double sum = 0, count = 0;
+    for (int i = 0; i < c.width * c.height; i++) {
+        sum += c.depth_true.data[i];
+        count += c.mask.data[i];
+    }
+    c.camera.mean_distance = (float)(sum / count);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), OK);
+    double angle = mean_angle(&c, &s.normal), error = depth_error(&c, &s.depth);
+    print_message("object %d under %d LEDs: %.2f degrees, depth off by %.2f %%\n", (int)index, c.count, angle,
+                  100 * error);
+    assert_true(angle < angle_bound);
+    assert_true(error < 0.02);
+    pst_surface_free(&s);
+    scn_object_free(&object);
+    capture_drop(&c);
+}
+
+/* One to two of the object's sizes away, lobes of 1.5, cast shadows; the bounds are the issue's. */
+static void leds_give_normals_and_depth(void **state)
+{
+    (void)state;
+    rendered how = glossy;
+    how.leds = true;
+    how.fov = 60;
+    how.exposure = 0.4f;
+    check_leds(7, &how, 5);
+    how.phong = 1e-6f; /* none to speak of */
+    how.exponent = 1;
+    check_leds(7, &how, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -87,6 +165,8 @@ int main(void)
         cmocka_unit_test(robust_sees_through_cosine_lobes),
         cmocka_unit_test(robust_finds_that_a_picture_has_perspective),
         cmocka_unit_test(robust_bears_indirect_light_and_few_bits),
+        cmocka_unit_test(unknown_light_is_found_despite_highlights),
+        cmocka_unit_test(leds_give_normals_and_depth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
