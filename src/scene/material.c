@@ -26,15 +26,17 @@ void material_eval(const scn_material *material, vec3 reference, vec3 facing, ui
 {
     uint32_t bit = 1u << (part % 32);
     vec3 a = {0, 0, 0};
-    float rough = 0;
-    for (int i = 0; i < material->layers; i++) {
+    float rough = 0, through = 1;
+    /* from the top, so that what is covered is never looked at */
+    for (int i = material->layers - 1; i >= 0 && through > 0; i--) {
         const layer *l = &material->layer[i];
         if (!(l->parts & bit)) continue;
         float share = l->opacity * (l->everywhere ? 1 : pattern_value(&l->mask, reference, facing));
         if (share <= 0) continue;
         float gloss;
-        a = vec3_lerp(a, painted(&l->paint, reference, facing, &gloss), share);
-        rough += (gloss - rough) * share;
+        a = vec3_fma(a, through * share, painted(&l->paint, reference, facing, &gloss));
+        rough += through * share * gloss;
+        through *= 1 - share;
     }
     if (material->smudged)
         rough += material->smudge_amount * (pattern_value(&material->smudge, reference, facing) - 0.5f);

@@ -8,10 +8,10 @@
 
 typedef status (*pass)(nn_step *step);
 
-/* The best of several runs, after one to warm up. */
+/* The best of many runs, after one to warm up: whatever else the machine does only slows some of them. */
 static status best_rate(nn_step *step, pass run, double flops, double *rate)
 {
-    enum { RUNS = 6 };
+    enum { RUNS = 24 };
     *rate = 0;
     for (int r = 0; r < RUNS; r++) {
         double start = clock_seconds();
