@@ -10,7 +10,7 @@
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SPREAD, MODEL, STORE } field_task;
+typedef enum field_task { FIT, REFINE, FORETELL, SPREAD, MODEL, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
@@ -144,11 +144,12 @@ static int better_neighbours(const fit_job *job, size_t i, const pst_shading *fo
 }
 
 /* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
- * where a run of pixels began. */
+ * where a run of pixels began. Not with few lights: a wrong surface costs no more then, and would be dragged along the
+ * row. */
 static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
 {
     const pst_field *f = job->field;
-    if (begun->valid) {
+    if (begun->valid && f->problem->capture->count >= PST_MANY_LIGHTS) {
         pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1]);
         if (next.cost < begun->cost + 0.3f) return next;
     }
@@ -194,8 +195,12 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
         if (f->b) f->b[i] = p.b;
         return;
     }
+    if (job->task == FORETELL) {
+        job->cost[i] = pst_lobe_foretell(&o, view, f->lobe);
+        return;
+    }
     pst_lobe_data d;
-    pst_lobe_prepare(&o, view, &d);
+    pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
     if (job->task == FIT) f->shading[i] = fit_after(job, i, &d, begun);
     if (job->task == REFINE) f->shading[i] = pst_lobe_refine(&d, f->lobe, &f->shading[i]);
     for (int k = 0; k < starts; k++) {
@@ -261,6 +266,14 @@ status pst_field_fit(const pst_field *f, double *cost)
 status pst_field_refine(const pst_field *f, double *cost)
 {
     fit_job job = {.field = f, .task = REFINE};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_foretell(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = FORETELL};
     status s = run(&job);
     *cost = job.total;
     return s;

@@ -3,6 +3,9 @@
  *     pst_lobe lobe;
  *     status s = pst_lobe_choose(&sample, &lobe);
  *
+ * With few lights (below PST_MANY_LIGHTS) a lobe is allowed only if it foretells pictures that it was not fitted to
+ * better than Lambert's law does; how far from the fit an observation may be is found in the same way.
+ *
  * Each of these is what costs the sample least, and departs from the plain choice only where it earns its place:
  *
  * - the lobe's kind: GGX, or Beckmann's and Blinn's shorter tail, with more or less masking;
@@ -15,6 +18,9 @@
 #define MERLIN_STEREO_LOBE_CHOICE_H
 
 #include "stereo/field_fit.h"
+
+/* Whether there is a lobe, and the width; the rest is the plain choice. */
+status pst_lobe_admit(const pst_field *sample, pst_lobe *lobe);
 
 /* sample: problem, pixel, count, depth and scale are read. */
 status pst_lobe_choose(const pst_field *sample, pst_lobe *lobe);

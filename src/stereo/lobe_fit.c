@@ -18,8 +18,10 @@ static inline float charge(float shadowy, float value, float residual)
     return PST_IS_SHADOW(value, residual) ? 1 - shadowy : 1;
 }
 
-static const float narrowest = 0.04f;
+/* Where a lobe's own width is wider, the narrowing ends there. */
 static const float widths[] = {0.16f, 0.16f, 0.16f, 0.11f, 0.08f, 0.057f, 0.04f, 0.04f, 0.04f};
+/* Parts that the observations are held out in. */
+enum { PARTS = 4 };
 enum { STEPS = sizeof widths / sizeof *widths, NEAR = 4 }; /* NEAR: where a good start begins */
 
 /* u from lobes wider than the hemisphere to mirrors */
@@ -52,7 +54,7 @@ float pst_ordinary_level(const pst_observations *o)
     return sqrtf(low * high);
 }
 
-void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out)
+void pst_lobe_prepare(const pst_observations *o, vec3 view, float shadow, pst_lobe_data *out)
 {
     out->seen = *o;
     out->level = pst_ordinary_level(o);
@@ -64,14 +66,14 @@ void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out)
         out->hx[i] = x * inverse;
         out->hy[i] = y * inverse;
         out->hz[i] = z * inverse;
-        out->shadowy[i] = o->value[i] < 0.5f * level ? 1 - PST_SHADOW_COST : 0;
+        out->shadowy[i] = o->value[i] < 0.5f * level ? 1 - shadow : 0;
         float above = o->value[i] > level ? o->value[i] - level : 0;
         out->precision[i] = o->usable[i] / (level * level + above * above);
     }
 }
 
 /* The distribution by its argument x = sin² of the angle between n and h, without a branch: one of the three
- * powers counts, and c = 1 − bend x turns the sine into the tangent. */
+ * powers counts (none for Lambert's law), and c = 1 − bend x turns the sine into the tangent. */
 typedef struct tail_choice {
     float two, four, eight, bend;
 } tail_choice;
@@ -251,7 +253,7 @@ static pst_shading narrow_down(const pst_lobe_data *d, const pst_lobe *lobe, pst
 {
     bool moving = true;
     for (int k = from; k < STEPS && (moving || widths[k] < widths[k - 1]); k++)
-        moving = step(d, lobe, widths[k], &damping, &at);
+        moving = step(d, lobe, fmaxf(widths[k], lobe->width), &damping, &at);
     return at;
 }
 
@@ -354,7 +356,7 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
     const pst_observations *o = &d->seen;
     const tail_choice tail = choose_tail(lobe->tail);
     const vec3 n = at->normal;
-    float u = expf(at->sharpness), k = lobe->masking, narrow = 1 / (narrowest * narrowest);
+    float u = expf(at->sharpness), k = lobe->masking, narrow = 1 / (lobe->width * lobe->width);
     for (int i = 0; i < o->padded; i++) {
         float nl = n.x * o->x[i] + n.y * o->y[i] + n.z * o->z[i];
         float nh = n.x * d->hx[i] + n.y * d->hy[i] + n.z * d->hz[i], lit = fmaxf(nl, 0);
@@ -363,4 +365,25 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
         float r = o->value[i] - model[i], t = r * r * d->precision[i] * narrow, q = 1 / (1 + t);
         weight[i] = nl > lobe->terminator ? o->usable[i] * q * q : 0;
     }
+}
+
+float pst_lobe_foretell(const pst_observations *o, vec3 view, const pst_lobe *lobe)
+{
+    float usable[PST_MAX_LIGHTS], weight[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS], off = 0;
+    pst_lobe_data all, some;
+    pst_observations seen = *o;
+    seen.usable = usable;
+    pst_lobe_prepare(o, view, PST_SHADOW_COST, &all);
+    for (int part = 0; part < PARTS; part++) {
+        for (int i = 0; i < o->padded; i++)
+            usable[i] = i % PARTS == part ? 0 : o->usable[i];
+        pst_lobe_prepare(&seen, view, lobe->shadow, &some);
+        pst_shading found = pst_lobe_fit(&some, lobe);
+        pst_lobe_weigh(&some, lobe, &found, weight, model);
+        for (int i = part; i < o->padded; i += PARTS) {
+            float r = o->value[i] - model[i], t = r * r * all.precision[i];
+            off += charge(all.shadowy[i], o->value[i], r) * sqrtf(t / (1 + t));
+        }
+    }
+    return off;
 }

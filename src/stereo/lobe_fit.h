@@ -2,7 +2,7 @@
  * from elsewhere and what the lobe does not explain as outliers.
  *
  *     pst_lobe_data data;
- *     pst_lobe_prepare(&observations, view, &data);
+ *     pst_lobe_prepare(&observations, view, lobe.shadow, &data);
  *     pst_shading found = pst_lobe_fit(&data, &lobe);
  *
  * The radiance under a light l is  a max(0, n·l − τ) + s G(n·l) (1 + u (1 − (n·h)²))^−γ,  h half way between l and the
@@ -16,7 +16,9 @@
 
 /* What all pixels share. */
 typedef struct pst_lobe {
-    int tail;         /* γ: 2, 4 or 8 */
+    int tail;         /* γ: 2, 4 or 8; 0: no lobe, Lambert's law alone */
+    float width;      /* residuals far above this share of an ordinary value are outliers; 0.04 or more */
+    float shadow;     /* what an observation costs that looks like a shadow; another outlier: 1 */
     float masking;    /* k */
     float terminator; /* τ */
     float focal;      /* pixels, of the camera under distant lights; 0: seen from afar */
@@ -41,8 +43,8 @@ typedef struct pst_lobe_data {
 /* A value that is ordinary for the pixel: the median of those above a hundredth of its brightest. */
 float pst_ordinary_level(const pst_observations *o);
 
-/* view: unit, to the camera. */
-void pst_lobe_prepare(const pst_observations *o, vec3 view, pst_lobe_data *out);
+/* view: unit, to the camera; shadow: what a shadow costs. */
+void pst_lobe_prepare(const pst_observations *o, vec3 view, float shadow, pst_lobe_data *out);
 
 /* The best of several starts: Lambert's fit, and the normal that the brightest observations mirror. */
 pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe);
@@ -52,5 +54,9 @@ pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const 
 
 /* weight gets each observation's share in the fit, in [0, 1], model what the fit makes of it. */
 void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model);
+
+/* How far the fits to three quarters of the observations are from the quarter that each was not shown: the sum of the
+ * residuals, each in [0, 1], shadows cheaper. Unlike the loss it grows with what is fitted to noise. */
+float pst_lobe_foretell(const pst_observations *o, vec3 view, const pst_lobe *lobe);
 
 #endif

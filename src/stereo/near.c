@@ -4,14 +4,17 @@
  * depth map by integration. The first depth map is a plane that faces the camera.
  *
  * Normals leave the scale of the depth free. It is the camera's mean distance where that is known; otherwise the lights
- * tell: only at the right distance does what they send agree with the inverse-square law. */
+ * tell: only at the right distance does what they send agree with the inverse-square law. With few lights the first
+ * rounds also find out whether a highlight's lobe is worth fitting (lobe_choice.h). */
 #include <math.h>
 #include <stdlib.h>
 
 #include "stereo/field_fit.h"
 #include "stereo/integrate.h"
+#include "stereo/lobe_choice.h"
 
-enum { ITERATIONS = 12, SAMPLE = 192 };
+/* ADMISSIONS: rounds until the depth is good enough to judge a lobe by. */
+enum { ITERATIONS = 12, SAMPLE = 192, ADMISSIONS = 2 };
 
 /* Rounds end when no depth moves by more than this share of the distance. */
 static const float settled = 1e-4f;
@@ -89,6 +92,14 @@ static status fit_normals(const near_job *job)
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 
+static status admit_lobe(near_job *job)
+{
+    pst_field f = job->sample;
+    f.depth = &job->out->depth;
+    f.scale = 1;
+    return pst_lobe_admit(&f, &job->lobe);
+}
+
 /* The depth map by way of the normals; *moved: its largest change. */
 static status renew_depth(near_job *job, bool preserve_edges, float *moved)
 {
@@ -110,7 +121,8 @@ static status iterate(near_job *job, bool scale_known)
     status s = OK;
     float moved = 1, ratio = 1.2f;
     for (int k = 0; s == OK && k < iterations && moved > settled; k++) {
-        s = renew_depth(job, false, &moved);
+        if (k < ADMISSIONS) s = admit_lobe(job);
+        if (s == OK) s = renew_depth(job, false, &moved);
         if (s != OK || scale_known) continue;
         float scale = 1;
         s = best_scale(job, 1, ratio, 3, &scale);
@@ -143,7 +155,7 @@ status pst_solve_near(const pst_problem *p, pst_surface *out)
                     .out = out,
                     .sample = {.problem = p},
                     .camera = p->capture->camera,
-                    .lobe = {.masking = 0.28f, .tail = 2}};
+                    .lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST}};
     job.shading = calloc(p->pixel_count, sizeof *job.shading);
     if (!job.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
     uint32_t *pixel = NULL;

@@ -13,6 +13,9 @@
 /* Lengths are rounded up to whole vectors, so that loops over lights have no remainder; the padding is not usable. */
 enum { PST_LANES = 8, PST_MAX_LIGHTS = 1024 };
 
+/* With fewer, what is fitted beside Lambert's law is easily fitted to noise and to errors of the lights. */
+enum { PST_MANY_LIGHTS = 40 };
+
 static inline int pst_padded(int count)
 {
     return (count + PST_LANES - 1) / PST_LANES * PST_LANES;

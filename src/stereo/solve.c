@@ -47,9 +47,8 @@ static pst_method choose(const pst_capture *c)
     if (c->lighting == PST_UNKNOWN_LIGHT) return PST_UNCALIBRATED;
     if (c->lighting == PST_NEAR) return PST_NEAR_LIGHTS;
     if (!c->intensities_known) return PST_SEMI;
-    /* With few lights no observation can be spared as an outlier: on the twelve real lights of the course set (a matte
-     * ball) least squares is off by 4.7 degrees, the robust fit by 8.4. */
-    return c->count < 16 ? PST_LS : PST_ROBUST;
+    /* with fewer no observation can be spared as an outlier */
+    return c->count < 8 ? PST_LS : PST_ROBUST;
 }
 
 static status check_method(const pst_capture *c, pst_method m)

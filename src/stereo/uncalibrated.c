@@ -9,7 +9,7 @@
  * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
  * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
  * outward.
- * 4. With the lights found, surface, highlights and lights are refined in turn, and the robust solver does the rest. */
+ * 4. With the lights found, their strengths among them, the robust solver does the rest. */
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>

@@ -15,6 +15,7 @@ typedef struct relief {
     float bump;     /* height of the bumps, pixels; 0: a sphere that fills the picture */
     float specular; /* multiplies the GGX lobe; 0: Lambert */
     float roughness;
+    float facets; /* slopes' spread of Oren & Nayar's rough matte surface, radians; 0: Lambert's law */
     float exposure;
     bool cast_shadows;
 } relief;
@@ -50,13 +51,26 @@ static inline bool relief_shadowed(const relief *r, float x, float y, vec3 l)
     return false;
 }
 
+/* What a rough matte surface reflects of what a smooth one would, seen from +z (Oren & Nayar, SIGGRAPH 1994, the
+ * qualitative model). */
+static inline float relief_rough(float facets, vec3 n, vec3 l)
+{
+    float square = facets * facets, n_l = fminf(vec3_dot(n, l), 1), n_v = fminf(n.z, 1);
+    vec3 along_l = vec3_fma(l, -n_l, n), along_v = vec3_fma(vec3_make(0, 0, 1), -n_v, n);
+    float turn = vec3_dot(along_l, along_v) / fmaxf(vec3_length(along_l) * vec3_length(along_v), 1e-6f);
+    float steep = acosf(fminf(n_l, n_v)), flat = acosf(fmaxf(n_l, n_v));
+    return 1 - 0.5f * square / (square + 0.33f) +
+           0.45f * square / (square + 0.09f) * fmaxf(turn, 0) * sinf(steep) * tanf(flat);
+}
+
 static inline float relief_radiance(const relief *r, float albedo, vec3 n, vec3 l)
 {
     vec3 v = {0, 0, 1};
     float n_l = vec3_dot(n, l);
     if (n_l <= 0) return 0;
     float lobe = r->specular > 0 ? r->specular * brdf_specular(r->roughness, n, l, v) : 0;
-    return (albedo / BRDF_PI + lobe) * n_l;
+    float matte = r->facets > 0 ? relief_rough(r->facets, n, l) : 1;
+    return (matte * albedo / BRDF_PI + lobe) * n_l;
 }
 
 /* Count directions within about 70 degrees of the camera, on a spiral. */

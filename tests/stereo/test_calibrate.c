@@ -193,7 +193,27 @@ static void real_balls_agree_with_their_published_lights(void **state)
     free(lights);
 }
 
-/* The capture of a matte ball under lights found from itself, and the sphere that its mask's outline belongs to. */
+/* Mean angle to the sphere that the circle is the outline of. */
+static double ball_angle(const pst_capture *capture, const pst_circle *ball, pst_method method)
+{
+    pst_surface found;
+    assert_int_equal(pst_solve(capture, &(pst_options){.method = method}, &found), OK);
+    double sum = 0, count = 0;
+    for (int y = 0; y < capture->height; y++)
+        for (int x = 0; x < capture->width; x++) {
+            float u = ((float)x + 0.5f - ball->x) / ball->radius, v = (ball->y - (float)y - 0.5f) / ball->radius;
+            float rest = 1 - u * u - v * v;
+            if (*img_at(&capture->mask, x, y) <= 0.5f || rest <= 0) continue;
+            const float *n = img_at(&found.normal, x, y);
+            sum += (double)degrees(vec3_make(n[0], n[1], n[2]), vec3_make(u, v, sqrtf(rest)));
+            count++;
+        }
+    pst_surface_free(&found);
+    print_message("gray, %s: %.2f degrees over %.0f pixels\n", pst_method_name(method), sum / count, count);
+    return sum / count;
+}
+
+/* The capture of a matte ball under lights found from itself, and under the published ones. */
 static void a_real_matte_ball_comes_out_round(void **state)
 {
     (void)state;
@@ -204,28 +224,23 @@ static void a_real_matte_ball_comes_out_round(void **state)
         skip();
     }
     pst_calibration c;
-    pst_capture capture;
-    pst_surface found;
     pst_calibrate_options options = {.ball = PST_MATTE, .linear = true};
     assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
     assert_int_equal(pst_calibration_write(&c, scratch), OK);
-    const char *lights = scratch_path("lights.txt");
-    assert_int_equal(pst_capture_read(folder, &(pst_read_options){.lights = lights, .linear = true}, &capture), OK);
-    assert_int_equal(pst_solve(&capture, &(pst_options){.method = PST_AUTO}, &found), OK);
-    double sum = 0, count = 0;
-    for (int y = 0; y < capture.height; y++)
-        for (int x = 0; x < capture.width; x++) {
-            float u = ((float)x + 0.5f - c.circle.x) / c.circle.radius;
-            float v = (c.circle.y - (float)y - 0.5f) / c.circle.radius, rest = 1 - u * u - v * v;
-            if (*img_at(&capture.mask, x, y) <= 0.5f || rest <= 0) continue;
-            const float *n = img_at(&found.normal, x, y);
-            sum += (double)degrees(vec3_make(n[0], n[1], n[2]), vec3_make(u, v, sqrtf(rest)));
-            count++;
-        }
-    print_message("gray: %.2f degrees over %.0f pixels\n", sum / count, count);
-    assert_true(sum / count < 5); /* the goal; 4.6 measured */
-    pst_surface_free(&found);
-    pst_capture_free(&capture);
+    char *lights[] = {file_join(scratch, "lights.txt"), file_join(where, "lights.txt")};
+    for (int i = 0; i < 2; i++) {
+        pst_capture capture;
+        assert_int_equal(pst_capture_read(folder, &(pst_read_options){.lights = lights[i], .linear = true}, &capture),
+                         OK);
+        double ls = ball_angle(&capture, &c.circle, PST_LS), robust = ball_angle(&capture, &c.circle, PST_ROBUST);
+        /* 4.4 and 5.2 measured; least squares 4.6 and 5.5 */
+        assert_true(robust < ls);
+        assert_true(robust < 5.5);
+        /* the goal */
+        assert_true(i == 1 || ball_angle(&capture, &c.circle, PST_AUTO) < 5);
+        pst_capture_free(&capture);
+        free(lights[i]);
+    }
     pst_calibration_free(&c);
     free(folder);
 }
