@@ -369,7 +369,7 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
 
 float pst_lobe_foretell(const pst_observations *o, vec3 view, const pst_lobe *lobe)
 {
-    float usable[PST_MAX_LIGHTS], weight[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS], off = 0;
+    float usable[PST_MAX_LIGHTS], weight[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS] = {0}, off = 0;
     pst_lobe_data all, some;
     pst_observations seen = *o;
     seen.usable = usable;

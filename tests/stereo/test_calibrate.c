@@ -222,6 +222,7 @@ static void a_real_matte_ball_comes_out_round(void **state)
     if (!folder || !file_is_folder(folder)) {
         free(folder);
         skip();
+        return;
     }
     pst_calibration c;
     pst_calibrate_options options = {.ball = PST_MATTE, .linear = true};
