@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/progress.h"
+#include "estimate/black.h"
 #include "estimate/smooth.h"
 
 typedef struct compiled {
@@ -223,6 +224,7 @@ status network_relight(network *n, const img *photo, const img *mask, const netw
     status s = run_whole(n, photo, mask, light, relit_outputs, &n->relit);
     if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, direct);
     pthread_mutex_unlock(&n->lock);
+    if (s == OK && !light->sh) relit_black_level(direct); /* an environment leaves nothing black */
     return s;
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "estimate/black.h"
 #include "estimate/bounce.h"
 #include "estimate/shadow.h"
 #include "estimate/smooth.h"
@@ -196,6 +197,7 @@ status eval_predict(eval_model *m, const img *image, const img *mask, const vec3
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
         take(m->program, "relit_direct", i, &out->by_network[i]);
         take(m->program, "relit_brdf", i, &out->by_brdf[i]);
+        relit_black_level(&out->by_network[i]);
         clip_image(&out->by_network[i]);
         clip_image(&out->by_brdf[i]);
     }
