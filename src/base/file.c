@@ -149,6 +149,23 @@ status file_write_durable(const char *path, const void *data, size_t size)
     return write_through_temporary(path, data, size, true);
 }
 
+status file_print(const char *path, file_printer *print, const void *context)
+{
+    char *temporary;
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    bool written = f != NULL;
+    if (f) {
+        print(f, context);
+        written = !ferror(f);
+        written &= fclose(f) == 0;
+    }
+    if (written) return file_commit(temporary, path);
+    file_discard(temporary);
+    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+}
+
 status file_make_folder(const char *path)
 {
     char *copy = strdup(path);

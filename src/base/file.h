@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/status.h"
 
@@ -25,6 +26,10 @@ void file_unmap(file_view *view);
  * file. file_write_durable also waits for the disk, so that a power cut does too: for what took hours to make. */
 status file_write(const char *path, const void *data, size_t size);
 status file_write_durable(const char *path, const void *data, size_t size);
+
+/* The same for what is too large to be put together in memory first: print is given the open file. */
+typedef void file_printer(FILE *f, const void *context);
+status file_print(const char *path, file_printer *print, const void *context);
 
 /* For libraries that write by name: a temporary name beside path, with path's own ending so that the library picks the
  * right format (malloc'ed); then file_commit renames it to path and frees the name, or file_discard removes and frees

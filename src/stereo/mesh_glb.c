@@ -270,35 +270,36 @@ static void put_padded(FILE *f, const void *data, size_t size, int filler)
         fputc(filler, f);
 }
 
+/* The sizes that stand in the file's head, padded. */
+typedef struct chunks {
+    const glb *g;
+    const char *json;
+    size_t text, binary, total;
+} chunks;
+
+static void write_chunks(FILE *f, const void *context)
+{
+    const chunks *c = context;
+    fputs("glTF", f);
+    put_u32(f, 2);
+    put_u32(f, c->total);
+    put_u32(f, c->text);
+    fputs("JSON", f);
+    put_padded(f, c->json, strlen(c->json), ' ');
+    put_u32(f, c->binary);
+    fwrite("BIN", 1, 4, f);
+    for (int i = 0; i < c->g->count; i++)
+        put_padded(f, c->g->parts[i].data, c->g->parts[i].size, 0);
+}
+
 static status write_file(const char *path, const glb *g, const char *json)
 {
-    size_t text = padded(strlen(json)), binary = 0;
+    chunks c = {.g = g, .json = json, .text = padded(strlen(json))};
     for (int i = 0; i < g->count; i++)
-        binary += padded(g->parts[i].size);
-    size_t total = HEADER + 2 * (size_t)CHUNK_HEADER + text + binary;
-    if (total > UINT32_MAX) return fail(ERROR_OUTPUT, "cannot write %s: a GLB holds at most 4 GiB; use .ply", path);
-    char *temporary;
-    status s = file_temporary(path, &temporary);
-    if (s != OK) return s;
-    FILE *f = fopen(temporary, "wb");
-    bool written = f != NULL;
-    if (f) {
-        fputs("glTF", f);
-        put_u32(f, 2);
-        put_u32(f, total);
-        put_u32(f, text);
-        fputs("JSON", f);
-        put_padded(f, json, strlen(json), ' ');
-        put_u32(f, binary);
-        fwrite("BIN", 1, 4, f);
-        for (int i = 0; i < g->count; i++)
-            put_padded(f, g->parts[i].data, g->parts[i].size, 0);
-        written = !ferror(f);
-        written &= fclose(f) == 0;
-    }
-    if (written) return file_commit(temporary, path);
-    file_discard(temporary);
-    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+        c.binary += padded(g->parts[i].size);
+    c.total = HEADER + 2 * (size_t)CHUNK_HEADER + c.text + c.binary;
+    if (c.total > UINT32_MAX) return fail(ERROR_OUTPUT, "cannot write %s: a GLB holds at most 4 GiB; use .ply", path);
+    return file_print(path, write_chunks, &c);
 }
 
 static status assemble(const char *path, const glb *g)

@@ -21,12 +21,20 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static void print_mesh(FILE *f, const surface_mesh *m, const pst_mesh_source *from, const char *material)
+typedef struct obj {
+    const surface_mesh *mesh;
+    const pst_mesh_source *from;
+    const char *material;
+} obj;
+
+static void print_mesh(FILE *f, const void *context)
 {
-    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", base_name(material));
+    const obj *o = context;
+    const surface_mesh *m = o->mesh;
+    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", base_name(o->material));
     for (size_t v = 0; v < m->vertices; v++) {
         const float *p = m->position + 3 * v, *t = m->texture + 2 * v;
-        vec3 n = surface_mesh_normal(m, from, v);
+        vec3 n = surface_mesh_normal(m, o->from, v);
         fprintf(f, "v %.7g %.7g %.7g\nvt %.7g %.7g\nvn %.5g %.5g %.5g\n", (double)p[0], (double)p[1], (double)p[2],
                 (double)t[0], 1 - (double)t[1], (double)n.x, (double)n.y, (double)n.z);
     }
@@ -38,23 +46,6 @@ static void print_mesh(FILE *f, const surface_mesh *m, const pst_mesh_source *fr
         }
         fputc('\n', f);
     }
-}
-
-static status write_mesh(const char *path, const surface_mesh *m, const pst_mesh_source *from, const char *material)
-{
-    char *temporary;
-    status s = file_temporary(path, &temporary);
-    if (s != OK) return s;
-    FILE *f = fopen(temporary, "wb");
-    bool written = f != NULL;
-    if (f) {
-        print_mesh(f, m, from, material);
-        written = !ferror(f);
-        written &= fclose(f) == 0;
-    }
-    if (written) return file_commit(temporary, path);
-    file_discard(temporary);
-    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
 }
 
 static status write_texture(const char *path, const img *albedo)
@@ -85,7 +76,7 @@ status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_so
     status s = material && texture ? OK : fail(ERROR_MEMORY, "no memory for file names");
     if (s == OK && from->albedo) s = write_texture(texture, from->albedo);
     if (s == OK) s = write_material(material, from->albedo ? texture : NULL);
-    if (s == OK) s = write_mesh(path, m, from, material);
+    if (s == OK) s = file_print(path, print_mesh, &(obj){m, from, material});
     free(material);
     free(texture);
     return s;

@@ -55,25 +55,25 @@ static void write_vertices(FILE *f, const surface_mesh *m, const pst_mesh_source
     }
 }
 
+typedef struct ply {
+    const surface_mesh *mesh;
+    const pst_mesh_source *from;
+} ply;
+
+static void write_mesh(FILE *f, const void *context)
+{
+    const ply *p = context;
+    const surface_mesh *m = p->mesh;
+    write_header(f, m);
+    write_vertices(f, m, p->from);
+    for (size_t t = 0; t < m->triangles; t++) {
+        const uint32_t *i = m->index + 3 * t;
+        ply_face face = {3, {i[0], i[1], i[2]}};
+        fwrite(&face, sizeof face, 1, f);
+    }
+}
+
 status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
-    char *temporary;
-    status s = file_temporary(path, &temporary);
-    if (s != OK) return s;
-    FILE *f = fopen(temporary, "wb");
-    bool written = f != NULL;
-    if (f) {
-        write_header(f, m);
-        write_vertices(f, m, from);
-        for (size_t t = 0; t < m->triangles; t++) {
-            const uint32_t *i = m->index + 3 * t;
-            ply_face face = {3, {i[0], i[1], i[2]}};
-            fwrite(&face, sizeof face, 1, f);
-        }
-        written = !ferror(f);
-        written &= fclose(f) == 0;
-    }
-    if (written) return file_commit(temporary, path);
-    file_discard(temporary);
-    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+    return file_print(path, write_mesh, &(ply){m, from});
 }
