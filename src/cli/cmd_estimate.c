@@ -1,12 +1,12 @@
 /* merlin estimate: photographs to maps. */
 #include <cJSON.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
@@ -30,20 +30,6 @@ static const char help[] =
     "  -h, --help           this text\n\n"
     "Several photographs: goes on after one that fails, and then exits with 1.\n";
 
-enum { OPTION_MASK = 256, OPTION_MODEL, OPTION_SIZE, OPTION_EXPOSURE, OPTION_JSON, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"output", required_argument, NULL, 'o'},
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"size", required_argument, NULL, OPTION_SIZE},
-    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     const char *mask, *output, *weights;
     merlin_params params;
@@ -51,46 +37,22 @@ typedef struct request {
     merlin_model *model;
 } request;
 
-static status take_option(int option, const char *value, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    switch (option) {
-    case OPTION_MASK:
-        r->mask = value;
-        return OK;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_MODEL:
-        r->weights = value;
-        return OK;
-    case OPTION_SIZE:
-        return photo_parse_size(value, &r->params);
-    case OPTION_EXPOSURE:
-        return photo_parse_exposure(value, &r->params);
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    return optind < argc ? OK : fail(ERROR_USAGE, "no photograph given");
+    const cli_option options[] = {
+        {"mask", .text = &r->mask},
+        {"output", 'o', .text = &r->output},
+        {"model", .text = &r->weights},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    return *argc > 0 ? OK : fail(ERROR_USAGE, "no photograph given");
 }
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
@@ -211,7 +173,7 @@ int cmd_estimate(int argc, char **argv)
 {
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
-    if (parse(argc, argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
     if (r.help) {
         fputs(help, stdout);
         return 0;
@@ -219,7 +181,7 @@ int cmd_estimate(int argc, char **argv)
     cli_catch_interrupts();
     photo_list photos;
     char *weights = NULL;
-    status s = photo_list_make(argv + optind, argc - optind, r.mask, r.output, &photos);
+    status s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     s = photo_find_model(r.weights, &weights);
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);

@@ -1,5 +1,4 @@
 /* merlin eval photos: photographs taken apart by several weights, side by side in one picture. */
-#include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "estimate/overview.h"
 #include "image/resize.h"
@@ -24,57 +24,30 @@ static const char help[] =
     "  -h, --help           this text\n";
 
 enum { MOST_MODELS = 4, MOST_PHOTOS = 64, TILE = 160, LABEL_SIZE = 48 };
-enum { OPTION_MODEL = 256, OPTION_MASK, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"output", required_argument, NULL, 'o'},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     const char *models[MOST_MODELS], *mask, *output;
     int model_count;
     bool quiet, help;
 } request;
 
-static status take_option(int option, const char *value, request *r)
+static status take_model(const char *path, void *into)
 {
-    switch (option) {
-    case OPTION_MODEL:
-        if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
-        r->models[r->model_count++] = value;
-        return OK;
-    case OPTION_MASK:
-        r->mask = value;
-        return OK;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
+    request *r = into;
+    if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
+    r->models[r->model_count++] = path;
+    return OK;
 }
 
-static status parse(int argc, char **argv, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind == argc) return fail(ERROR_USAGE, "no photograph given");
+    const cli_option options[] = {
+        {"model", .take = take_model, .into = r}, {"mask", .text = &r->mask},
+        {"output", 'o', .text = &r->output},      {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},          {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
     if (r->model_count == 0) return fail(ERROR_USAGE, "--model W is missing");
     return r->output ? OK : fail(ERROR_USAGE, "-o FILE.png is missing");
 }
@@ -192,10 +165,10 @@ static status compare(const request *r, const photo_list *photos)
 int eval_photos(int argc, char **argv)
 {
     request r = {0};
-    if (parse(argc, argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     photo_list photos;
-    status s = photo_list_make(argv + optind, argc - optind, r.mask, NULL, &photos);
+    status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
     s = compare(&r, &photos);

@@ -225,8 +225,9 @@ status photo_find_model(const char *asked, char **path)
                 program);
 }
 
-status photo_parse_size(const char *text, merlin_params *params)
+status photo_take_size(const char *text, void *into)
 {
+    merlin_params *params = into;
     long size;
     status s = cli_int("--size", text, 64, 1024, &size);
     if (s == OK && size % 32 != 0) s = fail(ERROR_USAGE, "--size must be a multiple of 32, not %ld", size);
@@ -234,8 +235,9 @@ status photo_parse_size(const char *text, merlin_params *params)
     return s;
 }
 
-status photo_parse_exposure(const char *text, merlin_params *params)
+status photo_take_exposure(const char *text, void *into)
 {
+    merlin_params *params = into;
     double ev = 0;
     params->auto_exposure = strcmp(text, "auto") == 0;
     status s = params->auto_exposure ? OK : cli_float("--exposure", text, -10, 10, &ev);

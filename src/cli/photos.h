@@ -34,8 +34,8 @@ status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask)
  * source tree), else share/merlin/models beside its folder; malloc'ed. */
 status photo_find_model(const char *asked, char **path);
 
-/* The values of --size, and of --exposure ("auto" or EV). */
-status photo_parse_size(const char *text, merlin_params *params);
-status photo_parse_exposure(const char *text, merlin_params *params);
+/* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */
+status photo_take_size(const char *text, void *into);
+status photo_take_exposure(const char *text, void *into);
 
 #endif
