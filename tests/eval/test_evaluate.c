@@ -10,6 +10,7 @@
 #include "eval/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
+#include "scratch.h"
 #include "sphere.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
@@ -52,7 +53,7 @@ static void write_weights(const char *path, const model_config *config)
 }
 
 typedef struct fixture {
-    char folder[64], *data, *weights, *figure;
+    char *folder, *data, *weights, *figure;
 } fixture;
 
 static void write_sphere(const char *folder, int index, int size, int targets)
@@ -72,8 +73,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
-    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
-    assert_non_null(mkdtemp(f->folder));
+    f->folder = scratch_new();
     f->data = file_join(f->folder, "data");
     f->weights = file_join(f->folder, "tiny.safetensors");
     f->figure = file_join(f->folder, "sheet.png");
@@ -85,22 +85,10 @@ static int set_up(void **state)
     return 0;
 }
 
-static void empty_folder(const char *folder)
-{
-    char **names;
-    size_t count;
-    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
-    for (size_t i = 0; i < count; i++)
-        assert_int_equal(unlink(names[i]), 0);
-    file_list_free(names, count);
-    assert_int_equal(rmdir(folder), 0);
-}
-
 static int tear_down(void **state)
 {
     fixture *f = *state;
-    empty_folder(f->data);
-    empty_folder(f->folder);
+    scratch_remove(f->folder);
     free(f->data);
     free(f->weights);
     free(f->figure);
@@ -187,7 +175,6 @@ static void samples_of_another_size_are_refused(void **state)
     write_sphere(folder, 1, 96, 0);
     assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
-    empty_folder(folder);
     free(folder);
 }
 
