@@ -61,7 +61,7 @@ static status take_light(const char *text, void *lights)
 {
     float v[3];
     status s = cli_vec3("--light", text, v);
-    return s == OK ? light_list_add(lights, vec3_make(v[0], v[1], v[2])) : s;
+    return s == OK ? light_list_add(lights, vec3_of(v)) : s;
 }
 
 static status take_way(const char *text, void *into)
