@@ -6,6 +6,7 @@
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/options.h"
+#include "cli/photos.h"
 #include "eval/evaluate.h"
 #include "eval/report.h"
 #include "eval/trivial.h"
@@ -21,7 +22,7 @@ static const char help[] =
     "fourth\n"
     "shows photographs taken apart by several weights side by side (merlin eval photos --help).\n\n"
     "  --data DIR         held-out samples\n"
-    "  --model W          weights to measure\n"
+    "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
     "  --precision P      float32 (default) or bfloat16\n"
@@ -85,12 +86,16 @@ static int run_means(const request *r)
     return s == OK ? 0 : cli_fail("eval", s);
 }
 
-static int run_evaluation(const request *r)
+static int run_evaluation(request *r)
 {
     if (!r->options.data) return cli_usage("eval", "--data DIR is missing");
     if (!r->options.weights) return cli_usage("eval", "--model W is missing");
     eval_report report;
-    status s = eval_run(&r->options, &report);
+    char *weights;
+    status s = photo_find_model(r->options.weights, &weights);
+    r->options.weights = weights;
+    if (s == OK) s = eval_run(&r->options, &report);
+    free(weights);
     if (s != OK) return cli_fail("eval", s);
     if (!r->json) {
         eval_print_table(&report, stdout);

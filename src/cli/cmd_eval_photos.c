@@ -17,7 +17,8 @@ static const char help[] =
     "and\n"
     "then albedo, normal, roughness, depth, reconstruction and two new lights, each by all of the weights side by "
     "side.\n\n"
-    "      --model W        weights; once for each column of tiles, before and after say, at most 4\n"
+    "      --model W        weights, a file or a shipped name; once for each column of tiles, before and after say, at "
+    "most 4\n"
     "  -o, --output F.png   the picture\n"
     "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
     "      --quiet          no progress\n"
@@ -125,7 +126,10 @@ static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
     size_t count = c->photos->count;
-    status s = (status)merlin_model_open(c->request->models[model], &m);
+    char *weights;
+    status s = photo_find_model(c->request->models[model], &weights);
+    if (s == OK) s = (status)merlin_model_open(weights, &m);
+    free(weights);
     for (size_t i = 0; i < count && s == OK; i++) {
         s = cli_interrupted() ? fail(ERROR_STOPPED, "interrupted; nothing was written") : take_apart(c, m, i, model);
         if (s == OK) progress_update(&c->progress, (size_t)model * count + i + 1, NULL);

@@ -31,7 +31,7 @@ static const char help[] =
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
     "output)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
-    "      --model FILE, --size N, --exposure EV\n"
+    "      --model W, --size N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate\n"
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
