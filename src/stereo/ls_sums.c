@@ -4,14 +4,14 @@
 #include <string.h>
 
 /* Pictures added at once; pictures whose bits fill a word; pixels side by side. */
-enum { TOGETHER = 2, WORD = 32, LANES = 16, CACHE_LINE = 64 };
+enum { TOGETHER = 2, WORD = 32, LANES = 16, PRODUCTS = 8, CACHE_LINE = 64 };
 
 /* What one picture's light contributes. */
 typedef struct ls_light {
     float x, y, z;
-    float scale[3];   /* code to radiance under unit intensity */
-    float product[6]; /* l lᵀ */
-    int32_t bit;      /* in its word; 0 for what only fills up the last few */
+    float scale[3];          /* code to radiance under unit intensity */
+    float product[PRODUCTS]; /* l lᵀ in the first six; as many as fit a register well */
+    int32_t bit;             /* in its word; 0 for what only fills up the last few */
     const uint16_t *picture;
 } ls_light;
 
@@ -28,7 +28,7 @@ static ls_light make_light(const pst_light *from, const uint16_t *picture, int i
     ls_light l = {.x = d.x, .y = d.y, .z = d.z, .bit = (int32_t)(1u << (index % WORD)), .picture = picture};
     for (int c = 0; c < 3; c++)
         l.scale[c] = 1 / (65535 * from->intensity[c]);
-    const float product[6] = {d.x * d.x, d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z};
+    const float product[PRODUCTS] = {d.x * d.x, d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z};
     memcpy(l.product, product, sizeof product);
     return l;
 }
@@ -250,56 +250,69 @@ static void add_pictures(const ls_lights *all, portion now, portion next, int co
 /* The matrix of the last word of bits that was asked for. */
 typedef struct matrix_memory {
     uint32_t word;
-    float matrix[6]; /* of no lights at first */
+    float matrix[PRODUCTS]; /* of no lights at first */
 } matrix_memory;
 
+/* Without branches: which pixels are in shadow is hard to foresee. */
 static void recall(matrix_memory *m, uint32_t word, const ls_light *l, int lights)
 {
     if (m->word == word) return;
     *m = (matrix_memory){.word = word};
-    for (int k = 0; k < lights; k++)
-        for (int e = 0; e < 6 && (word & (uint32_t)l[k].bit); e++)
-            m->matrix[e] += l[k].product[e];
+    for (int k = 0; k < lights; k++) {
+        float counts = (float)((word & (uint32_t)l[k].bit) != 0);
+        for (int e = 0; e < PRODUCTS; e++)
+            m->matrix[e] += counts * l[k].product[e];
+    }
 }
 
-static void add_alike(const matrix_memory *m, int begin, int end, ls_sums *s)
+static void add_alike(const matrix_memory *m, int i, ls_sums *s)
 {
     for (int e = 0; e < 6; e++)
-        for (int i = begin; i < end; i++)
-            s->matrix[e][i] += m->matrix[e];
+        for (int k = i; k < i + LANES; k++)
+            s->matrix[e][k] += m->matrix[e];
 }
 
-static void add_each(const uint32_t *restrict lit, const ls_light *l, int lights, int begin, int end,
-                     ls_sums *restrict s)
+static inline void add_product(lanes *sum, float product, const lane_bits *counts)
 {
+    lanes p = product - (lanes){0};
+    *sum += (lanes)((lane_bits)p & *counts);
+}
+
+static void add_each(const uint32_t *lit, const ls_light *l, int lights, int i, ls_sums *s)
+{
+    lanes m0 = {0}, m1 = {0}, m2 = {0}, m3 = {0}, m4 = {0}, m5 = {0};
+    lane_bits word;
+    memcpy(&word, lit + i, sizeof word);
     for (int k = 0; k < lights; k++) {
-        const float *product = l[k].product;
-        int32_t bit = l[k].bit;
-#pragma omp simd
-        for (int i = begin; i < end; i++) {
-            float w = lit[i] & (uint32_t)bit ? 1.0f : 0.0f;
-            for (int e = 0; e < 6; e++)
-                s->matrix[e][i] += w * product[e];
-        }
+        lane_bits counts = (word & l[k].bit) != 0;
+        add_product(&m0, l[k].product[0], &counts);
+        add_product(&m1, l[k].product[1], &counts);
+        add_product(&m2, l[k].product[2], &counts);
+        add_product(&m3, l[k].product[3], &counts);
+        add_product(&m4, l[k].product[4], &counts);
+        add_product(&m5, l[k].product[5], &counts);
     }
+    const lanes all[6] = {m0, m1, m2, m3, m4, m5};
+    for (int e = 0; e < 6; e++)
+        for (int k = 0; k < LANES; k++)
+            s->matrix[e][i + k] += all[e][k];
 }
 
 /* Of the lights of one word. */
 static void add_matrices(const uint32_t *lit, const ls_light *l, int lights, int count, ls_sums *s)
 {
     matrix_memory memory = {0};
-    for (int begin = 0; begin < count; begin += LANES) {
-        int end = begin + LANES < count ? begin + LANES : count;
-        uint32_t all = lit[begin], any = lit[begin];
-        for (int i = begin; i < end; i++) {
-            all &= lit[i];
-            any |= lit[i];
+    for (int i = 0; i < count; i += LANES) {
+        uint32_t all = lit[i], any = lit[i];
+        for (int k = i; k < i + LANES; k++) {
+            all &= lit[k];
+            any |= lit[k];
         }
         if (all == any) {
             recall(&memory, all, l, lights);
-            add_alike(&memory, begin, end, s);
+            add_alike(&memory, i, s);
         } else {
-            add_each(lit, l, lights, begin, end, s);
+            add_each(lit, l, lights, i, s);
         }
     }
 }
