@@ -224,9 +224,9 @@ typedef struct portion {
 static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sums *s, uint32_t *lit)
 {
     uint16_t copy[TOGETHER][6 * LANES] = {0};
-    places values = places_from(now.light, now.value + (size_t)(i * all->channels));
+    places values = places_from(now.light, now.value + (size_t)i * (size_t)all->channels);
     for (int k = 0; k < TOGETHER; k++) {
-        memcpy(copy[k], values.at[k], (size_t)((count - i) * all->channels) * sizeof copy[k][0]);
+        memcpy(copy[k], values.at[k], (size_t)(count - i) * (size_t)all->channels * sizeof copy[k][0]);
         values.at[k] = copy[k];
     }
     add_lanes(all, now.light, values, s, lit, i);
@@ -236,9 +236,9 @@ static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sum
 static void add_pictures(const ls_lights *all, portion now, portion next, int count, ls_sums *s, uint32_t *lit)
 {
     int i = 0, channels = all->channels;
-    size_t bytes = (size_t)(2 * LANES * channels) * sizeof(uint16_t);
+    size_t bytes = 2 * LANES * (size_t)channels * sizeof(uint16_t);
     for (; i + 2 * LANES <= count; i += 2 * LANES) {
-        size_t offset = (size_t)(i * channels);
+        size_t offset = (size_t)i * (size_t)channels;
         fetch(places_from(next.light, next.value + offset), bytes);
         add_lanes(all, now.light, places_from(now.light, now.value + offset), s, lit, i);
     }
