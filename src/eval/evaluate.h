@@ -23,9 +23,12 @@ typedef enum eval_row {
     EVAL_ANGLE,          /* mean angle between normals, degrees */
     EVAL_DEPTH,          /* mean squared error in scene units */
     EVAL_ROUGHNESS,      /* mean squared error in [-1, 1] */
+    EVAL_SURROUNDINGS,   /* setting B: mean squared error of the radiance of white surfaces over all normals */
     EVAL_RECONSTRUCTION, /* direct + indirect against the input */
     EVAL_RELIT_NETWORK,  /* the relighting decoder against the true maps rendered under the target light */
     EVAL_RELIT_BRDF,     /* the estimated maps rendered, against the same */
+    EVAL_BOTH_NETWORK,   /* setting B: the same two under the light in other surroundings */
+    EVAL_BOTH_BRDF,
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
     EVAL_TRACED_SHADOWS, /* the maps' own cast shadows added */

@@ -65,14 +65,14 @@ const model_config *eval_model_config(const eval_model *m)
 
 bool eval_model_relights(const eval_model *m)
 {
-    return m->config.relight == MODEL_RELIGHT_NETWORK && m->config.lighting == MODEL_LIGHT_POINT;
+    return m->config.relight == MODEL_RELIGHT_NETWORK;
 }
 
 status eval_prediction_new(const eval_model *m, eval_prediction *out)
 {
     *out = (eval_prediction){0};
     status s = eval_maps_new(&out->maps, m->size, m->size);
-    if (s == OK) s = img_new(&out->direct, m->size, m->size, 3);
+    if (s == OK) s = img_new(&out->flash, m->size, m->size, 3);
     if (s == OK) s = img_new(&out->reconstruction, m->size, m->size, 3);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         if (s == OK) s = img_new(&out->by_network[i], m->size, m->size, 3);
@@ -88,7 +88,7 @@ status eval_prediction_new(const eval_model *m, eval_prediction *out)
 void eval_prediction_free(eval_prediction *p)
 {
     eval_maps_free(&p->maps);
-    img_free(&p->direct);
+    img_free(&p->flash);
     img_free(&p->reconstruction);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         img_free(&p->by_network[i]);
@@ -99,17 +99,26 @@ void eval_prediction_free(eval_prediction *p)
     }
 }
 
-static void fill_inputs(eval_model *m, const img *image, const img *mask, const vec3 *lights)
+/* The target's lighting code: the light's place and, in setting B, its surroundings. */
+static void fill_code(const eval_model *m, const float light[3], const float (*sh)[3], float *code)
+{
+    static const float dark[9][3];
+    memcpy(code, light, 3 * sizeof *light);
+    if (m->config.lighting == MODEL_LIGHT_BOTH) model_encode_sh(sh ? sh : dark, code + 3);
+}
+
+static void fill_inputs(eval_model *m, const img *image, const img *mask, const eval_lighting *lights)
 {
     size_t pixels = (size_t)m->size * (size_t)m->size;
     float *network_image = nn_input_data(m->program, "image"), *network_mask = nn_input_data(m->program, "mask");
     float *code = nn_input_data(m->program, "light"), *position = nn_input_data(m->program, "light_position");
+    size_t code_size = (size_t)model_light_size(&m->config);
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
-        const float light[3] = {lights[i].x, lights[i].y, lights[i].z};
+        const float light[3] = {lights[i].light.x, lights[i].light.y, lights[i].light.z};
         model_encode_image(image->data, network_image + i * pixels * 3, pixels * 3);
         memcpy(network_mask + i * pixels, mask->data, pixels * sizeof *network_mask);
         if (position) memcpy(position + 3 * i, light, sizeof light);
-        if (code && eval_model_relights(m)) memcpy(code + 3 * i, light, sizeof light);
+        if (code) fill_code(m, light, lights[i].sh, code + i * code_size);
     }
 }
 
@@ -179,7 +188,18 @@ static status add_bounces(eval_model *m, const img *flash, const img direct[EVAL
     return s;
 }
 
-status eval_predict(eval_model *m, const img *image, const img *mask, const vec3 lights[EVAL_LIGHTS],
+/* What the network takes the surroundings for; their light is taken out of the flash's. */
+static void take_surroundings(eval_model *m, eval_prediction *out)
+{
+    const float *code = nn_output_data(m->program, "environment_code");
+    const float *lit = nn_output_data(m->program, "environment");
+    if (!code || !lit) return;
+    model_decode_sh(code, out->sh);
+    for (size_t i = 0, n = 3 * (size_t)m->size * (size_t)m->size; i < n; i++)
+        out->flash.data[i] -= lit[i];
+}
+
+status eval_predict(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
                     eval_prediction *out)
 {
     if (image->width != m->size || image->height != m->size)
@@ -192,8 +212,9 @@ status eval_predict(eval_model *m, const img *image, const img *mask, const vec3
     take(m->program, "normal", 0, &out->maps.normal);
     take(m->program, "roughness", 0, &out->maps.roughness);
     take(m->program, "depth", 0, &out->maps.depth);
-    take(m->program, "direct", 0, &out->direct);
-    add_indirect(&out->direct, nn_output_data(m->program, "indirect"), &out->reconstruction);
+    take(m->program, "direct", 0, &out->flash);
+    add_indirect(&out->flash, nn_output_data(m->program, "indirect"), &out->reconstruction);
+    take_surroundings(m, out);
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
         take(m->program, "relit_direct", i, &out->by_network[i]);
         take(m->program, "relit_brdf", i, &out->by_brdf[i]);
@@ -201,8 +222,8 @@ status eval_predict(eval_model *m, const img *image, const img *mask, const vec3
         clip_image(&out->by_network[i]);
         clip_image(&out->by_brdf[i]);
     }
-    s = add_bounces(m, &out->direct, out->by_brdf, out->full_by_brdf);
-    if (s == OK && eval_model_relights(m)) s = add_bounces(m, &out->direct, out->by_network, out->full_by_network);
+    s = add_bounces(m, &out->flash, out->by_brdf, out->full_by_brdf);
+    if (s == OK && eval_model_relights(m)) s = add_bounces(m, &out->flash, out->by_network, out->full_by_network);
     return s;
 }
 
@@ -229,7 +250,7 @@ static status cast_shadow(const shadow_caster *caster, vec3 light, img *image)
     return s;
 }
 
-status eval_predict_shadows(eval_model *m, const img *mask, float fov, const vec3 lights[EVAL_LIGHTS],
+status eval_predict_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
                             eval_prediction *p)
 {
     shadow_caster caster;
@@ -237,8 +258,8 @@ status eval_predict_shadows(eval_model *m, const img *mask, float fov, const vec
     if (s != OK) return s;
     for (int i = 0; i < EVAL_LIGHTS && s == OK; i++) {
         memcpy(p->shadowed[i].data, p->by_brdf[i].data, 3 * (size_t)m->size * (size_t)m->size * sizeof(float));
-        s = cast_shadow(&caster, lights[i], &p->shadowed[i]);
+        s = cast_shadow(&caster, lights[i].light, &p->shadowed[i]);
     }
     shadow_caster_free(&caster);
-    return s == OK ? add_bounces(m, &p->direct, p->shadowed, p->shadowed) : s;
+    return s == OK ? add_bounces(m, &p->flash, p->shadowed, p->shadowed) : s;
 }

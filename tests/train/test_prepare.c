@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "scratch.h"
 #include "synthetic.h"
 
 enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 28 * PIXELS + 3 + 2 * MODEL_SH };
@@ -21,7 +22,7 @@ static const trn_dataset_options usual = {.size = SIZE, .memory_gib = 1};
 static const trn_lighting at_the_camera = {.target = {0, 0, 0}};
 
 typedef struct fixture {
-    char folder[256];
+    char *folder;
     trn_dataset *data;
     float *memory;
     trn_view view;
@@ -46,7 +47,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
-    scratch_folder(f->folder, sizeof f->folder);
+    f->folder = scratch_new();
     for (int i = 0; i < 3; i++)
         sphere_write(f->folder, SIZE, i);
     f->memory = malloc(FLOATS * sizeof(float));
@@ -137,8 +138,7 @@ static void sample_of_another_size_is_refused(void **state)
 static void empty_folder_is_refused(void **state)
 {
     (void)state;
-    char folder[256];
-    scratch_folder(folder, sizeof folder);
+    char *folder = scratch_new();
     trn_dataset *d;
     assert_int_equal(trn_dataset_open(folder, &usual, &d), ERROR_INPUT);
     scratch_remove(folder);
