@@ -67,7 +67,7 @@ static status check_method(const pst_capture *c, pst_method m)
     return distant ? pst_check_directions(c->light, c->count) : OK;
 }
 
-static status list_pixels(const pst_capture *c, pst_problem *p)
+status pst_list_pixels(const pst_capture *c, pst_problem *p)
 {
     size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     if (c->mask.width != c->width || c->mask.height != c->height)
@@ -136,7 +136,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .saturation = options->saturation > 0 ? options->saturation : 0.98f,
                      .iterations = options->iterations};
     s = list_lights(c, light);
-    if (s == OK) s = list_pixels(c, &p);
+    if (s == OK) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
     free(p.pixel);
