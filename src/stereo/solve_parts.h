@@ -11,7 +11,7 @@
 typedef struct pst_problem {
     const pst_capture *capture;
     const pst_light *light; /* count; intensities above 0. The capture's own unless a solver found better */
-    uint32_t *pixel;        /* indices of the mask's pixels, rows from the top */
+    uint32_t *pixel;        /* indices of the mask's pixels, rows from the top; NULL for ls, which streams them all */
     size_t pixel_count;
     float shadow, saturation; /* shares of full scale: usable is shadow < value < saturation */
     int iterations;           /* 0: the solver's own */
@@ -20,7 +20,7 @@ typedef struct pst_problem {
 /* Directions are unit already. Fewer than 3 lights, or all in a plane through the origin, are refused. */
 status pst_check_directions(const pst_light *light, int count);
 
-/* Sets pixel (malloc'ed, NULL on failure) and pixel_count. An empty mask, or one of another size, is refused. */
+/* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */
 status pst_list_pixels(const pst_capture *c, pst_problem *p);
 
 status pst_solve_ls(const pst_problem *p, pst_surface *out);
