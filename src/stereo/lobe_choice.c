@@ -89,16 +89,25 @@ static void try_terminator(choice *c)
     }
 }
 
+/* In steps as long as they help. */
+static void move_terminator(choice *c, float step)
+{
+    float from;
+    do {
+        from = c->best.terminator;
+        c->trial = c->best;
+        c->trial.terminator = from + step;
+        if (c->trial.terminator > 0) attempt(c, 0, false);
+    } while (c->best.terminator != from);
+}
+
 static void refine_terminator(choice *c)
 {
-    for (float step = 0.03f; step > 0.001f; step /= 2)
-        for (int side = -1; side <= 1; side += 2)
-            for (float from = -1; c->best.terminator != from && c->best.terminator + step * (float)side > 0;) {
-                from = c->best.terminator;
-                c->trial = c->best;
-                c->trial.terminator = from + step * (float)side;
-                attempt(c, 0, false);
-            }
+    float step = 0.03f;
+    for (int round = 0; round < 5; round++, step /= 2) {
+        move_terminator(c, -step);
+        move_terminator(c, step);
+    }
 }
 
 status pst_lobe_admit(const pst_field *sample, pst_lobe *lobe)

@@ -51,7 +51,7 @@ float pst_ordinary_level(const pst_observations *o)
         float middle = sqrtf(low * high), below = 0;
 #pragma omp simd reduction(+ : below)
         for (int i = 0; i < n; i++)
-            below += (value[i] > least) & (value[i] < middle) ? usable[i] : 0;
+            below += value[i] > least && value[i] < middle ? usable[i] : 0;
         if (below > 0.5f * all)
             high = middle;
         else
