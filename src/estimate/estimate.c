@@ -1,5 +1,4 @@
 /* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,30 +76,16 @@ static status choose_mask(work *w, const merlin_image *given, merlin_maps *maps)
     return OK;
 }
 
-static void multiply_mask(img *image, const img *mask)
-{
-    size_t count = (size_t)image->width * (size_t)image->height;
-    assert(mask->data);
-    for (size_t i = 0; i < count; i++)
-        for (int c = 0; c < image->channels; c++)
-            image->data[(size_t)image->channels * i + (size_t)c] *= mask->data[i];
-}
-
 /* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
  * area-averaged, the mask hard. */
 static status make_input(work *w, float *gain)
 {
     int size = w->params->size;
-    img masked = {0};
     status s = crop_take(&w->photo, w->crop, &w->crop_photo);
     if (s == OK) s = crop_take(&w->mask, w->crop, &w->crop_mask);
-    if (s == OK) s = img_copy(&masked, &w->crop_photo);
-    if (s == OK) {
-        multiply_mask(&masked, &w->crop_mask);
-        s = img_resize(&masked, size, size, &w->low_photo);
-    }
+    img_free(&w->mask);
+    if (s == OK) s = img_resize_masked(&w->crop_photo, &w->crop_mask, size, size, &w->low_photo);
     if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
-    img_free(&masked);
     if (s != OK) return s;
     harden_mask(&w->low_photo, &w->low_mask);
     *gain =
@@ -114,23 +99,23 @@ static status make_input(work *w, float *gain)
 /* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
 static status refine(work *w, float gain, bool in_environment)
 {
+    surface_encode_guide(&w->crop_photo);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
-    if (s == OK) s = surface_shade(&w->full, vec3_make(0, 0, 0), &w->reconstruction);
-    img indirect = {0};
-    if (s == OK)
-        s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, &indirect);
+    img_free(&w->crop_photo);
+    img *picture = &w->reconstruction;
+    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, picture);
     if (s != OK) return s;
+    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
+    for (size_t i = 0; i < count; i++)
+        picture->data[i] *= w->crop_mask.data[i / 3];
+    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
     if (in_environment) {
         const float(*sh)[3] = (const float(*)[3])w->low.environment;
-        surface_add_ambient(&w->full, sh, &w->reconstruction);
-        surface_add_ambient_highlights(&w->full, sh, &w->reconstruction);
+        surface_add_ambient(&w->full, sh, picture);
+        surface_add_ambient_highlights(&w->full, sh, picture);
     }
-    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
-    for (size_t i = 0; i < count; i++) {
-        float radiance = w->reconstruction.data[i] + indirect.data[i] * w->crop_mask.data[i / 3];
-        w->reconstruction.data[i] = fminf(fmaxf(radiance / gain, 0), 1);
-    }
-    img_free(&indirect);
+    for (size_t i = 0; i < count; i++)
+        picture->data[i] = fminf(fmaxf(picture->data[i] / gain, 0), 1);
     return OK;
 }
 
@@ -146,6 +131,25 @@ static status place(const work *w, img *from, merlin_image *to)
     return OK;
 }
 
+/* The object alone. */
+static status place_photo(const work *w, merlin_image *to)
+{
+    img whole = {0};
+    crop_square c = w->crop;
+    status s = img_new(&whole, w->photo.width, w->photo.height, 3);
+    for (int y = 0; s == OK && y < c.side; y++)
+        for (int x = 0; x < c.side; x++) {
+            float cover = *img_at(&w->crop_mask, x, y);
+            if (!(cover > 0)) continue; /* what hangs over the frame is not covered */
+            const float *from = img_at(&w->photo, c.x + x, c.y + y);
+            float *out = img_at(&whole, c.x + x, c.y + y);
+            for (int k = 0; k < 3; k++)
+                out[k] = cover * from[k];
+        }
+    *to = image_of(&whole);
+    return s;
+}
+
 static status place_all(work *w, merlin_maps *maps)
 {
     status s = place(w, &w->full.albedo, &maps->albedo);
@@ -154,9 +158,7 @@ static status place_all(work *w, merlin_maps *maps)
     if (s == OK) s = place(w, &w->full.depth, &maps->depth);
     if (s == OK) s = place(w, &w->full.mask, &maps->mask);
     if (s == OK) s = place(w, &w->reconstruction, &maps->reconstruction);
-    if (s != OK) return s;
-    multiply_mask(&w->crop_photo, &w->crop_mask);
-    return place(w, &w->crop_photo, &maps->photo);
+    return s == OK ? place_photo(w, &maps->photo) : s;
 }
 
 static status estimate(merlin_model *model, work *w, const merlin_image *mask, merlin_maps *maps)

@@ -101,9 +101,14 @@ status canvas_draw_end(canvas *c, canvas_drawing *d)
     return s;
 }
 
+static void copy_row(const void *context, int y, void *codes)
+{
+    const canvas *c = context;
+    size_t row = 3 * (size_t)c->width;
+    memcpy(codes, c->rgb + (size_t)y * row, row);
+}
+
 status canvas_write(const canvas *c, const char *path)
 {
-    pixel_codes p = {c->rgb, c->width, c->height, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
-    status s = vips_begin();
-    return s == OK ? codes_write_png(path, &p) : s;
+    return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, copy_row, c});
 }
