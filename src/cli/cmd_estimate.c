@@ -10,6 +10,7 @@
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
+#include "image/canvas.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -58,8 +59,10 @@ static status parse(int *argc, char ***argv, request *r)
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
 typedef struct lap_times {
-    double start, model; /* of the program: loading it, and its weights; the first photograph's alone */
-    double read, write, total;
+    double start, model,
+        compile; /* of the program: loading it, its weights, its network; the first photograph's alone */
+    double read; /* the first photograph's: the wait for it after all this */
+    double write, total;
 } lap_times;
 
 static void print_json(const photo_job *job, const merlin_maps *maps, const lap_times *laps)
@@ -113,7 +116,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
     laps->write = lap(&clock);
-    laps->total = laps->start + laps->model + laps->read + clock - began;
+    laps->total = laps->start + laps->model + laps->compile + laps->read + clock - began;
     if (s == OK) announce(r, job, &maps, laps);
     merlin_maps_free(&maps);
     return s;
@@ -129,6 +132,23 @@ static status estimate_one(const request *r, const photo_job *job)
     return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
 }
 
+static void *find_font(void *unused)
+{
+    canvas_find_font();
+    return unused;
+}
+
+/* The overview's font is looked for while the network runs. */
+static status take_first_apart(const request *r, const photo_job *job, merlin_image *photo, merlin_image *mask,
+                               lap_times *laps)
+{
+    pthread_t font;
+    bool looking = pthread_create(&font, NULL, find_font, NULL) == 0;
+    status s = take_apart(r, job, photo, mask, laps);
+    if (looking) pthread_join(font, NULL);
+    return s;
+}
+
 /* The first photograph is read while the weights are, and the network made ready. */
 static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready)
 {
@@ -138,14 +158,15 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     photo_ahead first;
     photo_begin(&first, job);
     status opened = (status)merlin_model_open(weights, &r->model), s = OK;
+    laps.model = lap(&now);
     if (opened == OK) opened = network_prepare(r->model->network, r->params.size);
     *ready = opened == OK;
-    laps.model = lap(&now);
+    laps.compile = lap(&now);
     char words[1024];
     if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
     s = photo_finish(&first, &photo, &mask);
     laps.read = lap(&now);
-    if (opened == OK) return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
+    if (opened == OK) return s == OK ? take_first_apart(r, job, &photo, &mask, &laps) : s;
     merlin_image_free(&photo);
     merlin_image_free(&mask);
     return fail(opened, "%s", words);

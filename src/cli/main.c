@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "image/start.h"
 
 static const cli_command commands[] = {
     {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
@@ -55,6 +56,7 @@ static void reuse_memory(void)
 int main(int argc, char **argv)
 {
     reuse_memory();
+    vips_without_modules();
     if (argc < 2) {
         print_help(stderr);
         return 2;

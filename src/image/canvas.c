@@ -112,3 +112,15 @@ status canvas_write(const canvas *c, const char *path)
 {
     return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, copy_row, c});
 }
+
+void canvas_find_font(void)
+{
+    canvas c;
+    canvas_drawing d = {0};
+    if (canvas_new(&c, 16, 16) != OK) return;
+    if (canvas_draw_begin(&c, &d) == OK) {
+        fputs("<text x=\"0\" y=\"12\" font-size=\"12\">x</text>\n", d.out);
+        (void)canvas_draw_end(&c, &d); /* whoever draws next will hear of it */
+    }
+    canvas_free(&c);
+}

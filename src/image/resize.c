@@ -7,7 +7,7 @@
 
 /* One axis of a separable resampling: output i is the sum of weights[i × taps + k] × input[first[i] + k]. */
 typedef struct kernel {
-    int taps;
+    int count, taps;
     int *first;
     float *weights;
 } kernel;
@@ -51,6 +51,7 @@ static void fill_weights(kernel *k, int from, int to)
 static status kernel_new(kernel *k, int from, int to)
 {
     int wanted = to > from ? 6 : (int)ceil((double)from / to) + 1;
+    k->count = to;
     k->taps = wanted < from ? wanted : from;
     k->first = malloc((size_t)to * sizeof *k->first);
     k->weights = calloc((size_t)to * (size_t)k->taps, sizeof *k->weights);
@@ -65,9 +66,9 @@ static void kernel_free(kernel *k)
     free(k->weights);
 }
 
-static void resize_row(const float *row, int channels, const kernel *k, int width, float *out)
+static void resize_row(const float *row, int channels, const kernel *k, float *out)
 {
-    for (int x = 0; x < width; x++, out += channels) {
+    for (int x = 0; x < k->count; x++, out += channels) {
         const float *in = row + (size_t)k->first[x] * (size_t)channels, *w = k->weights + (size_t)x * (size_t)k->taps;
         for (int t = 0; t < k->taps; t++)
             for (int c = 0; c < channels; c++)
@@ -91,7 +92,7 @@ static status resize_rows(const img *from, const img *mask, const kernel *k, img
     int failed = 0;
 #pragma omp parallel
     {
-        float *product = mask ? malloc((size_t)(from->width) * (size_t)from->channels * sizeof *product) : NULL;
+        float *product = mask ? malloc((size_t)from->width * (size_t)from->channels * sizeof *product) : NULL;
         bool ready = product || !mask;
         if (!ready) {
 #pragma omp atomic write
@@ -101,7 +102,7 @@ static status resize_rows(const img *from, const img *mask, const kernel *k, img
         for (int y = 0; y < to->height; y++) {
             if (!ready) continue;
             const float *row = mask ? multiply_row(from, mask, y, product) : img_at(from, 0, y);
-            resize_row(row, from->channels, k, to->width, img_at(to, 0, y));
+            resize_row(row, from->channels, k, img_at(to, 0, y));
         }
         free(product);
     }
