@@ -7,7 +7,6 @@
 #include "base/progress.h"
 #include "estimate/api.h"
 #include "estimate/exposure.h"
-#include "estimate/mask.h"
 #include "estimate/relight_env.h"
 #include "image/resize.h"
 
@@ -60,20 +59,37 @@ static status check_photo(const img *photo)
     return OK;
 }
 
-static status choose_mask(work *w, const merlin_image *given, merlin_maps *maps)
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out)
 {
-    mask_choice choice;
-    img mask = {0};
+    double began = clock_seconds();
+    img picture = img_of(photo), mask = {0};
+    *out = (photo_object){0};
     if (given) mask = img_of(given);
-    status s = mask_choose(&w->photo, &mask, &w->mask, &choice);
-    if (s == OK) s = crop_around(&w->mask, &w->crop);
-    if (s != OK) return s;
-    maps->mask_source = choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
-    maps->mask_confidence = choice.confidence;
+    status s = check_photo(&picture);
+    if (s == OK) s = mask_choose(&picture, &mask, &out->mask, &out->choice);
+    if (s == OK) s = crop_around(&out->mask, &out->crop);
+    if (s != OK) photo_object_free(out);
+    out->seconds = clock_seconds() - began;
+    return s;
+}
+
+void photo_object_free(photo_object *object)
+{
+    img_free(&object->mask);
+}
+
+/* The object's mask becomes the run's. */
+static void take_object(work *w, photo_object *object, merlin_maps *maps)
+{
+    w->mask = object->mask;
+    w->crop = object->crop;
+    object->mask = (img){0};
+    maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
+    maps->mask_confidence = object->choice.confidence;
     maps->crop.x = w->crop.x;
     maps->crop.y = w->crop.y;
     maps->crop.side = w->crop.side;
-    return OK;
+    maps->timing.mask = object->seconds;
 }
 
 /* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
@@ -161,15 +177,12 @@ static status place_all(work *w, merlin_maps *maps)
     return s == OK ? place_photo(w, &maps->photo) : s;
 }
 
-static status estimate(merlin_model *model, work *w, const merlin_image *mask, merlin_maps *maps)
+static status estimate(merlin_model *model, work *w, merlin_maps *maps)
 {
     network *n = model->network;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
-    status s = check_photo(&w->photo);
-    if (s == OK) s = choose_mask(w, mask, maps);
-    if (s == OK) s = lap(w, &t->mask);
-    if (s == OK) s = network_prepare(n, w->params->size);
+    status s = network_prepare(n, w->params->size);
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);
@@ -185,16 +198,29 @@ static status estimate(merlin_model *model, work *w, const merlin_image *mask, m
     return s;
 }
 
-merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
-                              const merlin_params *params, merlin_maps *maps)
+status estimate_object(merlin_model *model, const merlin_image *photo, photo_object *object,
+                       const merlin_params *params, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
     work w = {.params = params ? params : &defaults, .photo = img_of(photo)};
     maps->size = w.params->size;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
-    status s = estimate(model, &w, mask, maps);
+    take_object(&w, object, maps);
+    status s = estimate(model, &w, maps);
     work_free(&w);
     if (s != OK) merlin_maps_free(maps);
+    return s;
+}
+
+merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
+                              const merlin_params *params, merlin_maps *maps)
+{
+    photo_object object;
+    *maps = (merlin_maps){0};
+    status s = photo_object_choose(photo, mask, &object);
+    if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK) s = estimate_object(model, photo, &object, params, maps);
+    photo_object_free(&object);
     return result_of(s);
 }

@@ -139,6 +139,7 @@ static int least(int a, int b)
 /* From twice as many points a side as the caster has, as long as the picture shows them. */
 static status cast_shadows(const stage *s, vec3 light, img *full, img *low)
 {
+    if (vec3_dot(light, light) < 1e-12f) return OK; /* the camera sees nothing that its flash does not */
     int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
     img seen = {0};
     status result = shadow_cast(&s->caster, light, side, side, &seen);
