@@ -56,7 +56,7 @@ static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *r
     status s = make_object(r, index, &object);
     if (s != OK) return s;
     s = make_environment(r, index, &env);
-    if (s == OK) s = trace_scene_new(r->device, &object, scn_surface_eval, &scene);
+    if (s == OK) s = trace_scene_new(r->device, &object, scn_surfaces_eval, &scene);
     if (s == OK) s = render_image(&scene, &o->image, o->seed, index, o->environment ? &env : NULL, out);
     *rays = scene.rays;
     trace_scene_free(&scene);

@@ -1,7 +1,6 @@
 #include "render/paths.h"
 
 #include "optics/brdf.h"
-#include "render/bundle.h"
 
 static const vec3 black = {0, 0, 0};
 
@@ -73,39 +72,72 @@ vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, co
     return trace_occluded(scene, origin, vec3_scale(to_light, 1 / distance), distance) ? black : radiance;
 }
 
-/* Bounce 2 of a path that has met `hit`, and bounce 3. */
-static void follow_point_light(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
-                               const point_light *light, const path_source *source, vec3 bounce[2])
+/* ---- paths that meet another surface --------------------------------------------------------------------------- */
+
+/* How many paths are begun before those of them that arrived somewhere go on together. */
+enum { WAVE = 16 * TRACE_PACKET };
+
+typedef struct arrivals {
+    int count;
+    int pixel[WAVE];
+    uint32_t index[WAVE]; /* of the path in its sequence */
+    vec3 throughput[WAVE], view[WAVE];
+    trace_hit hit[WAVE];
+    scn_surface at[WAVE];
+} arrivals;
+
+static void arrive(arrivals *a, const bundle *b, int lane, const trace_hit *hit)
 {
-    vec3 throughput = lanes_at(&b->throughput, lane), l;
-    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
-    scn_surface from, to;
-    real pdf;
-    trace_surface_at(scene, hit, v, &from);
-    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, point_light_direct(scene, &from, v, light))));
-    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, b->index[lane]);
-    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, b->index[lane]).u2;
-    if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) return;
-    if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
-    v = vec3_scale(l, -1);
-    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light))));
+    int k = a->count++;
+    a->pixel[k] = b->pixel[lane];
+    a->index[k] = b->index[lane];
+    a->throughput[k] = lanes_at(&b->throughput, lane);
+    a->view[k] = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    a->hit[k] = *hit;
 }
 
-void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
-                       const path_source *source, int count, vec3 bounce[2])
+/* Bounce 2 of arrival k, and bounce 3. */
+static void follow_point_light(trace_scene *scene, const arrivals *a, int k, const point_light *light,
+                               const path_source *source, vec3 bounce[2])
+{
+    vec3 throughput = a->throughput[k], l;
+    const scn_surface *from = &a->at[k];
+    scn_surface to;
+    real pdf;
+    vec3 second = point_light_direct(scene, from, a->view[k], light);
+    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, second)));
+    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, a->index[k]);
+    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, a->index[k]).u2;
+    if (!scatter(scene, from, a->view[k], start, choice, &l, &pdf, &throughput)) return;
+    if (!trace_surface(scene, trace_leave(from), l, &to)) return;
+    vec3 third = point_light_direct(scene, &to, vec3_scale(l, -1), light);
+    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, third)));
+}
+
+void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
+                       const path_source *source, int paths, vec3 (*bounce)[2])
 {
     bundle b;
     trace_hit hits[TRACE_PACKET];
-    bounce[0] = bounce[1] = black;
-    for (int done = 0; done < count; done += TRACE_PACKET) {
-        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
-        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
-        bundle_scatter(&b, source->sequence, scene->diffuse_only);
-        trace_packet(scene, &b.rays, hits);
-        for (int i = 0; i < abreast; i++)
-            if (hits[i].distance >= 0) follow_point_light(scene, &b, i, &hits[i], light, source, bounce);
+    arrivals a;
+    for (int i = 0; i < count; i++)
+        bounce[i][0] = bounce[i][1] = black;
+    for (int done = 0; done < count * paths;) {
+        a.count = 0;
+        for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
+            bundle_begin(&b, pixels, count, paths, done);
+            bundle_scatter(&b, source->sequence, scene->diffuse_only);
+            trace_packet(scene, &b.rays, hits);
+            for (int i = 0; i < b.count; i++)
+                if (hits[i].distance >= 0) arrive(&a, &b, i, &hits[i]);
+        }
+        trace_surfaces_at(scene, a.hit, a.view, a.count, a.at);
+        for (int k = 0; k < a.count; k++)
+            follow_point_light(scene, &a, k, light, source, bounce[a.pixel[k]]);
     }
 }
+
+/* ---- the environment ------------------------------------------------------------------------------------------- */
 
 /* The environment's light at one surface, by a direction drawn from the map. */
 static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
@@ -129,15 +161,12 @@ static vec3 environment_seen(const environment *env, vec3 l, real pdf)
     return vec3_scale(radiance, pdf / (pdf + light_pdf));
 }
 
-/* The light that a path brings once it has met `hit`: from the map at up to two more surfaces. */
-static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
-                               const environment *env, rng *r)
+/* The light that arrival k brings: from the map at up to two more surfaces. */
+static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, const environment *env, rng *r)
 {
     enum { MORE_SURFACES = 2 };
-    vec3 sum = black, throughput = lanes_at(&b->throughput, lane), l;
-    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
-    scn_surface from, to;
-    trace_surface_at(scene, hit, v, &from);
+    vec3 sum = black, throughput = a->throughput[k], v = a->view[k], l;
+    scn_surface from = a->at[k], to;
     for (int left = MORE_SURFACES; left > 0; left--) {
         real pdf;
         vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, random_start(r)));
@@ -154,16 +183,22 @@ static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, co
     return sum;
 }
 
-/* The map's light at the first surfaces, by directions drawn from the map. */
-static vec3 first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q)
+static void add(vec3 *radiance, const bundle *b, int lane, vec3 light)
 {
-    lanes radiance = {0};
-    float light_pdf[TRACE_PACKET] = {0};
-    vec3 sum = black;
-    for (int i = 0; i < b->count; i++) {
+    vec3 *sum = &radiance[b->pixel[lane]];
+    *sum = vec3_add(*sum, clamp_path(vec3_mul(lanes_at(&b->throughput, lane), light)));
+}
+
+/* The map's light at the first surfaces, by directions drawn from the map. */
+static void first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+                                     vec3 *radiance)
+{
+    lanes light;
+    float light_pdf[TRACE_PACKET];
+    for (int i = 0; i < TRACE_PACKET; i++) {
         path_start u = sequence_at(q, SEQUENCE_LIGHT, b->index[i]);
         vec3 l;
-        lanes_put(&radiance, i, environment_sample(env, u.u1, u.u2, &l, &light_pdf[i]));
+        lanes_put(&light, i, environment_sample(env, u.u1, u.u2, &l, &light_pdf[i]));
         b->rays.dx[i] = l.x;
         b->rays.dy[i] = l.y;
         b->rays.dz[i] = l.z;
@@ -171,33 +206,43 @@ static vec3 first_environment_direct(trace_scene *scene, bundle *b, const enviro
     bundle_reflect(b, light_pdf, scene->diffuse_only);
     trace_packet_free(scene, &b->rays);
     for (int i = 0; i < b->count; i++)
-        if (b->rays.valid[i])
-            sum = vec3_add(sum, clamp_path(vec3_mul(lanes_at(&b->throughput, i), lanes_at(&radiance, i))));
-    return sum;
+        if (b->rays.valid[i]) add(radiance, b, i, lanes_at(&light, i));
 }
 
-vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
-                       int count)
+/* What the first surfaces get from the map; paths that meet another surface arrive there. */
+static void begin_environment_paths(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+                                    vec3 *radiance, arrivals *a)
+{
+    trace_hit hits[TRACE_PACKET];
+    first_environment_direct(scene, b, env, q, radiance);
+    bundle_scatter(b, q, scene->diffuse_only);
+    trace_packet(scene, &b->rays, hits);
+    for (int i = 0; i < b->count; i++) {
+        vec3 l = vec3_make(b->rays.dx[i], b->rays.dy[i], b->rays.dz[i]);
+        if (hits[i].distance >= 0)
+            arrive(a, b, i, &hits[i]);
+        else if (b->rays.valid[i])
+            add(radiance, b, i, environment_seen(env, l, b->pdf[i]));
+    }
+}
+
+void environment_paths(trace_scene *scene, const path_points *pixels, int count, const environment *env,
+                       const path_source *source, int paths, vec3 *radiance)
 {
     bundle b;
-    trace_hit hits[TRACE_PACKET];
-    vec3 sum = black;
-    for (int done = 0; done < count; done += TRACE_PACKET) {
-        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
-        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
-        for (int i = abreast; i < TRACE_PACKET; i++)
-            b.rays.dx[i] = b.rays.dy[i] = b.rays.dz[i] = 1;
-        sum = vec3_add(sum, first_environment_direct(scene, &b, env, source->sequence));
-        bundle_scatter(&b, source->sequence, scene->diffuse_only);
-        trace_packet(scene, &b.rays, hits);
-        for (int i = 0; i < abreast; i++) {
-            vec3 l = vec3_make(b.rays.dx[i], b.rays.dy[i], b.rays.dz[i]), brought = black;
-            if (hits[i].distance >= 0)
-                brought = follow_environment(scene, &b, i, &hits[i], env, source->random);
-            else if (b.rays.valid[i])
-                brought = clamp_path(vec3_mul(lanes_at(&b.throughput, i), environment_seen(env, l, b.pdf[i])));
-            sum = vec3_add(sum, brought);
+    arrivals a;
+    for (int i = 0; i < count; i++)
+        radiance[i] = black;
+    for (int done = 0; done < count * paths;) {
+        a.count = 0;
+        for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
+            bundle_begin(&b, pixels, count, paths, done);
+            begin_environment_paths(scene, &b, env, source->sequence, radiance, &a);
+        }
+        trace_surfaces_at(scene, a.hit, a.view, a.count, a.at);
+        for (int k = 0; k < a.count; k++) {
+            vec3 *sum = &radiance[a.pixel[k]];
+            *sum = vec3_add(*sum, follow_environment(scene, &a, k, env, source->random));
         }
     }
-    return sum;
 }

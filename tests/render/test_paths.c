@@ -155,16 +155,16 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         point_light flash = {{0, 0, 0}, 5.95f, true};
         rng r = rng_at(7, (uint64_t)k, 0);
         sequence spread = sequence_of(&r);
-        path_source source = {&spread, 0, &r};
+        path_source source = {&spread, &r};
         double sum[2] = {0, 0};
         vec3 view = vec3_normalize(vec3_scale(p, -1));
-        path_points points = {&at, &view, 1};
+        path_points points = {&at, &view, 1, 0};
         enum { ABREAST = 100 };
-        for (; source.index < PATHS; source.index += ABREAST) {
-            vec3 bounce[2];
-            point_light_paths(&s.scene, &points, &flash, &source, ABREAST, bounce);
-            sum[0] += bounce[0].x;
-            sum[1] += bounce[1].x;
+        for (; points.index < PATHS; points.index += ABREAST) {
+            vec3 bounce[1][2];
+            point_light_paths(&s.scene, &points, 1, &flash, &source, ABREAST, bounce);
+            sum[0] += bounce[0][0].x;
+            sum[1] += bounce[0][1].x;
         }
         /* 400000 paths, of which a tenth or more arrive: relative deviation below 0.005, and the quadratures' own */
         assert_within(sum[0] / PATHS, bounce2_at(p, floor_normal, on_wall, wall_normal, 400), 0.01);

@@ -39,8 +39,8 @@ static void same_seed_and_index_make_the_same_object(void **state)
         assert_memory_equal(a.normal, b.normal, a.vertex_count * sizeof(vec3));
         for (uint32_t t = 0; t < a.triangle_count; t += 97) {
             scn_surface at = {0}, bt = {0};
-            scn_surface_eval(&a, t, 0.2f, 0.3f, &at);
-            scn_surface_eval(&b, t, 0.2f, 0.3f, &bt);
+            scn_surfaces_eval(&a, &(scn_place){t, 0.2f, 0.3f}, 1, &at);
+            scn_surfaces_eval(&b, &(scn_place){t, 0.2f, 0.3f}, 1, &bt);
             assert_memory_equal(&at, &bt, sizeof at);
         }
         scn_object_free(&a);
@@ -213,8 +213,8 @@ static void materials_are_continuous_but_at_borders(void **state)
         for (int k = 0; k < 200; k++) {
             uint32_t t = (uint32_t)rng_below(&r, (int)o.triangle_count);
             scn_surface a, b;
-            scn_surface_eval(&o, t, 0.3f, 0.3f, &a);
-            scn_surface_eval(&o, t, 0.31f, 0.3f, &b); /* a hundredth of a triangle on */
+            scn_surfaces_eval(&o, &(scn_place){t, 0.3f, 0.3f}, 1, &a);
+            scn_surfaces_eval(&o, &(scn_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle on */
             vec3 d = vec3_sub(a.albedo, b.albedo);
             pairs++;
             jumps += vec3_length(d) > 0.1f || fabsf(a.roughness - b.roughness) > 0.1f;
@@ -233,10 +233,10 @@ static void surface_positions_are_interpolated(void **state)
     generate(5, &o);
     for (uint32_t t = 0; t < o.triangle_count; t += 31) {
         scn_surface a, b, c, m;
-        scn_surface_eval(&o, t, 0, 0, &a);
-        scn_surface_eval(&o, t, 1, 0, &b);
-        scn_surface_eval(&o, t, 0, 1, &c);
-        scn_surface_eval(&o, t, 0.25f, 0.5f, &m);
+        scn_surfaces_eval(&o, &(scn_place){t, 0, 0}, 1, &a);
+        scn_surfaces_eval(&o, &(scn_place){t, 1, 0}, 1, &b);
+        scn_surfaces_eval(&o, &(scn_place){t, 0, 1}, 1, &c);
+        scn_surfaces_eval(&o, &(scn_place){t, 0.25f, 0.5f}, 1, &m);
         vec3 want = vec3_fma(vec3_fma(vec3_scale(a.position, 0.25f), 0.25f, b.position), 0.5f, c.position);
         assert_memory_equal(&b.position, &o.position[o.triangle[t][1]], sizeof(vec3));
         assert_float_equal(vec3_length(vec3_sub(want, m.position)), 0, 1e-6f);
