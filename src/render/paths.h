@@ -28,10 +28,12 @@ typedef struct path_source {
     rng *random;
 } path_source;
 
-/* Bounce 1: radiance toward view, without looking for shadows. */
-vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
+/* Bounce 1: radiance of points toward their views, without looking for shadows. */
+void point_light_unshadowed(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                            const point_light *light, vec3 *radiance);
 /* The same, zero where another surface or the surface's own back is in the way. */
-vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
+void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                        const point_light *light, vec3 *radiance);
 /* Bounces 2 and 3 for each of `count` pixels, the sums over so many paths each. */
 void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
                        const path_source *source, int paths, vec3 (*bounce)[2]);

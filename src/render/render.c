@@ -32,6 +32,7 @@ typedef struct strip {
     trace_hit hit[STRIP * VISIBILITY_MAX_POINTS];
     vec3 view[STRIP * VISIBILITY_MAX_POINTS];
     scn_surface at[STRIP * VISIBILITY_MAX_POINTS];
+    vec3 radiance[STRIP * VISIBILITY_MAX_POINTS]; /* by one point light */
 } strip;
 
 typedef struct renderer {
@@ -99,19 +100,21 @@ static void store_maps(renderer *r, const pixel *p)
     *img_at(&r->out->mask, p->x, p->y) = p->coverage;
 }
 
-static vec3 mean_direct(renderer *r, const pixel *p, const point_light *light)
-{
-    vec3 sum = {0, 0, 0};
-    for (int i = 0; i < p->count; i++)
-        sum = vec3_add(sum, light->at_eye ? point_light_unshadowed(r->scene, &p->at[i], p->view[i], light)
-                                          : point_light_direct(r->scene, &p->at[i], p->view[i], light));
-    return vec3_scale(sum, p->coverage / (float)p->count);
-}
-
 static void store_direct(renderer *r, const point_light *light, const img *image)
 {
-    for (int i = 0; i < r->strip.count; i++)
-        store(image, &r->strip.pixel[i], mean_direct(r, &r->strip.pixel[i], light), 1);
+    strip *s = &r->strip;
+    if (light->at_eye)
+        point_light_unshadowed(r->scene, s->at, s->view, s->points, light, s->radiance);
+    else
+        point_light_direct(r->scene, s->at, s->view, s->points, light, s->radiance);
+    const vec3 *radiance = s->radiance;
+    for (int k = 0; k < s->count; k++) {
+        const pixel *p = &s->pixel[k];
+        vec3 sum = {0, 0, 0};
+        for (int i = 0; i < p->count; i++)
+            sum = vec3_add(sum, *radiance++);
+        store(image, p, sum, p->coverage / (float)p->count);
+    }
 }
 
 /* Where the paths of the strip's pixels start. */

@@ -44,7 +44,7 @@ void trace_device_free(trace_device *device)
     free(device);
 }
 
-static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object)
+static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object, enum RTCBuildQuality quality)
 {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!geometry) return device_fail(device, "make a geometry");
@@ -62,21 +62,28 @@ static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object 
         vertices[3 * i + 2] = (float)object->position[i].z;
     }
     memcpy(triangles, object->triangle, (size_t)object->triangle_count * sizeof *object->triangle);
+    rtcSetGeometryBuildQuality(geometry, quality);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(bvh, geometry);
     rtcReleaseGeometry(geometry);
     return OK;
 }
 
-status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface,
+/* Per triangle. Measured: the quick build saves 0.18 µs a triangle and costs some 15 ns a ray. */
+static const double few_rays = 12;
+
+status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface, double rays,
                        trace_scene *out)
 {
     *out = (trace_scene){.object = object, .surface = surface};
     if (object->triangle_count == 0) return fail(ERROR_INPUT, "the object has no triangles");
     RTCScene bvh = rtcNewScene(device->device);
     if (!bvh) return device_fail(device->device, "make a scene");
+    bool quick = rays < few_rays * (double)object->triangle_count;
+    enum RTCBuildQuality quality = quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
     rtcSetSceneFlags(bvh, RTC_SCENE_FLAG_ROBUST);
-    status s = attach_triangles(device->device, bvh, object);
+    rtcSetSceneBuildQuality(bvh, quality);
+    status s = attach_triangles(device->device, bvh, object, quality);
     if (s == OK) {
         rtcCommitScene(bvh);
         if (rtcGetDeviceError(device->device) != RTC_ERROR_NONE) s = fail(ERROR_DEVICE, "Embree cannot build its tree");
@@ -159,12 +166,13 @@ void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRA
     }
 }
 
-void trace_packet_free(trace_scene *scene, ray_packet *rays)
+void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far)
 {
     struct RTCRay16 packet;
     struct RTCIntersectContext context;
     _Alignas(64) int valid[TRACE_PACKET];
     fill_rays(scene, rays, &packet, valid);
+    if (far) memcpy(packet.tfar, far, sizeof packet.tfar);
     rtcInitIntersectContext(&context);
     rtcOccluded16(valid, bvh_of(scene), &context, &packet);
     for (int i = 0; i < TRACE_PACKET; i++)

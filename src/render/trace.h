@@ -3,7 +3,7 @@
  *     trace_device *device;
  *     status s = trace_device_new(&device);
  *     trace_scene scene;
- *     s = trace_scene_new(device, &object, scn_surfaces_eval, &scene);
+ *     s = trace_scene_new(device, &object, scn_surfaces_eval, 1e6, &scene);
  *     scn_surface hit;
  *     if (trace_surface(&scene, origin, direction, &hit)) ...
  *     trace_scene_free(&scene);
@@ -36,8 +36,9 @@ typedef struct trace_scene {
 status trace_device_new(trace_device **out);
 void trace_device_free(trace_device *device);
 
-/* Builds the hierarchy over the object's triangles. The object must outlive the scene. */
-status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface,
+/* Builds the hierarchy over the object's triangles. The object must outlive the scene. rays: about how many will be
+ * traced; few do not repay the time that a better hierarchy takes. What they meet is the same. */
+status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface, double rays,
                        trace_scene *out);
 void trace_scene_free(trace_scene *scene);
 
@@ -60,8 +61,8 @@ typedef struct ray_packet {
 
 /* What each of the traced rays meets first. */
 void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRACE_PACKET]);
-/* Clears valid where anything lies in the way, however far. */
-void trace_packet_free(trace_scene *scene, ray_packet *rays);
+/* Clears valid where anything lies in the way, up to these distances; NULL: however far. */
+void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far);
 
 /* The surfaces at hits, each seen along -view (view: unit, from the surface to the eye): both normals turned to the
  * viewer's side, the shading normal bent until the viewer sees it at least grazing. */

@@ -147,8 +147,7 @@ static void add_bump(const bump *b, const material_points *at, lane_set wanted, 
     }
 }
 
-void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2],
-                    float d[2][LANES])
+void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES])
 {
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < LANES; i++)

@@ -59,7 +59,6 @@ typedef struct material_points {
 void material_eval(const scn_material *material, const material_points *at, lanes *albedo, float roughness[LANES]);
 
 /* Differences d[0], d[1] of the normal detail's height a unit length along two unit tangents. */
-void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2],
-                    float d[2][LANES]);
+void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES]);
 
 #endif

@@ -47,8 +47,7 @@ static void scratches(const pattern *p, const lanes *at, float out[LANES])
     for (uint32_t k = 0; k < 3; k++) {
 #pragma omp simd
         for (int i = 0; i < LANES; i++)
-            lanes_put(&s, i,
-                      vec3_make(0.25f * q.x[i] + 0.1f * q.z[i], 6 * q.y[i] + 1.5f * q.x[i], 0.25f * q.z[i]));
+            lanes_put(&s, i, vec3_make(0.25f * q.x[i] + 0.1f * q.z[i], 6 * q.y[i] + 1.5f * q.x[i], 0.25f * q.z[i]));
         noise_gradients(&s, p->seed + k, line);
         noise_gradients(&q, p->seed + 7 + k, where);
 #pragma omp simd

@@ -25,7 +25,7 @@ static void stage_open(stage *s, scn_object object, trace_surface_function *surf
 {
     s->object = object;
     assert_int_equal(trace_device_new(&s->device), OK);
-    assert_int_equal(trace_scene_new(s->device, &s->object, surface, &s->scene), OK);
+    assert_int_equal(trace_scene_new(s->device, &s->object, surface, 1e6, &s->scene), OK);
 }
 
 static void stage_close(stage *s)
@@ -227,9 +227,13 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     scn_surface under = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f}, beside = under;
     beside.position.x = 0.5f;
     vec3 view = vec3_normalize(vec3_make(0, 0.3f, 1));
-    assert_true(point_light_direct(&s.scene, &under, view, &above).x == 0);
-    assert_true(point_light_unshadowed(&s.scene, &under, view, &above).x > 0);
-    assert_true(point_light_direct(&s.scene, &beside, view, &above).x > 0);
+    scn_surface both[2] = {under, beside};
+    vec3 views[2] = {view, view}, shadowed[2], unshadowed[2];
+    point_light_direct(&s.scene, both, views, 2, &above, shadowed);
+    point_light_unshadowed(&s.scene, both, views, 2, &above, unshadowed);
+    assert_true(shadowed[0].x == 0);
+    assert_true(unshadowed[0].x > 0);
+    assert_true(shadowed[1].x > 0);
     stage_close(&s);
 }
 

@@ -188,7 +188,8 @@ static void surfaces_have_materials_in_range_and_unit_normals(void **state)
         for (int k = 0; k < 500; k++) {
             float u = rng_uniform(&r), v = rng_uniform(&r) * (1 - u);
             scn_surface s;
-            scn_surface_eval(&o, (uint32_t)rng_below(&r, (int)o.triangle_count), u, v, &s);
+            scn_place at = {(uint32_t)rng_below(&r, (int)o.triangle_count), u, v};
+            scn_surfaces_eval(&o, &at, 1, &s);
             assert_true(is_finite(s.position) && is_finite(s.normal));
             assert_float_equal(vec3_length(s.normal), 1, 1e-5f);
             assert_float_equal(vec3_length(s.geometric_normal), 1, 1e-5f);
@@ -253,6 +254,30 @@ static void a_senseless_field_of_view_is_refused(void **state)
     scn_object_free(&o);
 }
 
+/* Every pattern gets its turn within forty objects; what a point is given must not depend on those beside it. */
+static void point_looks_the_same_alone_and_among_others(void **state)
+{
+    (void)state;
+    enum { POINTS = 37 };
+    for (uint64_t k = 0; k < 40; k++) {
+        scn_object o;
+        rng r = rng_at(3, k, 0);
+        scn_place places[POINTS];
+        scn_surface together[POINTS], alone;
+        assert_int_equal(scn_object_generate(21, k, 60, &o), OK);
+        for (int i = 0; i < POINTS; i++) {
+            uint32_t triangle = (uint32_t)rng_below(&r, (int)o.triangle_count);
+            places[i] = (scn_place){triangle, 0.5f * rng_uniform(&r), 0.5f * rng_uniform(&r)};
+        }
+        scn_surfaces_eval(&o, places, POINTS, together);
+        for (int i = 0; i < POINTS; i++) {
+            scn_surfaces_eval(&o, &places[i], 1, &alone);
+            assert_memory_equal(&alone, &together[i], sizeof alone);
+        }
+        scn_object_free(&o);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -265,6 +290,7 @@ int main(void)
         cmocka_unit_test(materials_are_continuous_but_at_borders),
         cmocka_unit_test(surface_positions_are_interpolated),
         cmocka_unit_test(a_senseless_field_of_view_is_refused),
+        cmocka_unit_test(point_looks_the_same_alone_and_among_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

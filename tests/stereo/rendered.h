@@ -162,7 +162,7 @@ static inline void rendered_capture(const rendered *how, const scn_object *objec
                                  .center_y = 0.5f * (float)how->size};
     }
     assert_int_equal(trace_device_new(&device), OK);
-    assert_int_equal(trace_scene_new(device, object, scn_surface_eval, &r.scene), OK);
+    assert_int_equal(trace_scene_new(device, object, scn_surfaces_eval, 1e6, &r.scene), OK);
     for (int i = 0; i < how->size * how->size; i++)
         rendered_pixel(&r, i % how->size, i / how->size);
     trace_scene_free(&r.scene);
