@@ -26,6 +26,8 @@ static const char help[] =
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
     "                       $MERLIN_MODEL, else merlin-point)\n"
     "      --size N         side of the square the network sees, a multiple of 32 (default 256)\n"
+    "      --views N        the mean over N of the square's 8 orientations: better maps, N times the network's time\n"
+    "                       (default 1)\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
@@ -46,6 +48,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"output", 'o', .text = &r->output},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->quiet},

@@ -25,6 +25,7 @@ static const char help[] =
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
+    "  --views N          maps as merlin estimate --views N makes them (default 1)\n"
     "  --precision P      float32 (default) or bfloat16\n"
     "  --figure F.png     a picture of predictions beside the truth\n"
     "  --figure-rows N    samples shown in it (default 8)\n"
@@ -59,6 +60,7 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->options.weights},
         {"means-file", .text = &r->options.means},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
         {"figure", .text = &r->options.figure},
         {"figure-rows", .integer = &r->options.figure_rows, .low = 1, .high = 64},
@@ -112,7 +114,7 @@ int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
-    request r = {.options = {.figure_rows = 8, .stopped = cli_interrupted}};
+    request r = {.options = {.views = 1, .figure_rows = 8, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();

@@ -39,7 +39,7 @@ static const char help[] =
     "      --no-shadows     brdf without cast shadows, as in the paper\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
-    "      --mask FILE, --size N, --exposure EV\n"
+    "      --mask FILE, --size N, --views N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate\n"
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
     "                       $MERLIN_MODEL, else merlin-point)\n"
@@ -105,6 +105,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"frame", .integer = &r->frame, .low = 32, .high = 1024},
         {"mask", .text = &r->mask},
         {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"model", .text = &r->weights},
         {"output", 'o', .text = &r->output},

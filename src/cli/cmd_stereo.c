@@ -31,7 +31,7 @@ static const char help[] =
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
     "output)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
-    "      --model W, --size N, --exposure EV\n"
+    "      --model W, --size N, --views N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate\n"
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
@@ -100,6 +100,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"mesh", .take = take_mesh, .into = &r->files},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"output", 'o', .text = &r->output},
         {"json", .flag = &r->json},

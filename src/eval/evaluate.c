@@ -79,7 +79,7 @@ static status begin(evaluation *e, const char *first_path)
     if (s != OK) return s;
     e->report->size = first.mask.width;
     sample_free(&first);
-    s = eval_model_open(o->weights, e->report->size, o->type, &e->scorer.model);
+    s = eval_model_open(o->weights, e->report->size, o->type, o->views, &e->scorer.model);
     if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);
     if (s == OK && o->figure) s = eval_sheet_new(o->figure_rows, &e->scorer.sheet);
     if (s != OK) return s;

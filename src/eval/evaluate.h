@@ -1,6 +1,6 @@
 /* A model measured on held-out samples, beside trivial answers.
  *
- *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .count = 200};
+ *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .views = 1};
  *     eval_report report;
  *     status s = eval_run(&options, &report);
  *     if (s == OK) eval_print_table(&report, stdout);
@@ -74,6 +74,7 @@ typedef struct eval_options {
     const char *means; /* file of eval_means_write; NULL: computed from the data itself */
     size_t count;      /* the first so many samples; 0: all */
     nn_type type;
+    int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */
     int figure_rows;    /* samples shown */
     bool quiet;

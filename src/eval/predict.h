@@ -1,7 +1,7 @@
 /* A model as the evaluation runs it: one picture, four lights at a time.
  *
  *     eval_model *m;
- *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, &m);
+ *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, 1, &m);
  *     eval_prediction p;
  *     if (s == OK) s = eval_prediction_new(m, &p);
  *     if (s == OK) s = eval_predict(m, &image, &mask, lights, &p);
@@ -19,8 +19,9 @@ enum { EVAL_LIGHTS = 4 };
 
 typedef struct eval_model eval_model;
 
-/* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. */
-status eval_model_open(const char *weights, int size, nn_type type, eval_model **out);
+/* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. Maps are the mean over `views` orientations of
+ * the picture, 1 to 8 (estimate/view.h); the relighting decoder sees the first alone. */
+status eval_model_open(const char *weights, int size, nn_type type, int views, eval_model **out);
 void eval_model_close(eval_model *m);
 const model_config *eval_model_config(const eval_model *m);
 
@@ -28,6 +29,7 @@ const model_config *eval_model_config(const eval_model *m);
 typedef struct eval_prediction {
     eval_maps maps;
     img flash;                        /* bounce 1 of the flash alone, not clipped */
+    img indirect;                     /* what the network adds to the flash and the surroundings */
     img reconstruction;               /* direct + indirect light, of the surroundings too */
     float sh[9][3];                   /* the surroundings as estimated, by models of setting B; else 0 */
     img by_network[EVAL_LIGHTS];      /* the relighting decoder */

@@ -148,6 +148,29 @@ static void evaluation_is_deterministic(void **state)
     free(json[1]);
 }
 
+/* The decoder sees one view still; the maps, and all that is rendered from them, change. */
+static void more_views_change_the_maps(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    eval_report one, eight;
+    assert_int_equal(eval_run(&options, &one), OK);
+    options.views = 1;
+    assert_int_equal(eval_run(&options, &eight), OK);
+    assert_memory_equal(&one.all, &eight.all, sizeof one.all);
+    options.views = 8;
+    assert_int_equal(eval_run(&options, &eight), OK);
+    for (int row = 0; row < EVAL_ROWS; row++) {
+        if (!one.all.count[row][EVAL_MODEL]) continue;
+        double a = eval_score(&one.all, (eval_row)row, EVAL_MODEL),
+               b = eval_score(&eight.all, (eval_row)row, EVAL_MODEL);
+        if (row == EVAL_RELIT_NETWORK)
+            assert_true(a == b);
+        else
+            assert_true(isfinite(b) && a != b);
+    }
+}
+
 static void a_model_without_extras_leaves_its_rows_empty(void **state)
 {
     const fixture *f = *state;
@@ -268,6 +291,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluation_fills_every_row_and_class),
         cmocka_unit_test(evaluation_is_deterministic),
+        cmocka_unit_test(more_views_change_the_maps),
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
