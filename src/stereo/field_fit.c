@@ -10,13 +10,14 @@
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, FORETELL, SPREAD, MODEL, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, FORETELL, SPREAD, MODEL, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
     const int32_t *slot;   /* spread */
     const bool *news;      /* spread: whose shading has changed since the neighbours saw it; NULL: all */
+    float limit;           /* search */
     pst_shading *next;     /* spread: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_surface *out;      /* store */
@@ -179,6 +180,7 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
     vec3 view = {0, 0, 1};
     const pst_shading *start[4];
     int starts = 0;
+    if (job->task == SEARCH && f->shading[i].cost <= job->limit) return;
     if (job->task == SPREAD) {
         starts = better_neighbours(job, i, start);
         job->next[i] = f->shading[i];
@@ -212,6 +214,7 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
     pst_lobe_data d;
     pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
     if (job->task == FIT) f->shading[i] = fit_after(job, i, &d, begun);
+    if (job->task == SEARCH) f->shading[i] = pst_lobe_search(&d, f->lobe, &f->shading[i]);
     if (job->task == REFINE) f->shading[i] = pst_lobe_refine(&d, f->lobe, &f->shading[i]);
     for (int k = 0; k < starts; k++) {
         pst_shading trial = pst_lobe_refine(&d, f->lobe, start[k]);
@@ -279,6 +282,11 @@ status pst_field_refine(const pst_field *f, double *cost)
     status s = run(&job);
     *cost = job.total;
     return s;
+}
+
+status pst_field_search(const pst_field *f, float limit)
+{
+    return run(&(fit_job){.field = f, .task = SEARCH, .limit = limit});
 }
 
 status pst_field_foretell(const pst_field *f, double *cost)

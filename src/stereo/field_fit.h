@@ -27,6 +27,9 @@ status pst_field_fit(const pst_field *f, double *cost);
 /* The same, started from the field's shading. */
 status pst_field_refine(const pst_field *f, double *cost);
 
+/* Searches on (pst_lobe_search) where the shading costs more than the limit. */
+status pst_field_search(const pst_field *f, float limit);
+
 /* cost: what pst_lobe_foretell says, summed; the field's shading is neither read nor written. */
 status pst_field_foretell(const pst_field *f, double *cost);
 

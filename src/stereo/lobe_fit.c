@@ -387,6 +387,18 @@ pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe)
     return other.cost < best.cost ? other : best;
 }
 
+pst_shading pst_lobe_search(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *so_far)
+{
+    static const vec3 tilted[] = {{0.64f, 0, 0.768f},  {0.32f, 0.554f, 0.768f},   {-0.32f, 0.554f, 0.768f},
+                                  {-0.64f, 0, 0.768f}, {-0.32f, -0.554f, 0.768f}, {0.32f, -0.554f, 0.768f}};
+    pst_shading best = *so_far;
+    for (size_t k = 0; k < sizeof tilted / sizeof *tilted; k++) {
+        pst_shading found = descend(d, lobe, &(pst_shading){.normal = tilted[k]});
+        if (found.cost < best.cost) best = found;
+    }
+    return best;
+}
+
 void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model)
 {
     const float *lx = d->seen.x, *ly = d->seen.y, *lz = d->seen.z, *value = d->seen.value, *usable = d->seen.usable;

@@ -49,6 +49,9 @@ void pst_lobe_prepare(const pst_observations *o, vec3 view, float shadow, pst_lo
 /* The best of several starts: Lambert's fit, and the normal that the brightest observations mirror. */
 pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe);
 
+/* The best of what was found and of starts all around, for a pixel that they did not serve. */
+pst_shading pst_lobe_search(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *so_far);
+
 /* The best near a start. */
 pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start);
 

@@ -1,10 +1,18 @@
 /* Highlights, cast shadows and light from elsewhere told from Lambert's law, under distant lights: a lobe a pixel
  * (lobe_fit.h), what pixels share from a sample (lobe_choice.h), and neighbours' results as further starts. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "stereo/lobe_choice.h"
 
 enum { SAMPLE = 128, SWEEPS = 2 };
+
+/* What makes a pixel worth a longer search: many outliers, and many more than pixels of this object have. */
+static float dear(const pst_field *f, double cost)
+{
+    float many = 0.16f * (float)f->problem->capture->count, usual = (float)(cost / (double)f->count);
+    return fmaxf(many, 2 * usual);
+}
 
 status pst_solve_robust(const pst_problem *p, pst_surface *out)
 {
@@ -20,6 +28,7 @@ status pst_solve_robust(const pst_problem *p, pst_surface *out)
     if (!f.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f.count);
     double cost;
     s = pst_field_fit(&f, &cost);
+    if (s == OK) s = pst_field_search(&f, dear(&f, cost));
     if (s == OK) s = pst_field_spread(&f, SWEEPS);
     if (s == OK) s = pst_field_store(&f, out);
     free(f.shading);
