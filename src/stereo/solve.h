@@ -31,6 +31,7 @@ typedef struct pst_surface {
     img residual;      /* 1, root mean square over the images used, relative to the fit */
     pst_method method; /* the one used */
     pst_light *light;  /* semi, uncalibrated: what was found (count entries); else NULL */
+    bool lights_near;  /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
 } pst_surface;
 
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);
