@@ -3,14 +3,14 @@
 _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local -A options=(
-        [estimate]="--mask --output --model --size --exposure --json --quiet --help"
-        [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --exposure --json --quiet --help"
-        [stereo]="--lights --near --method --mask --ambient --linear --integrate --mesh --output --model --size --exposure
+        [estimate]="--mask --output --model --size --views --exposure --json --quiet --help"
+        [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --views --exposure --json --quiet --help"
+        [stereo]="--lights --near --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
             --sphere --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
-        [eval]="--data --model --means-file --count --precision --figure --figure-rows --means --output --json --quiet
+        [eval]="--data --model --means-file --count --views --precision --figure --figure-rows --means --output --json --quiet
             --help"
         [bench]="--model --config --batch --stereo --quick --json --quiet --help"
         [info]="--tensors --json --help"

@@ -70,12 +70,13 @@ const char *merlin_model_name(const merlin_model *model);
 
 typedef struct merlin_params {
     int size;          /* side of the square the network sees: a multiple of 32, from 64 to 1024; trained at 256 */
+    int views;         /* in how many of the square's eight orientations the network sees it; the mean is taken */
     int auto_exposure; /* 1: bring a photograph that is too dark or too bright to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
 } merlin_params;
 
-merlin_params merlin_params_default(void); /* 256, automatic, never stopped */
+merlin_params merlin_params_default(void); /* 256, 1 view, automatic, never stopped */
 
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 

@@ -113,7 +113,7 @@ static status parse_light(const reader *r, char *const *words, int count, vec3 *
         if (fabsf(v[i]) > LARGEST)
             return fail(ERROR_INPUT, "%s:%d: %.40s is out of range (±%g)", r->where, r->line, word, (double)LARGEST);
     }
-    *out = vec3_make(v[0], v[1], v[2]);
+    *out = vec3_of(v);
     return r->lp ? direction_to_position(r, out) : OK;
 }
 

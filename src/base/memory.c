@@ -2,6 +2,10 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+
+/* A large page, and the least block that is likely to hold two whole ones. */
+static const size_t LARGE_PAGE = (size_t)2 << 20, LEAST_BLOCK = (size_t)6 << 20;
 
 void *memory_new(size_t bytes)
 {
@@ -11,6 +15,7 @@ void *memory_new(size_t bytes)
     if (!whole) return NULL;
     size_t before = MEMORY_ALIGNMENT + (-(uintptr_t)whole & (MEMORY_ALIGNMENT - 1));
     char *block = whole + before;
+    memory_prefer_large_pages(block, bytes);
     ((char **)(void *)block)[-1] = whole;
     return block;
 }
@@ -18,4 +23,12 @@ void *memory_new(size_t bytes)
 void memory_free(void *block)
 {
     if (block) free(((char **)block)[-1]);
+}
+
+void memory_prefer_large_pages(void *block, size_t bytes)
+{
+    if (!block || bytes < LEAST_BLOCK) return;
+    char *first = (char *)block + (-(uintptr_t)block & (LARGE_PAGE - 1));
+    size_t whole = (size_t)((char *)block + bytes - first) & ~(LARGE_PAGE - 1);
+    (void)madvise(first, whole, MADV_HUGEPAGE); /* it is only advice */
 }

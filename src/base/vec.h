@@ -19,6 +19,12 @@ static inline vec3 vec3_make(real x, real y, real z)
     return (vec3){x, y, z};
 }
 
+/* Of three numbers in a row, such as a pixel's. */
+static inline vec3 vec3_of(const real *p)
+{
+    return (vec3){p[0], p[1], p[2]};
+}
+
 static inline vec3 vec3_add(vec3 a, vec3 b)
 {
     return (vec3){a.x + b.x, a.y + b.y, a.z + b.z};

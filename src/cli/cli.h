@@ -1,7 +1,8 @@
 /* What the subcommands share: their table, how they refuse, and how they read option values.
  *
  * A command returns the exit status: 0, 2 for wrong use, 1 for anything else. It prints one line to stderr when it
- * fails, "merlin COMMAND: message". Each reads its options with getopt_long and knows --help, --json and --quiet. */
+ * fails, "merlin COMMAND: message". Each reads its options by a table of cli/options.h and knows --help, --json and
+ * --quiet. */
 #ifndef MERLIN_CLI_CLI_H
 #define MERLIN_CLI_CLI_H
 

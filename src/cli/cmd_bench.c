@@ -1,5 +1,4 @@
 /* merlin bench: what the model, the estimate and the renderer cost on this machine. */
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +6,7 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/bench.h"
 #include "eval/bench_stereo.h"
@@ -28,56 +28,32 @@ static const char help[] =
     "      --quiet         no progress\n"
     "  -h, --help          this text\n";
 
-static const struct option long_options[] = {
-    {"model", required_argument, NULL, 'm'},
-    {"config", required_argument, NULL, 'c'},
-    {"batch", required_argument, NULL, 'b'},
-    {"quick", no_argument, NULL, 'f'},
-    {"stereo", no_argument, NULL, 's'},
-    {"json", no_argument, NULL, 'j'},
-    {"quiet", no_argument, NULL, 'q'},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
-typedef struct bench_request {
+typedef struct request {
     bench_options options;
     const char *model, *config;
     bool stereo, json, help;
-} bench_request;
+} request;
 
-static status parse_option(int option, const char *value, bench_request *r)
+static status parse(int argc, char **argv, request *r)
 {
-    long batch = 0;
-    status s = OK;
-    switch (option) {
-    case 'm':
-        r->model = value;
-        break;
-    case 'c':
-        r->config = value;
-        break;
-    case 'b':
-        s = cli_int("--batch", value, 1, 256, &batch);
-        r->options.batch = (int)batch;
-        break;
-    case 'f':
-        r->options.quick = true;
-        break;
-    case 's':
-        r->stereo = true;
-        break;
-    case 'j':
-        r->json = true;
-        break;
-    case 'q':
-        r->options.quiet = true;
-        break;
-    default:
-        r->help = true;
-        break;
-    }
-    return s;
+    const cli_option options[] = {
+        {"model", .text = &r->model},
+        {"config", .text = &r->config},
+        {"batch", .integer = &r->options.batch, .low = 1, .high = 256},
+        {"quick", .flag = &r->options.quick},
+        {"stereo", .flag = &r->stereo},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->options.quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(&argc, &argv, options);
+    if (s != OK || r->help) return s;
+    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
+    if (r->stereo && (r->model || r->config || r->options.batch))
+        return fail(ERROR_USAGE, "--stereo goes without --model, --config and --batch");
+    if (r->model && r->config) return fail(ERROR_USAGE, "--model and --config exclude each other");
+    return OK;
 }
 
 /* Cost does not depend on what the weights are. */
@@ -99,7 +75,7 @@ static status write_random_weights(const char *config_path, const char *path)
     return s;
 }
 
-static status run(const bench_request *r, const char *weights)
+static status run(const request *r, const char *weights)
 {
     bench_options options = r->options;
     options.weights = weights;
@@ -117,7 +93,7 @@ static status run(const bench_request *r, const char *weights)
     return OK;
 }
 
-static status run_with_random_weights(const bench_request *r)
+static status run_with_random_weights(const request *r)
 {
     char path[] = "/tmp/merlin-bench-XXXXXX.safetensors";
     int file = mkstemps(path, (int)strlen(".safetensors"));
@@ -129,7 +105,7 @@ static status run_with_random_weights(const bench_request *r)
     return s;
 }
 
-static status run_with_model(const bench_request *r)
+static status run_with_model(const request *r)
 {
     char *path;
     status s = photo_find_model(r->model, &path);
@@ -139,7 +115,7 @@ static status run_with_model(const bench_request *r)
     return s;
 }
 
-static status run_stereo(const bench_request *r)
+static status run_stereo(const request *r)
 {
     const bench_options *o = &r->options;
     bench_stereo_report report;
@@ -158,19 +134,9 @@ static status run_stereo(const bench_request *r)
 
 int cmd_bench(int argc, char **argv)
 {
-    bench_request r = {.options = {.program = "/proc/self/exe", .stopped = cli_interrupted}};
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, ":h", long_options, NULL)) != -1;) {
-        if (option == ':') return cli_usage("bench", "%s wants a value", argv[optind - 1]);
-        if (option == '?') return cli_usage("bench", "unknown option %s", argv[optind - 1]);
-        status s = parse_option(option, optarg, &r);
-        if (s != OK) return cli_fail("bench", s);
-    }
+    request r = {.options = {.program = "/proc/self/exe", .stopped = cli_interrupted}};
+    if (parse(argc, argv, &r) != OK) return cli_usage("bench", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    if (optind < argc) return cli_usage("bench", "unexpected argument \"%s\"", argv[optind]);
-    if (r.stereo && (r.model || r.config || r.options.batch))
-        return cli_usage("bench", "--stereo goes without --model, --config and --batch");
-    if (r.model && r.config) return cli_usage("bench", "--model and --config exclude each other");
     cli_catch_interrupts();
     status s = r.stereo ? run_stereo(&r) : r.config ? run_with_random_weights(&r) : run_with_model(&r);
     return s == OK ? 0 : cli_fail("bench", s);

@@ -1,12 +1,12 @@
 /* merlin estimate: photographs to maps. */
 #include <cJSON.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
@@ -22,27 +22,16 @@ static const char help[] =
     "                       photograph's alpha, else NAME.mask.png in a FOLDER, else the object is searched for\n"
     "  -o, --output DIR     where to (default: the photograph's name without ending + .merlin); for several\n"
     "                       photographs a folder each inside DIR\n"
-    "      --model FILE     weights (default: $MERLIN_MODEL, else the shipped models/merlin-point.safetensors)\n"
+    "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
+    "                       $MERLIN_MODEL, else merlin-point)\n"
     "      --size N         side of the square the network sees, a multiple of 32 (default 256)\n"
+    "      --views N        the mean over N of the square's 8 orientations: better maps, N times the network's time\n"
+    "                       (default 1)\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Several photographs: goes on after one that fails, and then exits with 1.\n";
-
-enum { OPTION_MASK = 256, OPTION_MODEL, OPTION_SIZE, OPTION_EXPOSURE, OPTION_JSON, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"output", required_argument, NULL, 'o'},
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"size", required_argument, NULL, OPTION_SIZE},
-    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
 
 typedef struct request {
     const char *mask, *output, *weights;
@@ -51,46 +40,23 @@ typedef struct request {
     merlin_model *model;
 } request;
 
-static status take_option(int option, const char *value, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    switch (option) {
-    case OPTION_MASK:
-        r->mask = value;
-        return OK;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_MODEL:
-        r->weights = value;
-        return OK;
-    case OPTION_SIZE:
-        return photo_parse_size(value, &r->params);
-    case OPTION_EXPOSURE:
-        return photo_parse_exposure(value, &r->params);
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    return optind < argc ? OK : fail(ERROR_USAGE, "no photograph given");
+    const cli_option options[] = {
+        {"mask", .text = &r->mask},
+        {"output", 'o', .text = &r->output},
+        {"model", .text = &r->weights},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    return *argc > 0 ? OK : fail(ERROR_USAGE, "no photograph given");
 }
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
@@ -211,7 +177,7 @@ int cmd_estimate(int argc, char **argv)
 {
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
-    if (parse(argc, argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
     if (r.help) {
         fputs(help, stdout);
         return 0;
@@ -219,7 +185,7 @@ int cmd_estimate(int argc, char **argv)
     cli_catch_interrupts();
     photo_list photos;
     char *weights = NULL;
-    status s = photo_list_make(argv + optind, argc - optind, r.mask, r.output, &photos);
+    status s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     s = photo_find_model(r.weights, &weights);
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);

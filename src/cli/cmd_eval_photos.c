@@ -1,5 +1,4 @@
 /* merlin eval photos: photographs taken apart by several weights, side by side in one picture. */
-#include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "estimate/overview.h"
 #include "image/resize.h"
@@ -17,64 +17,38 @@ static const char help[] =
     "and\n"
     "then albedo, normal, roughness, depth, reconstruction and two new lights, each by all of the weights side by "
     "side.\n\n"
-    "      --model W        weights; once for each column of tiles, before and after say, at most 4\n"
+    "      --model W        weights, a file or a shipped name; once for each column of tiles, before and after say, at "
+    "most 4\n"
     "  -o, --output F.png   the picture\n"
     "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
     "      --quiet          no progress\n"
     "  -h, --help           this text\n";
 
 enum { MOST_MODELS = 4, MOST_PHOTOS = 64, TILE = 160, LABEL_SIZE = 48 };
-enum { OPTION_MODEL = 256, OPTION_MASK, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"output", required_argument, NULL, 'o'},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     const char *models[MOST_MODELS], *mask, *output;
     int model_count;
     bool quiet, help;
 } request;
 
-static status take_option(int option, const char *value, request *r)
+static status take_model(const char *path, void *into)
 {
-    switch (option) {
-    case OPTION_MODEL:
-        if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
-        r->models[r->model_count++] = value;
-        return OK;
-    case OPTION_MASK:
-        r->mask = value;
-        return OK;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
+    request *r = into;
+    if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
+    r->models[r->model_count++] = path;
+    return OK;
 }
 
-static status parse(int argc, char **argv, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind == argc) return fail(ERROR_USAGE, "no photograph given");
+    const cli_option options[] = {
+        {"model", .take = take_model, .into = r}, {"mask", .text = &r->mask},
+        {"output", 'o', .text = &r->output},      {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},          {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
     if (r->model_count == 0) return fail(ERROR_USAGE, "--model W is missing");
     return r->output ? OK : fail(ERROR_USAGE, "-o FILE.png is missing");
 }
@@ -152,7 +126,10 @@ static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
     size_t count = c->photos->count;
-    status s = (status)merlin_model_open(c->request->models[model], &m);
+    char *weights;
+    status s = photo_find_model(c->request->models[model], &weights);
+    if (s == OK) s = (status)merlin_model_open(weights, &m);
+    free(weights);
     for (size_t i = 0; i < count && s == OK; i++) {
         s = cli_interrupted() ? fail(ERROR_STOPPED, "interrupted; nothing was written") : take_apart(c, m, i, model);
         if (s == OK) progress_update(&c->progress, (size_t)model * count + i + 1, NULL);
@@ -192,10 +169,10 @@ static status compare(const request *r, const photo_list *photos)
 int eval_photos(int argc, char **argv)
 {
     request r = {0};
-    if (parse(argc, argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     photo_list photos;
-    status s = photo_list_make(argv + optind, argc - optind, r.mask, NULL, &photos);
+    status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
     s = compare(&r, &photos);

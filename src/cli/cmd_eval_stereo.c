@@ -1,11 +1,11 @@
 /* merlin eval stereo: the paper's Table 3. */
-#include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/stereo_table.h"
 
@@ -25,67 +25,27 @@ static const char help[] =
     "The rendered near-field set of docs/evaluation.md is made by\n"
     "  merlin render --count 14 --seed 52 --size 256 --targets 52 --paths 16 --no-env -o near-field\n";
 
-enum { OPTION_DATA = 256, OPTION_MODEL, OPTION_COUNT, OPTION_FIGURE, OPTION_JSON, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"data", required_argument, NULL, OPTION_DATA},
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"count", required_argument, NULL, OPTION_COUNT},
-    {"figure", required_argument, NULL, OPTION_FIGURE},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     stereo_options options;
     const char *model;
     bool json, help;
 } request;
 
-static status take_option(int option, const char *value, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    long number = 0;
-    status s;
-    switch (option) {
-    case OPTION_DATA:
-        r->options.data = value;
-        return OK;
-    case OPTION_MODEL:
-        r->model = value;
-        return OK;
-    case OPTION_COUNT:
-        s = cli_int("--count", value, 1, 100000000, &number);
-        r->options.count = (size_t)number;
-        return s;
-    case OPTION_FIGURE:
-        r->options.figure = value;
-        return OK;
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->options.quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind < argc) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[optind]);
+    const cli_option options[] = {
+        {"data", .text = &r->options.data},
+        {"model", .text = &r->model},
+        {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"figure", .text = &r->options.figure},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->options.quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", (*argv)[0]);
     return r->options.data ? OK : fail(ERROR_USAGE, "--data DIR is missing");
 }
 
@@ -105,7 +65,7 @@ static status announce(const request *r, const stereo_table *t)
 int eval_stereo(int argc, char **argv)
 {
     request r = {.options = {.stopped = cli_interrupted}};
-    if (parse(argc, argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     char *weights;
     status s = photo_find_model(r.model, &weights);

@@ -1,11 +1,11 @@
 /* merlin info: what is in a weights file. */
 #include <cjson/cJSON.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
 
@@ -15,14 +15,6 @@ static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json]\n\n"
                            "      --tensors  every tensor with its type and shape\n"
                            "      --json     as JSON\n"
                            "  -h, --help     this text\n";
-
-static const struct option long_options[] = {
-    {"tensors", no_argument, NULL, 't'},
-    {"json", no_argument, NULL, 'j'},
-    {"quiet", no_argument, NULL, 'q'},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
 
 enum { COST_SIZE = 256 };
 
@@ -149,19 +141,21 @@ static status print_json(const weights_info *info, bool tensors)
 
 int cmd_info(int argc, char **argv)
 {
-    bool tensors = false, json = false;
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, "h", long_options, NULL)) != -1;) {
-        if (option == '?') return cli_usage("info", "unknown option %s", argv[optind - 1]);
-        if (option == 'h') return fputs(help, stdout) < 0;
-        if (option == 't') tensors = true;
-        if (option == 'j') json = true;
-    }
-    if (optind + 1 != argc) return cli_usage("info", "one weights file wanted");
+    bool tensors = false, json = false, quiet = false, wants_help = false;
+    const cli_option options[] = {
+        {"tensors", .flag = &tensors},
+        {"json", .flag = &json},
+        {"quiet", .flag = &quiet},
+        {"help", 'h', .flag = &wants_help},
+        {0},
+    };
+    if (cli_read_options(&argc, &argv, options) != OK) return cli_usage("info", "%s", status_message());
+    if (wants_help) return fputs(help, stdout) < 0;
+    if (argc != 1) return cli_usage("info", "one weights file wanted");
     weights_info info = {0};
-    status s = read_info(argv[optind], &info);
+    status s = read_info(argv[0], &info);
     if (s == OK && json) s = print_json(&info, tensors);
-    if (s == OK && !json) print_text(&info, tensors);
+    if (s == OK && !json && !quiet) print_text(&info, tensors);
     st_close(info.file);
     return s == OK ? 0 : cli_fail("info", s);
 }

@@ -1,5 +1,4 @@
 /* merlin relight: the object of a photograph under other light. */
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "base/light_list.h"
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 
@@ -39,76 +39,35 @@ static const char help[] =
     "      --no-shadows     brdf without cast shadows, as in the paper\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
-    "      --mask FILE, --size N, --exposure EV\n"
+    "      --mask FILE, --size N, --views N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate\n"
-    "      --model FILE     weights (default: $MERLIN_MODEL, else the shipped models/merlin-point.safetensors)\n"
+    "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
+    "                       $MERLIN_MODEL, else merlin-point)\n"
     "      --json           a report as JSON on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Writes relit_000.png and on, and relit.png with all of them; for an orbit frame_000.png and on, and orbit.png.\n";
 
-enum {
-    OPTION_LIGHT = 256,
-    OPTION_LIGHTS,
-    OPTION_ORBIT,
-    OPTION_DOME,
-    OPTION_LP,
-    OPTION_ENV,
-    OPTION_ROTATE,
-    OPTION_ENV_EXPOSURE,
-    OPTION_BY,
-    OPTION_NO_SHADOWS,
-    OPTION_FRAME,
-    OPTION_MASK,
-    OPTION_SIZE,
-    OPTION_EXPOSURE,
-    OPTION_MODEL,
-    OPTION_JSON,
-    OPTION_QUIET
-};
-
-static const struct option long_options[] = {
-    {"light", required_argument, NULL, OPTION_LIGHT},
-    {"lights", required_argument, NULL, OPTION_LIGHTS},
-    {"orbit", required_argument, NULL, OPTION_ORBIT},
-    {"dome", required_argument, NULL, OPTION_DOME},
-    {"lp", no_argument, NULL, OPTION_LP},
-    {"env", required_argument, NULL, OPTION_ENV},
-    {"rotate", required_argument, NULL, OPTION_ROTATE},
-    {"env-exposure", required_argument, NULL, OPTION_ENV_EXPOSURE},
-    {"by", required_argument, NULL, OPTION_BY},
-    {"no-shadows", no_argument, NULL, OPTION_NO_SHADOWS},
-    {"frame", required_argument, NULL, OPTION_FRAME},
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"size", required_argument, NULL, OPTION_SIZE},
-    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"output", required_argument, NULL, 'o'},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     const char *input, *list, *mask, *weights, *output, *env;
-    double rotate, env_exposure;
+    float rotate, env_exposure;
     light_list lights;
     merlin_params params;
     merlin_relighting how;
-    long orbit, frame, dome;
+    int orbit, frame, dome;
     bool lp, no_shadows, json, quiet, help;
 } request;
 
-static status take_light(const char *text, light_list *lights)
+static status take_light(const char *text, void *lights)
 {
     float v[3];
     status s = cli_vec3("--light", text, v);
-    return s == OK ? light_list_add(lights, vec3_make(v[0], v[1], v[2])) : s;
+    return s == OK ? light_list_add(lights, vec3_of(v)) : s;
 }
 
-static status take_way(const char *text, merlin_relighting *how)
+static status take_way(const char *text, void *into)
 {
+    merlin_relighting *how = into;
     if (strcmp(text, "brdf") == 0)
         *how = MERLIN_BY_BRDF;
     else if (strcmp(text, "network") == 0)
@@ -118,83 +77,8 @@ static status take_way(const char *text, merlin_relighting *how)
     return OK;
 }
 
-static status take_text(int option, const char *value, request *r)
+static status check(request *r)
 {
-    switch (option) {
-    case OPTION_LIGHTS:
-        r->list = value;
-        return OK;
-    case OPTION_ENV:
-        r->env = value;
-        return OK;
-    case OPTION_MASK:
-        r->mask = value;
-        return OK;
-    case OPTION_MODEL:
-        r->weights = value;
-        return OK;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_LP:
-        r->lp = true;
-        return OK;
-    case OPTION_NO_SHADOWS:
-        r->no_shadows = true;
-        return OK;
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status take_option(int option, const char *value, request *r)
-{
-    switch (option) {
-    case OPTION_LIGHT:
-        return take_light(value, &r->lights);
-    case OPTION_ORBIT:
-        return cli_int("--orbit", value, 2, RELIGHT_MOST_FRAMES, &r->orbit);
-    case OPTION_DOME:
-        return cli_int("--dome", value, 3, RELIGHT_MOST_DOME, &r->dome);
-    case OPTION_FRAME:
-        return cli_int("--frame", value, 32, 1024, &r->frame);
-    case OPTION_ROTATE:
-        return cli_float("--rotate", value, -1e6, 1e6, &r->rotate);
-    case OPTION_ENV_EXPOSURE:
-        return cli_float("--env-exposure", value, -20, 20, &r->env_exposure);
-    case OPTION_BY:
-        return take_way(value, &r->how);
-    case OPTION_SIZE:
-        return photo_parse_size(value, &r->params);
-    case OPTION_EXPOSURE:
-        return photo_parse_exposure(value, &r->params);
-    default:
-        return take_text(option, value, r);
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind == argc) return fail(ERROR_USAGE, "no photograph or folder given");
-    if (optind + 1 < argc)
-        return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", argv[optind + 1]);
-    r->input = argv[optind];
     if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0 && !r->env)
         return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit, --dome or --env");
     if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
@@ -203,6 +87,39 @@ static status parse(int argc, char **argv, request *r)
     if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
+}
+
+static status parse(int *argc, char ***argv, request *r)
+{
+    const cli_option options[] = {
+        {"light", .take = take_light, .into = &r->lights},
+        {"lights", .text = &r->list},
+        {"orbit", .integer = &r->orbit, .low = 2, .high = RELIGHT_MOST_FRAMES},
+        {"dome", .integer = &r->dome, .low = 3, .high = RELIGHT_MOST_DOME},
+        {"lp", .flag = &r->lp},
+        {"env", .text = &r->env},
+        {"rotate", .real = &r->rotate, .low = -1000000, .high = 1000000},
+        {"env-exposure", .real = &r->env_exposure, .low = -20, .high = 20},
+        {"by", .take = take_way, .into = &r->how},
+        {"no-shadows", .flag = &r->no_shadows},
+        {"frame", .integer = &r->frame, .low = 32, .high = 1024},
+        {"mask", .text = &r->mask},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"model", .text = &r->weights},
+        {"output", 'o', .text = &r->output},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
+    if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
+    r->input = (*argv)[0];
+    return check(r);
 }
 
 static status read_lights(request *r)
@@ -260,15 +177,15 @@ static status relight(const request *r, const char *weights, const char *output)
     relight_job job = {.output = output,
                        .lights = r->lights,
                        .how = r->how,
-                       .dome = (int)r->dome,
+                       .dome = r->dome,
                        .lp = r->lp,
-                       .orbit = (int)r->orbit,
-                       .frame = (int)r->frame,
+                       .orbit = r->orbit,
+                       .frame = r->frame,
                        .stop = cli_interrupted};
     merlin_maps maps = {0};
     merlin_environment *environment = NULL;
     status s = OK;
-    if (r->env) s = (status)merlin_environment_read(r->env, (float)r->rotate, (float)r->env_exposure, &environment);
+    if (r->env) s = (status)merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
     if (s == OK) s = (status)merlin_model_open(weights, &job.model);
     if (s == OK) s = get_maps(r, job.model, &maps);
@@ -298,7 +215,7 @@ int cmd_relight(int argc, char **argv)
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
     int code = 0;
-    if (parse(argc, argv, &r) != OK) {
+    if (parse(&argc, &argv, &r) != OK) {
         code = cli_usage("relight", "%s", status_message());
     } else if (r.help) {
         fputs(help, stdout);

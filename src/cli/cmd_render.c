@@ -1,5 +1,5 @@
 /* merlin render: training data. */
-#include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "render/generate.h"
 
 static const char help[] =
@@ -35,128 +36,77 @@ static const char help[] =
 
 typedef struct request {
     render_options options;
-    bool json, help;
-    long threads;
+    bool no_environment, json, help;
+    int threads;
 } request;
 
-static status take_number(int option, const char *text, request *r)
+static status take_whole(const char *option, const char *text, long high, uint64_t *to)
 {
     long value = 0;
-    double fov;
-    status s = OK;
-    image_settings *image = &r->options.image;
-    switch (option) {
-    case 'n':
-        s = cli_int("--count", text, 1, 100000000, &value);
-        r->options.count = (size_t)value;
-        return s;
-    case 's':
-        s = cli_int("--seed", text, 0, 0x7fffffffffffffff, &value);
-        r->options.seed = (uint64_t)value;
-        return s;
-    case 'f':
-        s = cli_int("--first", text, 0, 1000000000, &value);
-        r->options.first = (uint64_t)value;
-        return s;
-    case 'p':
-        s = cli_int("--size", text, 8, 4096, &value);
-        image->size = (int)value;
-        return s;
-    case 'v':
-        s = cli_float("--fov", text, 5, 120, &fov);
-        if (s == OK) image->fov = (float)fov;
-        return s;
-    case 'k':
-        s = cli_int("--targets", text, 0, SAMPLE_MAX_TARGETS, &value);
-        image->targets = (int)value;
-        return s;
-    case 'r':
-        s = cli_int("--spp", text, 1, VISIBILITY_MAX_STRATA * VISIBILITY_MAX_STRATA, &value);
-        image->strata = (int)lround(sqrt((double)value));
-        if (s == OK && (image->strata * image->strata != value || (value > 1 && image->strata % 2)))
-            return fail(ERROR_USAGE, "--spp must be 1, 4, 16, 36 or 64, not %s", text);
-        return s;
-    case 'a':
-        s = cli_int("--paths", text, 1, 4096, &value);
-        image->paths = (int)value;
-        return s;
-    default:
-        return cli_int("--threads", text, 1, 1024, &r->threads);
-    }
+    status s = cli_int(option, text, 0, high, &value);
+    *to = (uint64_t)value;
+    return s;
 }
 
-static status take_option(int option, const char *text, request *r)
+static status take_seed(const char *text, void *to)
 {
-    switch (option) {
-    case 'o':
-        r->options.folder = text;
-        return OK;
-    case 'm':
-        r->options.mesh = text;
-        return OK;
-    case 'd':
-        r->options.environment_folder = text;
-        return OK;
-    case 'w':
-        r->options.material_folder = text;
-        return OK;
-    case 'e':
-        r->options.environment = false;
-        return OK;
-    case 'b':
-        r->options.image.bounces = true;
-        return OK;
-    case 'q':
-        r->options.quiet = true;
-        return OK;
-    case 'j':
-        r->json = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    case '?':
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    default:
-        return take_number(option, text, r);
-    }
+    return take_whole("--seed", text, LONG_MAX, to);
+}
+
+static status take_first(const char *text, void *to)
+{
+    return take_whole("--first", text, 1000000000, to);
+}
+
+static status take_strata(const char *text, void *to)
+{
+    long value = 0;
+    status s = cli_int("--spp", text, 1, VISIBILITY_MAX_STRATA * VISIBILITY_MAX_STRATA, &value);
+    if (s != OK) return s;
+    int strata = (int)lround(sqrt((double)value));
+    if (strata * strata != value || (value > 1 && strata % 2))
+        return fail(ERROR_USAGE, "--spp must be 1, 4, 16, 36 or 64, not %s", text);
+    *(int *)to = strata;
+    return OK;
+}
+
+static status read_options(int *argc, char ***argv, request *r)
+{
+    render_options *o = &r->options;
+    const cli_option options[] = {
+        {"count", .count = &o->count, .low = 1, .high = 100000000},
+        {"output", 'o', .text = &o->folder},
+        {"seed", .take = take_seed, .into = &o->seed},
+        {"first", .take = take_first, .into = &o->first},
+        {"size", .integer = &o->image.size, .low = 8, .high = 4096},
+        {"fov", .real = &o->image.fov, .low = 5, .high = 120},
+        {"mesh", .text = &o->mesh},
+        {"env-dir", .text = &o->environment_folder},
+        {"material-dir", .text = &o->material_folder},
+        {"no-env", .flag = &r->no_environment},
+        {"targets", .integer = &o->image.targets, .low = 0, .high = SAMPLE_MAX_TARGETS},
+        {"bounces", .flag = &o->image.bounces},
+        {"spp", .take = take_strata, .into = &o->image.strata},
+        {"paths", .integer = &o->image.paths, .low = 1, .high = 4096},
+        {"threads", .integer = &r->threads, .low = 1, .high = 1024},
+        {"quiet", .flag = &o->quiet},
+        {"json", .flag = &r->json},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    return cli_read_options(argc, argv, options);
 }
 
 static status parse(int argc, char **argv, request *r)
 {
-    static const struct option options[] = {
-        {"count", required_argument, NULL, 'n'},
-        {"output", required_argument, NULL, 'o'},
-        {"seed", required_argument, NULL, 's'},
-        {"first", required_argument, NULL, 'f'},
-        {"size", required_argument, NULL, 'p'},
-        {"fov", required_argument, NULL, 'v'},
-        {"mesh", required_argument, NULL, 'm'},
-        {"env-dir", required_argument, NULL, 'd'},
-        {"material-dir", required_argument, NULL, 'w'},
-        {"no-env", no_argument, NULL, 'e'},
-        {"targets", required_argument, NULL, 'k'},
-        {"bounces", no_argument, NULL, 'b'},
-        {"spp", required_argument, NULL, 'r'},
-        {"paths", required_argument, NULL, 'a'},
-        {"threads", required_argument, NULL, 't'},
-        {"quiet", no_argument, NULL, 'q'},
-        {"json", no_argument, NULL, 'j'},
-        {"help", no_argument, NULL, 'h'},
-        {0},
-    };
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind < argc) return fail(ERROR_USAGE, "unexpected argument %s", argv[optind]);
+    status s = read_options(&argc, &argv, r);
+    if (s != OK || r->help) return s;
+    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument %s", argv[0]);
     if (r->options.count == 0) return fail(ERROR_USAGE, "--count is required");
     if (!r->options.folder) return fail(ERROR_USAGE, "an output folder is required: -o DIR");
-    if (!r->options.environment && r->options.environment_folder)
+    if (r->no_environment && r->options.environment_folder)
         return fail(ERROR_USAGE, "--env-dir and --no-env contradict each other");
+    r->options.environment = !r->no_environment;
     return OK;
 }
 
@@ -183,7 +133,7 @@ int cmd_render(int argc, char **argv)
         fputs(help, stdout);
         return 0;
     }
-    if (r.threads > 0) parallel_set_threads((int)r.threads);
+    if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
     render_stats stats;
     status s = render_samples(&r.options, &stats);

@@ -1,6 +1,5 @@
 /* merlin stereo: surfaces from many lights, and from one photograph. */
 #include <cJSON.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/photos.h"
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
@@ -31,47 +31,12 @@ static const char help[] =
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
     "output)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
-    "      --model FILE, --size N, --exposure EV\n"
+    "      --model W, --size N, --views N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate\n"
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n";
-
-enum {
-    OPTION_LIGHTS = 256,
-    OPTION_NEAR,
-    OPTION_METHOD,
-    OPTION_MASK,
-    OPTION_AMBIENT,
-    OPTION_LINEAR,
-    OPTION_INTEGRATE,
-    OPTION_MESH,
-    OPTION_MODEL,
-    OPTION_SIZE,
-    OPTION_EXPOSURE,
-    OPTION_JSON,
-    OPTION_QUIET
-};
-
-static const struct option long_options[] = {
-    {"lights", required_argument, NULL, OPTION_LIGHTS},
-    {"near", no_argument, NULL, OPTION_NEAR},
-    {"method", required_argument, NULL, OPTION_METHOD},
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"ambient", required_argument, NULL, OPTION_AMBIENT},
-    {"linear", no_argument, NULL, OPTION_LINEAR},
-    {"integrate", required_argument, NULL, OPTION_INTEGRATE},
-    {"mesh", required_argument, NULL, OPTION_MESH},
-    {"model", required_argument, NULL, OPTION_MODEL},
-    {"size", required_argument, NULL, OPTION_SIZE},
-    {"exposure", required_argument, NULL, OPTION_EXPOSURE},
-    {"output", required_argument, NULL, 'o'},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
 
 typedef struct request {
     const char *input, *output, *weights;
@@ -83,8 +48,9 @@ typedef struct request {
 
 /* ---- options ---- */
 
-static status take_method(const char *name, pst_method *method)
+static status take_method(const char *name, void *into)
 {
+    pst_method *method = into;
     int m = pst_method_from_name(name);
     if (m < 0)
         return fail(ERROR_USAGE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
@@ -92,8 +58,9 @@ static status take_method(const char *name, pst_method *method)
     return OK;
 }
 
-static status take_integration(const char *name, stereo_folder *f)
+static status take_integration(const char *name, void *into)
 {
+    stereo_folder *f = into;
     f->integrate = true;
     f->preserve_edges = strcmp(name, "edges") == 0;
     if (!f->preserve_edges && strcmp(name, "ls") != 0)
@@ -101,89 +68,52 @@ static status take_integration(const char *name, stereo_folder *f)
     return OK;
 }
 
-static status take_mesh(const char *path, stereo_files *files)
+static status take_mesh(const char *path, void *into)
 {
+    stereo_files *files = into;
     if (files->mesh_count == STEREO_MOST_MESHES)
         return fail(ERROR_USAGE, "--mesh may be given %d times", STEREO_MOST_MESHES);
     files->mesh[files->mesh_count++] = path;
     return pst_mesh_check_name(path);
 }
 
-static status take_flag(int option, request *r)
+static status check(request *r)
 {
-    switch (option) {
-    case OPTION_NEAR:
-        r->folder.read.near = true;
-        return OK;
-    case OPTION_LINEAR:
-        r->folder.read.linear = true;
-        return OK;
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status take_option(int option, const char *value, request *r)
-{
-    switch (option) {
-    case OPTION_LIGHTS:
-        r->folder.read.lights = value;
-        return OK;
-    case OPTION_METHOD:
-        return take_method(value, &r->folder.method);
-    case OPTION_MASK:
-        r->folder.read.mask = value;
-        return OK;
-    case OPTION_AMBIENT:
-        r->folder.read.ambient = value;
-        return OK;
-    case OPTION_INTEGRATE:
-        return take_integration(value, &r->folder);
-    case OPTION_MESH:
-        return take_mesh(value, &r->files);
-    case OPTION_MODEL:
-        r->weights = value;
-        return OK;
-    case OPTION_SIZE:
-        return photo_parse_size(value, &r->params);
-    case OPTION_EXPOSURE:
-        return photo_parse_exposure(value, &r->params);
-    case 'o':
-        r->output = value;
-        return OK;
-    default:
-        return take_flag(option, r);
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind == argc) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
-    if (optind + 1 < argc)
-        return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", argv[optind + 1]);
-    r->input = r->folder.folder = argv[optind];
     const pst_read_options *o = &r->folder.read;
     if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
     if (o->lights && o->unknown_lights) return fail(ERROR_USAGE, "--method uncalibrated takes no --lights");
     if (file_exists(r->input) && !file_is_folder(r->input) && (o->lights || o->near || o->ambient || o->linear))
         return fail(ERROR_USAGE, "--lights, --near, --ambient and --linear are for a folder of pictures");
     return OK;
+}
+
+static status parse(int *argc, char ***argv, request *r)
+{
+    const cli_option options[] = {
+        {"lights", .text = &r->folder.read.lights},
+        {"near", .flag = &r->folder.read.near},
+        {"method", .take = take_method, .into = &r->folder.method},
+        {"mask", .text = &r->folder.read.mask},
+        {"ambient", .text = &r->folder.read.ambient},
+        {"linear", .flag = &r->folder.read.linear},
+        {"integrate", .take = take_integration, .into = &r->folder},
+        {"mesh", .take = take_mesh, .into = &r->files},
+        {"model", .text = &r->weights},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"output", 'o', .text = &r->output},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
+    if (*argc > 1) return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", (*argv)[1]);
+    r->input = r->folder.folder = (*argv)[0];
+    return check(r);
 }
 
 /* ---- the work ---- */
@@ -262,7 +192,7 @@ int cmd_stereo(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "calibrate") == 0) return stereo_calibrate(argc - 1, argv + 1);
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
-    if (parse(argc, argv, &r) != OK) return cli_usage("stereo", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo", "%s", status_message());
     if (r.help) {
         fputs(help, stdout);
         return 0;

@@ -1,11 +1,11 @@
 /* merlin stereo calibrate: light directions from pictures of a ball. */
-#include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/stereo_commands.h"
 #include "stereo/calibrate.h"
 
@@ -24,28 +24,15 @@ static const char help[] =
     "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names, and\n"
     "calibration.png, which shows what was found.\n";
 
-enum { OPTION_SPHERE = 256, OPTION_MASK, OPTION_LINEAR, OPTION_FOV, OPTION_JSON, OPTION_QUIET };
-
-static const struct option long_options[] = {
-    {"sphere", required_argument, NULL, OPTION_SPHERE},
-    {"mask", required_argument, NULL, OPTION_MASK},
-    {"linear", no_argument, NULL, OPTION_LINEAR},
-    {"fov", required_argument, NULL, OPTION_FOV},
-    {"output", required_argument, NULL, 'o'},
-    {"json", no_argument, NULL, OPTION_JSON},
-    {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"help", no_argument, NULL, 'h'},
-    {0},
-};
-
 typedef struct request {
     const char *input, *output;
     pst_calibrate_options options;
     bool chosen, json, quiet, help;
 } request;
 
-static status take_ball(const char *text, request *r)
+static status take_ball(const char *text, void *into)
 {
+    request *r = into;
     r->chosen = true;
     if (strcmp(text, "chrome") == 0)
         r->options.ball = PST_CHROME;
@@ -56,53 +43,25 @@ static status take_ball(const char *text, request *r)
     return OK;
 }
 
-static status take_option(int option, const char *value, request *r)
+static status parse(int *argc, char ***argv, request *r)
 {
-    double degrees;
-    status s;
-    switch (option) {
-    case OPTION_SPHERE:
-        return take_ball(value, r);
-    case OPTION_MASK:
-        r->options.mask = value;
-        return OK;
-    case OPTION_LINEAR:
-        r->options.linear = true;
-        return OK;
-    case OPTION_FOV:
-        s = cli_float("--fov", value, 1, 170, &degrees);
-        if (s == OK) r->options.field_of_view = (float)degrees;
-        return s;
-    case 'o':
-        r->output = value;
-        return OK;
-    case OPTION_JSON:
-        r->json = true;
-        return OK;
-    case OPTION_QUIET:
-        r->quiet = true;
-        return OK;
-    case 'h':
-        r->help = true;
-        return OK;
-    default:
-        return fail(ERROR_USAGE, "unknown option, or its value is missing");
-    }
-}
-
-static status parse(int argc, char **argv, request *r)
-{
-    int option;
-    opterr = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        status s = take_option(option, optarg, r);
-        if (s != OK || r->help) return s;
-    }
-    if (optind == argc) return fail(ERROR_USAGE, "no folder with pictures of a ball given");
-    if (optind + 1 < argc) return fail(ERROR_USAGE, "one folder at a time, not also %s", argv[optind + 1]);
+    const cli_option options[] = {
+        {"sphere", .take = take_ball, .into = r},
+        {"mask", .text = &r->options.mask},
+        {"linear", .flag = &r->options.linear},
+        {"fov", .real = &r->options.field_of_view, .low = 1, .high = 170},
+        {"output", 'o', .text = &r->output},
+        {"json", .flag = &r->json},
+        {"quiet", .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no folder with pictures of a ball given");
+    if (*argc > 1) return fail(ERROR_USAGE, "one folder at a time, not also %s", (*argv)[1]);
     if (!r->chosen) return fail(ERROR_USAGE, "say what the ball is: --sphere chrome or --sphere matte");
-    r->input = argv[optind];
+    r->input = (*argv)[0];
     if (!r->output) r->output = r->input;
     return OK;
 }
@@ -140,7 +99,7 @@ static status run(const request *r)
 int stereo_calibrate(int argc, char **argv)
 {
     request r = {0};
-    if (parse(argc, argv, &r) != OK) return cli_usage("stereo calibrate", "%s", status_message());
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo calibrate", "%s", status_message());
     if (r.help) {
         fputs(help, stdout);
         return 0;

@@ -203,30 +203,40 @@ status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask)
 
 /* ---- options ---- */
 
-status photo_find_model(const char *asked, char **path)
+/* NAME.safetensors where the program's own weights are; *path is NULL if there is none. */
+static status find_shipped(const char *name, char **path)
 {
     static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
-    *path = NULL;
-    const char *environment = getenv("MERLIN_MODEL");
-    if (!asked && environment && *environment) asked = environment;
-    if (asked) return (*path = strdup(asked)) ? OK : no_memory();
     char program[PATH_MAX];
+    *path = NULL;
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length < 0) return fail(ERROR_INPUT, "cannot find the weights: give --model or set MERLIN_MODEL");
+    if (length < 0) return OK;
     program[length] = 0;
     int folder = (int)(base_name(program) - program);
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
-        if (asprintf(path, "%.*s%s/merlin-point.safetensors", folder, program, places[i]) < 0) return no_memory();
+        if (asprintf(path, "%.*s%s/%s.safetensors", folder, program, places[i], name) < 0) return no_memory();
         if (file_exists(*path)) return OK;
         free(*path);
         *path = NULL;
     }
-    return fail(ERROR_INPUT, "no models/merlin-point.safetensors near %.*s: give --model or set MERLIN_MODEL", folder,
-                program);
+    return OK;
 }
 
-status photo_parse_size(const char *text, merlin_params *params)
+status photo_find_model(const char *asked, char **path)
 {
+    const char *environment = getenv("MERLIN_MODEL");
+    if (!asked && environment && *environment) asked = environment;
+    bool is_file = asked && (strchr(asked, '/') || strchr(asked, '.') || file_exists(asked));
+    if (is_file) return (*path = strdup(asked)) ? OK : no_memory();
+    status s = find_shipped(asked ? asked : "merlin-point", path);
+    if (s != OK || *path) return s;
+    if (asked) return fail(ERROR_INPUT, "there is no weights file %s, nor are weights of that name with merlin", asked);
+    return fail(ERROR_INPUT, "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
+}
+
+status photo_take_size(const char *text, void *into)
+{
+    merlin_params *params = into;
     long size;
     status s = cli_int("--size", text, 64, 1024, &size);
     if (s == OK && size % 32 != 0) s = fail(ERROR_USAGE, "--size must be a multiple of 32, not %ld", size);
@@ -234,8 +244,9 @@ status photo_parse_size(const char *text, merlin_params *params)
     return s;
 }
 
-status photo_parse_exposure(const char *text, merlin_params *params)
+status photo_take_exposure(const char *text, void *into)
 {
+    merlin_params *params = into;
     double ev = 0;
     params->auto_exposure = strcmp(text, "auto") == 0;
     status s = params->auto_exposure ? OK : cli_float("--exposure", text, -10, 10, &ev);

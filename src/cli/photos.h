@@ -30,12 +30,12 @@ char *photo_default_output(const char *photo);
 /* Reads photograph and mask (the job's, else alpha; without data if neither). */
 status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask);
 
-/* asked, else $MERLIN_MODEL, else models/merlin-point.safetensors beside the program or above it (a build folder in the
- * source tree), else share/merlin/models beside its folder; malloc'ed. */
+/* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models
+ * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed. */
 status photo_find_model(const char *asked, char **path);
 
-/* The values of --size, and of --exposure ("auto" or EV). */
-status photo_parse_size(const char *text, merlin_params *params);
-status photo_parse_exposure(const char *text, merlin_params *params);
+/* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */
+status photo_take_size(const char *text, void *into);
+status photo_take_exposure(const char *text, void *into);
 
 #endif

@@ -42,7 +42,7 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
     size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
     for (size_t i = 0; i < pixels; i++) {
         const float *n = r->normal.data + 3 * i, *t = truth->data + 3 * i;
-        vec3 a = vec3_make(n[0], n[1], n[2]), b = vec3_make(t[0], t[1], t[2]);
+        vec3 a = vec3_of(n), b = vec3_of(t);
         if (r->mask.data[i] <= 0.5f || !(vec3_dot(b, b) > (real)0.25)) continue;
         values[count++] = DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
     }

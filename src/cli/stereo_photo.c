@@ -65,8 +65,7 @@ static status solve_all(work *w)
 
 static vec3 normal_at(const img *normal, size_t pixel)
 {
-    const float *n = normal->data + 3 * pixel;
-    return vec3_make(n[0], n[1], n[2]);
+    return vec3_of(normal->data + 3 * pixel);
 }
 
 static float angle(vec3 a, vec3 b)

@@ -51,7 +51,7 @@ static vec3 interpolate(const img *level, float x, float y)
     const float *c = texel(level, left, top + 1), *d = texel(level, left + 1, top + 1);
     for (int i = 0; i < 3; i++)
         out[i] = (1 - fy) * ((1 - fx) * a[i] + fx * b[i]) + fy * ((1 - fx) * c[i] + fx * d[i]);
-    return vec3_make(out[0], out[1], out[2]);
+    return vec3_of(out);
 }
 
 /* ---- from latitude and longitude ------------------------------------------------------------------------------- */

@@ -173,7 +173,7 @@ static status estimate(merlin_model *model, work *w, const merlin_image *mask, m
     t->compile = network_take_compile_seconds(n);
     if (s == OK) s = make_input(w, &maps->gain);
     if (s == OK) s = lap(w, &t->prepare);
-    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->low);
+    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, w->params->views, w->params->stop, &w->low);
     if (s == OK) s = lap(w, &t->network);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);

@@ -7,6 +7,8 @@
 #include "base/progress.h"
 #include "estimate/black.h"
 #include "estimate/smooth.h"
+#include "estimate/view.h"
+#include "optics/orientation.h"
 
 typedef struct compiled {
     nn_graph *graph;
@@ -161,20 +163,13 @@ static status run_whole(network *n, const img *photo, const img *mask, const net
     return nn_forward(p);
 }
 
-static status take_maps(nn_program *p, const img *mask, surface *maps)
+/* Albedo and roughness leave the network in [-1, 1]. */
+static status take_maps(nn_program *p, int size, surface *maps)
 {
-    int size = mask->width;
-    status s = img_copy(&maps->mask, mask);
-    /* albedo and roughness leave the network in [-1, 1] */
-    if (s == OK) s = take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
+    status s = take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
     if (s == OK) s = take(p, "normal", size, 3, 1, 0, &maps->normal);
     if (s == OK) s = take(p, "roughness", size, 1, 0.5f, 0.5f, &maps->roughness);
     if (s == OK) s = take(p, "depth", size, 1, 1, 0, &maps->depth);
-    /* albedo has edges of one pixel, which the photograph restores (surface_refine), shape has none so sharp */
-    if (s == OK) s = smooth_inside(&maps->normal, mask);
-    if (s == OK) s = smooth_inside(&maps->roughness, mask);
-    if (s == OK) s = smooth_inside(&maps->depth, mask);
-    if (s == OK) surface_tidy(maps);
     return s;
 }
 
@@ -188,20 +183,59 @@ static void take_environment(nn_program *p, float sh[9][3])
         memset(sh, 0, 9 * sizeof *sh);
 }
 
-status network_estimate(network *n, const img *photo, const img *mask, network_estimation *out)
+/* What the network says of the photograph as it is put in. */
+static status estimate_view(network *n, const img *photo, const img *mask, network_estimation *out)
+{
+    int size = photo->width;
+    status s = run_whole(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, maps_outputs, &n->maps);
+    if (s == OK) s = take_maps(n->maps.program, size, &out->maps);
+    if (s != OK) return s;
+    take_environment(n->maps.program, out->environment);
+    if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
+    return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
+}
+
+static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
+                             network_estimation *out)
+{
+    if (views == 1) return estimate_view(n, photo, mask, out);
+    status s = view_mean_new(photo->width, out);
+    for (int view = 0; view < views && s == OK; view++) {
+        network_estimation turned = {0};
+        img turned_photo = {0}, turned_mask = {0};
+        if (stop && stop()) s = fail(ERROR_STOPPED, "stopped");
+        if (s == OK) s = view_turn(photo, view, &turned_photo);
+        if (s == OK) s = view_turn(mask, view, &turned_mask);
+        if (s == OK) s = estimate_view(n, &turned_photo, &turned_mask, &turned);
+        if (s == OK) view_mean_add(out, &turned, view, 1.0f / (float)views);
+        network_estimation_free(&turned);
+        img_free(&turned_photo);
+        img_free(&turned_mask);
+    }
+    return s;
+}
+
+/* Albedo has edges of one pixel, which the photograph restores (surface_refine), shape has none so sharp. */
+static status finish(const img *mask, surface *maps)
+{
+    status s = img_copy(&maps->mask, mask);
+    if (s == OK) s = smooth_inside(&maps->normal, mask);
+    if (s == OK) s = smooth_inside(&maps->roughness, mask);
+    if (s == OK) s = smooth_inside(&maps->depth, mask);
+    if (s == OK) surface_tidy(maps);
+    return s;
+}
+
+status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
+                        network_estimation *out)
 {
     *out = (network_estimation){0};
-    surface *maps = &out->maps;
-    img *indirect = &out->indirect;
+    if (views < 1 || views > ORIENTATIONS)
+        return fail(ERROR_USAGE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
     pthread_mutex_lock(&n->lock);
-    status s = run_whole(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, maps_outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, mask, maps);
-    if (s == OK) take_environment(n->maps.program, out->environment);
-    if (s == OK && n->config.global_illumination)
-        s = take(n->maps.program, "indirect", photo->width, 3, 1, 0, indirect);
-    else if (s == OK)
-        s = img_new(indirect, photo->width, photo->height, 3);
+    status s = estimate_views(n, photo, mask, views, stop, out);
     pthread_mutex_unlock(&n->lock);
+    if (s == OK) s = finish(mask, &out->maps);
     if (s != OK) network_estimation_free(out);
     return s;
 }

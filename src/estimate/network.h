@@ -2,7 +2,7 @@
  *
  *     network *n;
  *     status s = network_open("merlin-point.safetensors", &n);
- *     s = network_estimate(n, &photo, &mask, &estimation);
+ *     s = network_estimate(n, &photo, &mask, 1, NULL, &estimation);
  *     network_close(n);
  *
  * Images are square, a multiple of 32 pixels a side, linear. Calls from several threads take turns. */
@@ -34,8 +34,10 @@ typedef struct network_estimation {
     float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
 } network_estimation;
 
-/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. */
-status network_estimate(network *n, const img *photo, const img *mask, network_estimation *out);
+/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. The mean of what the network says
+ * of its first `views` orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
+status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
+                        network_estimation *out);
 void network_estimation_free(network_estimation *e);
 
 typedef struct network_light {

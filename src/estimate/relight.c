@@ -261,7 +261,7 @@ merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const
                              merlin_image *out)
 {
     *out = (merlin_image){0};
-    vec3 place = vec3_make(light[0], light[1], light[2]);
+    vec3 place = vec3_of(light);
     status s = check_light(light);
     return result_of(s == OK ? relight_maps(model, maps, &place, NULL, how, out) : s);
 }
@@ -272,6 +272,6 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
     *out = (merlin_image){0};
     status s = light ? check_light(light) : OK;
     if (s != OK) return result_of(s);
-    vec3 place = light ? vec3_make(light[0], light[1], light[2]) : vec3_make(0, 0, 0);
+    vec3 place = light ? vec3_of(light) : vec3_make(0, 0, 0);
     return result_of(relight_maps(model, maps, light ? &place : NULL, &env->map, how, out));
 }

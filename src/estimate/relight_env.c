@@ -34,8 +34,7 @@ struct job {
 
 static vec3 at3(const img *image, size_t i)
 {
-    const float *p = image->data + 3 * i;
-    return vec3_make(p[0], p[1], p[2]);
+    return vec3_of(image->data + 3 * i);
 }
 
 static void add_rows(void *context, size_t begin, size_t end)

@@ -189,9 +189,9 @@ static void shade_rows(void *context, size_t begin, size_t end)
         const float *a = s->albedo.data + 3 * i, *n = s->normal.data + 3 * i;
         size_t x = i % width, y = i / width;
         shade_input in = {
-            .albedo = vec3_make(a[0], a[1], a[2]),
+            .albedo = vec3_of(a),
             .roughness = s->roughness.data[i],
-            .normal = vec3_make(n[0], n[1], n[2]),
+            .normal = vec3_of(n),
             .depth = s->depth.data[i],
             .ray = camera_point(&job->view, (float)x + 0.5f, (float)y + 0.5f, 1),
             .light = job->light,

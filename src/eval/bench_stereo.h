@@ -14,10 +14,11 @@
 
 #include "base/status.h"
 
-enum { BENCH_STEREO_RUNS = 2 };
+enum { BENCH_STEREO_RUNS = 3 };
 
 typedef struct bench_stereo_run {
     int pictures;
+    bool shadows; /* a sixth of every picture is in shadow, each another; else every value counts */
     double seconds;
     size_t input_bytes;   /* the pictures */
     size_t working_bytes; /* the most that was held beyond them, results included; 0 if the system does not tell */
@@ -26,7 +27,7 @@ typedef struct bench_stereo_run {
 typedef struct bench_stereo_report {
     int threads, width, height, channels;
     double copy_rate;                        /* bytes read and written a second */
-    bench_stereo_run run[BENCH_STEREO_RUNS]; /* of few pictures, and of many */
+    bench_stereo_run run[BENCH_STEREO_RUNS]; /* of few pictures, of many, and of many with shadows */
 } bench_stereo_report;
 
 typedef struct bench_stereo_options {

@@ -1,6 +1,6 @@
 /* A model measured on held-out samples, beside trivial answers.
  *
- *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .count = 200};
+ *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .views = 1};
  *     eval_report report;
  *     status s = eval_run(&options, &report);
  *     if (s == OK) eval_print_table(&report, stdout);
@@ -23,9 +23,12 @@ typedef enum eval_row {
     EVAL_ANGLE,          /* mean angle between normals, degrees */
     EVAL_DEPTH,          /* mean squared error in scene units */
     EVAL_ROUGHNESS,      /* mean squared error in [-1, 1] */
+    EVAL_SURROUNDINGS,   /* setting B: mean squared error of the radiance of white surfaces over all normals */
     EVAL_RECONSTRUCTION, /* direct + indirect against the input */
     EVAL_RELIT_NETWORK,  /* the relighting decoder against the true maps rendered under the target light */
     EVAL_RELIT_BRDF,     /* the estimated maps rendered, against the same */
+    EVAL_BOTH_NETWORK,   /* setting B: the same two under the light in other surroundings */
+    EVAL_BOTH_BRDF,
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
     EVAL_TRACED_SHADOWS, /* the maps' own cast shadows added */
@@ -71,6 +74,7 @@ typedef struct eval_options {
     const char *means; /* file of eval_means_write; NULL: computed from the data itself */
     size_t count;      /* the first so many samples; 0: all */
     nn_type type;
+    int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */
     int figure_rows;    /* samples shown */
     bool quiet;

@@ -1,10 +1,13 @@
 #include "eval/maps.h"
 
+#include <string.h>
+
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "eval/metrics.h"
 #include "optics/camera.h"
 #include "optics/light.h"
+#include "optics/sh.h"
 
 /* Apart from the streams that made the sample, so that lights are independent of the object. */
 enum { STREAM_EVAL_LIGHT = 0x6576616c };
@@ -60,9 +63,14 @@ typedef struct render_work {
     const img *mask;
     camera view;
     float power;
-    vec3 light;
+    const eval_lighting *lighting;
     img *out;
 } render_work;
+
+static vec3 clip(vec3 c)
+{
+    return vec3_make(brdf_clamp(c.x, 0, 1), brdf_clamp(c.y, 0, 1), brdf_clamp(c.z, 0, 1));
+}
 
 static void render_row(void *context, size_t row)
 {
@@ -78,22 +86,25 @@ static void render_row(void *context, size_t row)
             .normal = {n[0], n[1], n[2]},
             .depth = *img_at(&w->maps->depth, x, y),
             .ray = camera_point(&w->view, (float)x + 0.5f, (float)y + 0.5f, 1),
-            .light = w->light,
+            .light = w->lighting->light,
             .power = w->power,
         };
-        vec3 radiance = shade_point(&in);
-        float *o = img_at(w->out, x, y);
-        o[0] = brdf_clamp(radiance.x, 0, 1) * inside;
-        o[1] = brdf_clamp(radiance.y, 0, 1) * inside;
-        o[2] = brdf_clamp(radiance.z, 0, 1) * inside;
+        vec3 radiance = clip(shade_point(&in));
+        if (w->lighting->sh) {
+            vec3 white = vec3_scale(sh_irradiance(w->lighting->sh, in.normal), 1 / BRDF_PI);
+            radiance = clip(vec3_add(radiance, vec3_mul(in.albedo, white)));
+        }
+        radiance = vec3_scale(radiance, inside);
+        memcpy(img_at(w->out, x, y), (float[]){radiance.x, radiance.y, radiance.z}, 3 * sizeof(float));
     }
 }
 
-status eval_render(const eval_maps *maps, const img *mask, float fov, float power, vec3 light, img *out)
+status eval_render(const eval_maps *maps, const img *mask, float fov, float power, const eval_lighting *lighting,
+                   img *out)
 {
     status s = img_new(out, mask->width, mask->height, 3);
     if (s != OK) return s;
-    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, light, out};
+    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, lighting, out};
     parallel_for((size_t)mask->height, render_row, &w);
     return OK;
 }

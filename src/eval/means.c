@@ -15,6 +15,7 @@ typedef struct mean_sums {
     int width, height;
     size_t samples;
     double *sum; /* height × width × SUMS */
+    double sh[9][3];
 } mean_sums;
 
 static status add_sample(mean_sums *m, const sample *s, const char *path)
@@ -39,6 +40,8 @@ static status add_sample(mean_sums *m, const sample *s, const char *path)
         sum[DEPTH] += s->depth.data[i];
         sum[WEIGHT] += 1;
     }
+    for (int i = 0; i < 27; i++)
+        m->sh[i / 3][i % 3] += s->sh[i / 3][i % 3];
     m->samples++;
     return OK;
 }
@@ -71,6 +74,8 @@ static status finish_means(const mean_sums *m, eval_means *out)
     }
     out->roughness = (float)(2 * all[ROUGHNESS] / all[WEIGHT] - 1);
     out->depth = (float)(all[DEPTH] / all[WEIGHT]);
+    for (int i = 0; i < 27; i++)
+        out->sh[i / 3][i % 3] = (float)(m->sh[i / 3][i % 3] / (double)m->samples);
     out->samples = m->samples;
     return OK;
 }
@@ -143,8 +148,10 @@ status eval_means_write(const eval_means *means, const char *path)
             channels[i] = (exr_channel){targets[i].name, targets[i].data, targets[i].stride};
         exr_attribute attributes[] = {exr_number("roughness_mean", (means->roughness + 1) / 2),
                                       exr_number("depth_mean", means->depth),
-                                      exr_number("sample_count", (float)means->samples)};
-        s = exr_write(path, file.albedo.width, file.albedo.height, channels, CHANNELS, attributes, 3);
+                                      exr_number("sample_count", (float)means->samples),
+                                      {.name = "sphericalHarmonics", .count = 27}};
+        memcpy(attributes[3].values, means->sh, sizeof means->sh);
+        s = exr_write(path, file.albedo.width, file.albedo.height, channels, CHANNELS, attributes, 4);
         img_free(&file.roughness);
     }
     img_free(&file.albedo);
@@ -171,6 +178,7 @@ static status read_means_file(const char *path, exr_file *f, eval_means *out)
     out->roughness = 2 * roughness - 1;
     out->depth = depth;
     out->samples = (size_t)samples;
+    exr_get_numbers(f, "sphericalHarmonics", &out->sh[0][0], 27); /* means of samples without environment have none */
     return OK;
 }
 
@@ -193,7 +201,7 @@ static status resize_maps(eval_maps *maps, int width, int height)
     if (s != OK) return s;
     for (size_t i = 0, n = (size_t)width * (size_t)height; i < n; i++) {
         float *p = maps->normal.data + 3 * i;
-        vec3 normal = vec3_normalize(vec3_make(p[0], p[1], p[2]));
+        vec3 normal = vec3_normalize(vec3_of(p));
         p[0] = normal.x;
         p[1] = normal.y;
         p[2] = normal.z;

@@ -23,7 +23,7 @@ void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *
     for (int y = 0; y < normal->height; y++)
         for (int x = 0; x < normal->width; x++) {
             float *n = img_at(normal, x, y);
-            vec3 turned = turn(vec3_make(n[0], n[1], n[2]), sight(from, x, y), sight(to, x, y));
+            vec3 turned = turn(vec3_of(n), sight(from, x, y), sight(to, x, y));
             n[0] = turned.x;
             n[1] = turned.y;
             n[2] = turned.z;
@@ -36,7 +36,7 @@ double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels
     size_t count = 0;
     for (size_t i = 0, total = (size_t)c->width * (size_t)c->height; i < total; i++) {
         const float *n = normal->data + 3 * i, *t = c->normal_true.data + 3 * i;
-        vec3 a = vec3_make(n[0], n[1], n[2]), b = vec3_make(t[0], t[1], t[2]);
+        vec3 a = vec3_of(n), b = vec3_of(t);
         if (c->mask.data[i] <= 0.5f || vec3_length(b) < 0.5f) continue;
         sum += DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
         count++;

@@ -1,7 +1,7 @@
 /* A model as the evaluation runs it: one picture, four lights at a time.
  *
  *     eval_model *m;
- *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, &m);
+ *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, 1, &m);
  *     eval_prediction p;
  *     if (s == OK) s = eval_prediction_new(m, &p);
  *     if (s == OK) s = eval_predict(m, &image, &mask, lights, &p);
@@ -19,16 +19,19 @@ enum { EVAL_LIGHTS = 4 };
 
 typedef struct eval_model eval_model;
 
-/* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. */
-status eval_model_open(const char *weights, int size, nn_type type, eval_model **out);
+/* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. Maps are the mean over `views` orientations of
+ * the picture, 1 to 8 (estimate/view.h); the relighting decoder sees the first alone. */
+status eval_model_open(const char *weights, int size, nn_type type, int views, eval_model **out);
 void eval_model_close(eval_model *m);
 const model_config *eval_model_config(const eval_model *m);
 
 /* Pictures are clipped to [0, 1] and zero outside the mask; those that the model's variant lacks stay black. */
 typedef struct eval_prediction {
     eval_maps maps;
-    img direct;                       /* the flash's bounce 1, not clipped */
-    img reconstruction;               /* direct + indirect */
+    img flash;                        /* bounce 1 of the flash alone, not clipped */
+    img indirect;                     /* what the network adds to the flash and the surroundings */
+    img reconstruction;               /* direct + indirect light, of the surroundings too */
+    float sh[9][3];                   /* the surroundings as estimated, by models of setting B; else 0 */
     img by_network[EVAL_LIGHTS];      /* the relighting decoder */
     img by_brdf[EVAL_LIGHTS];         /* the rendering layer */
     img full_by_network[EVAL_LIGHTS]; /* the same, with the light that the global-illumination network adds */
@@ -39,15 +42,16 @@ typedef struct eval_prediction {
 status eval_prediction_new(const eval_model *m, eval_prediction *out);
 void eval_prediction_free(eval_prediction *p);
 
-/* image: linear, lit by the flash, zero outside the mask. */
-status eval_predict(eval_model *m, const img *image, const img *mask, const vec3 lights[EVAL_LIGHTS],
+/* image: linear, lit by the flash (setting B: in surroundings), zero outside the mask. Only models of setting B relight
+ * under surroundings. */
+status eval_predict(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
                     eval_prediction *out);
 
 /* After eval_predict with the same lights: the cast shadows that merlin relight makes of such maps. fov in degrees. */
-status eval_predict_shadows(eval_model *m, const img *mask, float fov, const vec3 lights[EVAL_LIGHTS],
+status eval_predict_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
                             eval_prediction *p);
 
-/* Whether the variant can relight by its decoder under a point light. */
+/* Whether the variant has a relighting decoder. */
 bool eval_model_relights(const eval_model *m);
 
 #endif

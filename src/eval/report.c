@@ -17,9 +17,12 @@ static const row_text rows[EVAL_ROWS] = {
     [EVAL_ANGLE] = {"normal_degrees", "normal angle (degrees)", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_DEPTH] = {"depth", "depth error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.6, 0.00975},
     [EVAL_ROUGHNESS] = {"roughness", "roughness error (1e-2)", 100, EVAL_RATIO_AT_MOST, 0.8, 0.08267},
+    [EVAL_SURROUNDINGS] = {"surroundings", "surroundings error (1e-2)", 100, EVAL_NO_GOAL, 0, 0},
     [EVAL_RECONSTRUCTION] = {"reconstruction_ssim", "reconstruction SSIM", 1, EVAL_AT_LEAST, 0.90, 0},
     [EVAL_RELIT_NETWORK] = {"relight_network_ssim", "relit by network, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05, 0.819},
     [EVAL_RELIT_BRDF] = {"relight_brdf_ssim", "relit by BRDF, SSIM", 1, EVAL_MARGIN_AT_LEAST, 0.05, 0.894},
+    [EVAL_BOTH_NETWORK] = {"both_lights_network_ssim", "both lights, by network", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_BOTH_BRDF] = {"both_lights_brdf_ssim", "both lights, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_SHADOWS] = {"traced_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
@@ -64,11 +67,11 @@ static void print_goal(FILE *stream, const eval_verdict *v)
 
 static void print_rows(const eval_scores *scores, FILE *stream)
 {
-    fprintf(stream, "%-24s%10s%10s%10s%10s%10s%10s%10s   %-14s %s\n", "", "model", "paper", "true maps", "mean maps",
+    fprintf(stream, "%-26s%10s%10s%10s%10s%10s%10s%10s   %-14s %s\n", "", "model", "paper", "true maps", "mean maps",
             "inflated", "unchanged", "vs best", "goal", "holds");
     for (int row = 0; row < EVAL_ROWS; row++) {
         if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
-        fprintf(stream, "%-24s", rows[row].label);
+        fprintf(stream, "%-26s", rows[row].label);
         print_score(stream, scores, (eval_row)row, EVAL_MODEL);
         print_number(stream, rows[row].paper > 0 ? rows[row].scale * rows[row].paper : NAN, "%10.3f");
         print_score(stream, scores, (eval_row)row, EVAL_TRUE_MAPS);

@@ -20,6 +20,7 @@
 typedef struct eval_means {
     eval_maps maps;
     float roughness, depth; /* over all pixels of all masks; roughness in [-1, 1] */
+    float sh[9][3];         /* of the environments; 0 where the samples have none */
     size_t samples;
 } eval_means;
 

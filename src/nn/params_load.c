@@ -53,22 +53,22 @@ static status take_shared(nn_params *params, const st_file *f, const char *path)
     return OK;
 }
 
-status nn_params_load_shared(nn_params *params, const char *path)
+static status load(nn_params *params, const char *path, status (*take)(nn_params *, const st_file *, const char *))
 {
     st_file *f;
     status s = st_open(path, &f);
     if (s != OK) return s;
-    s = take_shared(params, f, path);
+    s = take(params, f, path);
     st_close(f);
     return s;
 }
 
+status nn_params_load_shared(nn_params *params, const char *path)
+{
+    return load(params, path, take_shared);
+}
+
 status nn_params_load(nn_params *params, const char *path)
 {
-    st_file *f;
-    status s = st_open(path, &f);
-    if (s != OK) return s;
-    s = nn_params_take(params, f, path);
-    st_close(f);
-    return s;
+    return load(params, path, nn_params_take);
 }

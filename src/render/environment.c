@@ -153,7 +153,7 @@ static vec3 radiance_at(const environment *env, float x, float y)
     float out[3];
     for (int i = 0; i < 3; i++)
         out[i] = (1 - fy) * ((1 - fx) * a[i] + fx * b[i]) + fy * ((1 - fx) * c[i] + fx * e[i]);
-    return vec3_make(out[0], out[1], out[2]);
+    return vec3_of(out);
 }
 
 /* Probability of the texel per solid angle; directions within a texel are spread evenly over its u and cosθ. */

@@ -160,7 +160,7 @@ static status read_optics(const exr_file *f, const char *path, sample *s)
     if (!exr_get_numbers(f, "light", light, 3) || !exr_get_numbers(f, "lightPower", &s->light_power, 1) ||
         !exr_get_numbers(f, "fieldOfView", &s->fov, 1))
         return fail(ERROR_INPUT, "%s: not a sample of this renderer (no light, lightPower or fieldOfView)", path);
-    s->light = vec3_make(light[0], light[1], light[2]);
+    s->light = vec3_of(light);
     if (!(s->fov > 0 && s->fov < 180) || !(s->light_power > 0))
         return fail(ERROR_INPUT, "%s: impossible field of view %g or light power %g", path, (double)s->fov,
                     (double)s->light_power);
@@ -181,7 +181,7 @@ static status make_targets(const exr_file *f, const char *path, sample *s)
         float at[3];
         snprintf(name, sizeof name, "target%02d.light", t);
         if (!exr_get_numbers(f, name, at, 3)) return fail(ERROR_INPUT, "%s: attribute %s is missing", path, name);
-        s->targets[t].light = vec3_make(at[0], at[1], at[2]);
+        s->targets[t].light = vec3_of(at);
         status st = img_new(&s->targets[t].direct, exr_width(f), exr_height(f), 3);
         if (st == OK) st = img_new(&s->targets[t].indirect, exr_width(f), exr_height(f), 3);
         if (st != OK) return st;

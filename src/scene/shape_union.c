@@ -23,7 +23,7 @@ static vec3 map_rounded_box(const void *context, vec3 cube)
     real p[3];
     for (int k = 0; k < 3; k++)
         p[k] = copysignf(inner[k] + box->round * direction[k] / sqrtf(length), at[k]);
-    return vec3_make(p[0], p[1], p[2]);
+    return vec3_of(p);
 }
 
 static void add_box(rng *r, scn_mesh *mesh, int n, uint8_t part)

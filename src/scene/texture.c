@@ -58,7 +58,7 @@ vec3 texture_albedo(const texture_place *place, vec3 reference, vec3 facing)
     planes p = see(place, reference, facing);
     float rgb[MAX_CHANNELS] = {0};
     look_up(&place->texture->albedo, &p, rgb);
-    return vec3_make(rgb[0], rgb[1], rgb[2]);
+    return vec3_of(rgb);
 }
 
 float texture_roughness(const texture_place *place, vec3 reference, vec3 facing)

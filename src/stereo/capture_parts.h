@@ -28,6 +28,10 @@ status pst_read_diligent_truth(const char *folder, pst_capture *c);
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c);
 /* From a file, or the pixels that are not black in any picture. */
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c);
+/* The file asked for; else the folder's file `usual`; else its first one with this ending, and *found says how many
+ * there are (0 where it did not come to that). *path is NULL if there is none. Free it. */
+status pst_find_file(const char *folder, const char *asked, const char *usual, const char *ending, char **path,
+                     size_t *found);
 /* The mask's file: the one asked for, mask.png or the first *.mask.png of the folder; *path is NULL if there is none.
  * Free it. */
 status pst_find_mask(const char *folder, const char *asked, char **path);

@@ -12,7 +12,7 @@ static const double TOLERANCE = 1e-7;
 vec3 steps_normal(const integration_steps *s, int node)
 {
     const float *n = s->normal->data + 3 * (size_t)s->grid.pixel[node];
-    vec3 v = vec3_make(n[0], n[1], n[2]);
+    vec3 v = vec3_of(n);
     return isfinite(v.x + v.y + v.z) ? vec3_normalize(v) : vec3_make(0, 0, 0);
 }
 

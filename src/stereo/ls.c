@@ -2,101 +2,25 @@
  * Optical Engineering 19(1), 1980): per pixel the weighted 3×3 normal equations over observations that are neither dark
  * nor saturated, one right-hand side a colour channel.
  *
- * Pictures are streamed: a block of pixels small enough for the cache is summed over all pictures, so that every
- * sample is read from memory once and working memory does not grow with the number of pictures. */
+ * Pictures are streamed: a block of pixels small enough for the cache is summed over all pictures (ls_sums.h), so that
+ * every sample is read from memory once and working memory does not grow with the number of pictures. */
 #include <math.h>
-#include <string.h>
 
 #include "base/parallel.h"
-#include "stereo/solve_parts.h"
-
-/* 18 sums of 512 floats are 36 KiB: they stay in the second-level cache beside the pictures' own lines. */
-enum { BLOCK = 512 };
+#include "stereo/ls_sums.h"
 
 /* Pixels looked at to choose what counts as dark. */
 enum { SAMPLE = 1024 };
 
-typedef struct sums {
-    float matrix[6][BLOCK];
-    float right[3][3][BLOCK]; /* channel, component */
-    float square[BLOCK];
-} sums;
-
 typedef struct ls_job {
-    const pst_problem *problem;
+    const pst_capture *capture;
+    const ls_lights *lights;
     pst_surface *out;
-    float low; /* codes, summed over the channels */
-    uint16_t high;
 } ls_job;
-
-/* What one picture's light contributes. */
-typedef struct ls_light {
-    float x, y, z;
-    float scale[3]; /* code to radiance under unit intensity */
-    float low;
-    uint16_t high;
-} ls_light;
-
-static inline __attribute__((always_inline)) void add_weighted(sums *s, int i, float w, const ls_light *l)
-{
-    s->matrix[0][i] += w * (l->x * l->x);
-    s->matrix[1][i] += w * (l->x * l->y);
-    s->matrix[2][i] += w * (l->x * l->z);
-    s->matrix[3][i] += w * (l->y * l->y);
-    s->matrix[4][i] += w * (l->y * l->z);
-    s->matrix[5][i] += w * (l->z * l->z);
-}
-
-static void add_grey(sums *restrict s, const uint16_t *restrict code, int count, const ls_light *l)
-{
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        float w = (float)code[i] > l->low && code[i] < l->high ? 1.0f : 0.0f;
-        float v = w * l->scale[0] * (float)code[i];
-        add_weighted(s, i, w, l);
-        s->right[0][0][i] += v * l->x;
-        s->right[0][1][i] += v * l->y;
-        s->right[0][2][i] += v * l->z;
-        s->square[i] += v * v;
-    }
-}
-
-static void add_colour(sums *restrict s, const uint16_t *restrict code, int count, const ls_light *l)
-{
-    float channel[3][BLOCK];
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        channel[0][i] = (float)code[3 * i];
-        channel[1][i] = (float)code[3 * i + 1];
-        channel[2][i] = (float)code[3 * i + 2];
-    }
-    float high = (float)l->high;
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        float r = channel[0][i], g = channel[1][i], b = channel[2][i];
-        float top = r > g ? r : g;
-        top = top > b ? top : b;
-        float w = r + g + b > l->low && top < high ? 1.0f : 0.0f;
-        add_weighted(s, i, w, l);
-        r *= w * l->scale[0];
-        g *= w * l->scale[1];
-        b *= w * l->scale[2];
-        s->right[0][0][i] += r * l->x;
-        s->right[0][1][i] += r * l->y;
-        s->right[0][2][i] += r * l->z;
-        s->right[1][0][i] += g * l->x;
-        s->right[1][1][i] += g * l->y;
-        s->right[1][2][i] += g * l->z;
-        s->right[2][0][i] += b * l->x;
-        s->right[2][1][i] += b * l->y;
-        s->right[2][2][i] += b * l->z;
-        s->square[i] += r * r + g * g + b * b;
-    }
-}
 
 /* What a block's sums say, a component after the other, so that pixels go through vector registers together. */
 typedef struct answers {
-    float normal[3][BLOCK], albedo[3][BLOCK], residual[BLOCK];
+    float normal[3][LS_BLOCK], albedo[3][LS_BLOCK], residual[LS_BLOCK];
 } answers;
 
 /* fmaxf and fminf promise something about NaN, which costs a call. */
@@ -143,7 +67,7 @@ static inline symmetric inverse(symmetric m)
                        (xx * yy - m.xy * m.xy) * d};
 }
 
-static inline vec3 right_side(const sums *s, int channel, int i)
+static inline vec3 right_side(const ls_sums *s, int channel, int i)
 {
     return vec3_make(s->right[channel][0][i], s->right[channel][1][i], s->right[channel][2][i]);
 }
@@ -151,7 +75,7 @@ static inline vec3 right_side(const sums *s, int channel, int i)
 /* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
  * iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are zero and change nothing.
  */
-static void answer(const sums *restrict s, int count, answers *restrict out)
+static void answer(const ls_sums *restrict s, int count, answers *restrict out)
 {
 #pragma omp simd
     for (int i = 0; i < count; i++) {
@@ -178,72 +102,85 @@ static void answer(const sums *restrict s, int count, answers *restrict out)
     }
 }
 
-static void store(const answers *a, int count, const float *mask, const pst_surface *out, size_t first)
+static inline float inside(float mask, float x)
 {
-    size_t channels = (size_t)out->albedo.channels;
-    float *normal = out->normal.data + 3 * first, *albedo = out->albedo.data + channels * first;
+    return mask > 0.5f ? x : 0;
+}
+
+static void store(const answers *restrict a, int count, const float *restrict mask, const pst_surface *out,
+                  size_t first)
+{
+    float *restrict normal = out->normal.data + 3 * first, *restrict residual = out->residual.data + first;
+#pragma omp simd
     for (int i = 0; i < count; i++) {
-        if (mask[i] <= 0.5f) continue;
-        for (size_t k = 0; k < 3; k++)
-            normal[3 * (size_t)i + k] = a->normal[k][i];
-        for (size_t c = 0; c < channels; c++)
-            albedo[channels * (size_t)i + c] = a->albedo[c][i];
-        out->residual.data[first + (size_t)i] = a->residual[i];
+        normal[3 * i] = inside(mask[i], a->normal[0][i]);
+        normal[3 * i + 1] = inside(mask[i], a->normal[1][i]);
+        normal[3 * i + 2] = inside(mask[i], a->normal[2][i]);
+        residual[i] = inside(mask[i], a->residual[i]);
+    }
+}
+
+static void store_albedo(const answers *restrict a, int count, const float *restrict mask, const pst_surface *out,
+                         size_t first)
+{
+    float *restrict albedo = out->albedo.data + (size_t)out->albedo.channels * first;
+    if (out->albedo.channels == 1) {
+#pragma omp simd
+        for (int i = 0; i < count; i++)
+            albedo[i] = inside(mask[i], a->albedo[0][i]);
+        return;
+    }
+#pragma omp simd
+    for (int i = 0; i < count; i++) {
+        albedo[3 * i] = inside(mask[i], a->albedo[0][i]);
+        albedo[3 * i + 1] = inside(mask[i], a->albedo[1][i]);
+        albedo[3 * i + 2] = inside(mask[i], a->albedo[2][i]);
     }
 }
 
 static void solve_block(const ls_job *job, size_t first, int count)
 {
-    const pst_problem *p = job->problem;
-    const pst_capture *c = p->capture;
-    const float *mask = c->mask.data + first;
+    const float *mask = job->capture->mask.data + first;
     bool any = false;
     for (int i = 0; i < count; i++)
         any |= mask[i] > 0.5f;
     if (!any) return;
-    sums s;
-    memset(&s, 0, sizeof s);
-    for (int k = 0; k < c->count; k++) {
-        const pst_light *from = &p->light[k];
-        ls_light l = {.x = from->direction.x, .y = from->direction.y, .z = from->direction.z};
-        for (int e = 0; e < 3; e++)
-            l.scale[e] = 1 / (65535 * from->intensity[e]);
-        l.low = job->low;
-        l.high = job->high;
-        const uint16_t *code = c->picture[k] + first * (size_t)c->channels;
-        if (c->channels == 1)
-            add_grey(&s, code, count, &l);
-        else
-            add_colour(&s, code, count, &l);
-    }
-    answers a;
-    answer(&s, count, &a);
-    store(&a, count, mask, job->out, first);
+    ls_sums sums;
+    answers found;
+    ls_sums_add(job->lights, first, count, &sums);
+    answer(&sums, count, &found);
+    store(&found, count, mask, job->out, first);
+    store_albedo(&found, count, mask, job->out, first);
 }
 
 static void solve_blocks(void *context, size_t begin, size_t end)
 {
     const ls_job *job = context;
-    size_t size = (size_t)job->problem->capture->width * (size_t)job->problem->capture->height;
+    size_t size = (size_t)job->capture->width * (size_t)job->capture->height;
     for (size_t b = begin; b < end; b++) {
-        size_t first = b * BLOCK, left = size - first;
-        solve_block(job, first, (int)(left < BLOCK ? left : BLOCK));
+        size_t first = b * LS_BLOCK, left = size - first;
+        solve_block(job, first, (int)(left < LS_BLOCK ? left : LS_BLOCK));
     }
 }
 
-/* A hundredth of what the object's pixels reach at their brightest, on average. */
-static float chosen_shadow(const pst_problem *p)
+/* A hundredth of what the object's pixels reach at their brightest, on average over the first of every so many pixels.
+ */
+static float chosen_shadow(const pst_capture *c)
 {
-    const pst_capture *c = p->capture;
-    size_t step = p->pixel_count / SAMPLE + 1, count = 0;
+    size_t size = (size_t)c->width * (size_t)c->height, step = size / SAMPLE + 1, count = 0;
     double sum = 0;
-    for (size_t i = 0; i < p->pixel_count; i += step, count++) {
+    for (size_t begin = 0; begin < size; begin += step) {
+        size_t end = begin + step < size ? begin + step : size, i = begin;
+        while (i < end && !(c->mask.data[i] > 0.5f))
+            i++;
+        if (i == end) continue;
         uint16_t top = 0;
         for (int k = 0; k < c->count; k++) {
-            uint16_t code = c->picture[k][(size_t)p->pixel[i] * (size_t)c->channels];
+            uint16_t code = c->picture[k][i * (size_t)c->channels];
             top = code > top ? code : top;
         }
         sum += top;
+        count++;
     }
     return (float)(0.01 * sum / (65535.0 * (double)count));
 }
@@ -251,11 +188,14 @@ static float chosen_shadow(const pst_problem *p)
 status pst_solve_ls(const pst_problem *p, pst_surface *out)
 {
     const pst_capture *c = p->capture;
-    ls_job job = {.problem = p,
-                  .out = out,
-                  .low = (p->shadow > 0 ? p->shadow : chosen_shadow(p)) * 65535 * (float)c->channels,
-                  .high = (uint16_t)fminf(ceilf(p->saturation * 65535), 65535)};
+    ls_limits limits = {.low = (p->shadow > 0 ? p->shadow : chosen_shadow(c)) * 65535 * (float)c->channels,
+                        .high = fminf(ceilf(p->saturation * 65535), 65535)};
+    ls_lights *lights;
+    status s = ls_lights_new(p, limits, &lights);
+    if (s != OK) return s;
+    ls_job job = {.capture = c, .lights = lights, .out = out};
     size_t size = (size_t)c->width * (size_t)c->height;
-    parallel_blocks((size + BLOCK - 1) / BLOCK, solve_blocks, &job);
+    parallel_blocks((size + LS_BLOCK - 1) / LS_BLOCK, solve_blocks, &job);
+    ls_lights_free(lights);
     return OK;
 }

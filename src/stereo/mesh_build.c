@@ -76,7 +76,7 @@ static void add_square(builder *b, size_t top_left)
 
 static vec3 corner(const surface_mesh *m, uint32_t v)
 {
-    return vec3_make(m->position[3 * v], m->position[3 * v + 1], m->position[3 * v + 2]);
+    return vec3_of(m->position + 3 * (size_t)v);
 }
 
 /* Sums of the triangles' normals, weighed by area. */
@@ -94,7 +94,7 @@ static void add_normals(surface_mesh *m)
     }
     for (size_t v = 0; v < m->vertices; v++) {
         float *to = m->normal + 3 * v;
-        vec3 n = vec3_normalize(vec3_make(to[0], to[1], to[2]));
+        vec3 n = vec3_normalize(vec3_of(to));
         bool alone = !(vec3_dot(n, n) > 0);
         to[0] = alone ? 0 : n.x;
         to[1] = alone ? 0 : n.y;
@@ -172,10 +172,10 @@ void surface_mesh_free(surface_mesh *m)
 vec3 surface_mesh_normal(const surface_mesh *m, const pst_mesh_source *from, size_t vertex)
 {
     const float *own = m->normal + 3 * vertex;
-    vec3 geometric = vec3_make(own[0], own[1], own[2]);
+    vec3 geometric = vec3_of(own);
     if (!from->normal) return geometric;
     const float *n = from->normal->data + 3 * (size_t)m->pixel[vertex];
-    vec3 mapped = vec3_normalize(vec3_make(n[0], n[1], n[2]));
+    vec3 mapped = vec3_normalize(vec3_of(n));
     return vec3_dot(mapped, mapped) > (real)0.5 ? mapped : geometric;
 }
 

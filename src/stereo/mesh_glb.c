@@ -43,7 +43,7 @@ static int add_part(glb *g, part p)
 
 static vec3 vertex_normal(const surface_mesh *m, size_t v)
 {
-    return vec3_make(m->normal[3 * v], m->normal[3 * v + 1], m->normal[3 * v + 2]);
+    return vec3_of(m->normal + 3 * v);
 }
 
 /* x to the right, made perpendicular to the normal. */

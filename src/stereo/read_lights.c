@@ -11,22 +11,12 @@ enum { TEXT_MOST = 1 << 22 };
 /* lights.txt, else the folder's .lp; *path is NULL if there is neither. */
 static status find_lights(const char *folder, const char *asked, char **path)
 {
-    static const char *const endings[] = {".lp", NULL};
-    *path = asked ? strdup(asked) : file_join(folder, "lights.txt");
-    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
-    if (asked || file_exists(*path)) return OK;
+    size_t found;
+    status s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
+    if (s != OK || found < 2) return s;
     free(*path);
     *path = NULL;
-    char **names;
-    size_t count;
-    status s = file_list(folder, endings, &names, &count);
-    if (s != OK || count == 0) return s;
-    if (count > 1)
-        s = fail(ERROR_INPUT, "%s has %zu .lp files; say which with --lights", folder, count);
-    else if (!(*path = strdup(names[0])))
-        s = fail(ERROR_MEMORY, "no memory for a file name");
-    file_list_free(names, count);
-    return s;
+    return fail(ERROR_INPUT, "%s has %zu .lp files; say which with --lights", folder, found);
 }
 
 /* The name alone of what an .lp line may give with a path from another machine. */

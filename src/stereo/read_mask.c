@@ -10,19 +10,8 @@ static const float BLACK = 0.004f;
 
 status pst_find_mask(const char *folder, const char *asked, char **path)
 {
-    static const char *const endings[] = {".mask.png", NULL};
-    *path = asked ? strdup(asked) : file_join(folder, "mask.png");
-    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
-    if (asked || file_exists(*path)) return OK;
-    free(*path);
-    *path = NULL;
-    char **names;
-    size_t count;
-    status s = file_list(folder, endings, &names, &count);
-    if (s != OK || count == 0) return s;
-    *path = strdup(names[0]);
-    file_list_free(names, count);
-    return *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    size_t others;
+    return pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
 }
 
 static status mask_from_pictures(pst_capture *c)

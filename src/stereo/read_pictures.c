@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
@@ -89,6 +90,7 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
     size_t count = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
     uint16_t *codes = malloc(count * sizeof *codes);
     if (!codes) return fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
+    memory_prefer_large_pages(codes, count * sizeof *codes);
     const float *ambient = r->ambient.data;
     float scale = bits == 32 ? r->scale : 1;
     for (size_t i = 0; i < count; i++) {

@@ -67,18 +67,26 @@ static status check_method(const pst_capture *c, pst_method m)
     return distant ? pst_check_directions(c->light, c->count) : OK;
 }
 
-static status list_pixels(const pst_capture *c, pst_problem *p)
+static status check_mask(const pst_capture *c)
 {
-    size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     if (c->mask.width != c->width || c->mask.height != c->height)
         return fail(ERROR_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width, c->mask.height,
                     c->width, c->height);
+    size_t size = (size_t)c->width * (size_t)c->height;
+    for (size_t i = 0; i < size; i++)
+        if (c->mask.data[i] > 0.5f) return OK;
+    return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
+}
+
+static status list_pixels(const pst_capture *c, pst_problem *p)
+{
+    size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     p->pixel = malloc(size * sizeof *p->pixel);
     if (!p->pixel) return fail(ERROR_MEMORY, "no memory for a list of %zu pixels", size);
     for (size_t i = 0; i < size; i++)
         if (c->mask.data[i] > 0.5f) p->pixel[n++] = (uint32_t)i;
     p->pixel_count = n;
-    return n ? OK : fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
+    return OK;
 }
 
 /* Intensities that are not known count as 1; a light of no intensity tells nothing and would divide by zero. */
@@ -136,7 +144,8 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .saturation = options->saturation > 0 ? options->saturation : 0.98f,
                      .iterations = options->iterations};
     s = list_lights(c, light);
-    if (s == OK) s = list_pixels(c, &p);
+    if (s == OK) s = check_mask(c);
+    if (s == OK && out->method != PST_LS) s = list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
     free(p.pixel);

@@ -11,7 +11,7 @@
 typedef struct pst_problem {
     const pst_capture *capture;
     const pst_light *light; /* count; intensities above 0. The capture's own unless a solver found better */
-    uint32_t *pixel;        /* indices of the mask's pixels, rows from the top */
+    uint32_t *pixel;        /* indices of the mask's pixels, rows from the top; NULL for ls, which streams them all */
     size_t pixel_count;
     float shadow, saturation; /* shares of full scale: usable is shadow < value < saturation */
     int iterations;           /* 0: the solver's own */

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/half.h"
-#include "optics/sh.h"
+#include "optics/orientation.h"
 #include "render/sample.h"
 
 enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
@@ -144,42 +144,6 @@ static bool keep(trn_dataset *d, size_t i, packed *p)
     return false;
 }
 
-static size_t turned(int size, int orientation, size_t place)
-{
-    int x = (int)(place % (size_t)size), y = (int)(place / (size_t)size);
-    if (orientation & TRN_FLIP_X) x = size - 1 - x;
-    if (orientation & TRN_FLIP_Y) y = size - 1 - y;
-    if (orientation & TRN_TRANSPOSE) {
-        int t = x;
-        x = y;
-        y = t;
-    }
-    return (size_t)y * (size_t)size + (size_t)x;
-}
-
-/* Rows run downwards and y upwards, so exchanging rows and columns is (x, y) to (-y, -x). */
-static void turn_normal(int orientation, float n[3])
-{
-    if (orientation & TRN_FLIP_X) n[0] = -n[0];
-    if (orientation & TRN_FLIP_Y) n[1] = -n[1];
-    if (orientation & TRN_TRANSPOSE) {
-        float t = n[0];
-        n[0] = -n[1];
-        n[1] = -t;
-    }
-}
-
-void trn_turn_sh(int orientation, float sh[9][3])
-{
-    float columns[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, matrix[3][3];
-    for (int j = 0; j < 3; j++) {
-        turn_normal(orientation, columns[j]);
-        for (int i = 0; i < 3; i++)
-            matrix[i][j] = columns[j][i];
-    }
-    sh_turn(sh, (const float(*)[3])matrix);
-}
-
 static const uint16_t *get3(const uint16_t *from, float *to)
 {
     for (int c = 0; c < 3; c++)
@@ -204,10 +168,10 @@ static void unpack(const packed *p, int orientation, const trn_view *v)
     clear(v);
     const uint16_t *place = p->data, *value = p->data + 2 * (size_t)p->count;
     for (uint32_t k = 0; k < p->count; k++, place += 2) {
-        size_t i = turned(v->size, orientation, (size_t)place[0] | (size_t)place[1] << 16);
+        size_t i = orientation_place(orientation, v->size, (size_t)place[0] | (size_t)place[1] << 16);
         value = get3(value, v->albedo + 3 * i);
         value = get3(value, v->normal + 3 * i);
-        turn_normal(orientation, v->normal + 3 * i);
+        orientation_turn(orientation, v->normal + 3 * i);
         value = get3(value, v->direct + 3 * i);
         value = get3(value, v->indirect + 3 * i);
         v->roughness[i] = half_to_float(*value++);
@@ -218,7 +182,7 @@ static void unpack(const packed *p, int orientation, const trn_view *v)
     if (!v->sh) return;
     float sh[9][3];
     memcpy(sh, p->sh, sizeof sh);
-    trn_turn_sh(orientation, sh);
+    orientation_turn_sh(orientation, sh);
     memcpy(v->sh, sh, sizeof sh);
 }
 
@@ -230,7 +194,7 @@ status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3])
         memcpy(sh, p->sh, sizeof p->sh);
     else
         s = sample_read_sh(d->paths[i], sh);
-    trn_turn_sh(orientation, sh);
+    orientation_turn_sh(orientation, sh);
     return s;
 }
 

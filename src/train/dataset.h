@@ -39,10 +39,6 @@ typedef struct trn_view {
     float *target_sh;                      /* 27 values, model_encode_sh: the target's environment; or NULL */
 } trn_view;
 
-/* An orientation: the camera, its flash and the frame look the same after each of the square's eight symmetries, so a
- * turned sample is as true as the original. Sum of: */
-enum { TRN_FLIP_X = 1, TRN_FLIP_Y = 2, TRN_TRANSPOSE = 4, TRN_ORIENTATIONS = 8 };
-
 typedef struct trn_dataset_options {
     int size;          /* what every sample's width and height must be */
     double memory_gib; /* samples read are kept until they fill this */
@@ -53,12 +49,11 @@ typedef struct trn_dataset_options {
 status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out);
 void trn_dataset_close(trn_dataset *d);
 size_t trn_dataset_count(const trn_dataset *d);
-/* Everything outside the outline becomes zero. Safe to call from several threads. */
+/* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Safe to call from several
+ * threads. */
 status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out);
 /* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
 status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);
-/* What a turn makes of an environment's coefficients. */
-void trn_turn_sh(int orientation, float sh[9][3]);
 /* Of the first sample read; 0 before. */
 int trn_dataset_generator_version(const trn_dataset *d);
 

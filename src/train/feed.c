@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "optics/orientation.h"
 #include "train/prepare.h"
 
 enum { MESSAGE = 512, POINT_BUFFERS = 12, BUFFERS = 15 };
@@ -108,7 +109,7 @@ static status draw_environments(const trn_feed *f, const item *it, trn_lighting 
     size_t first = f->validation ? from->training_count : 0;
     size_t count = f->validation ? trn_dataset_count(from->data) - first : from->training_count;
     size_t other = first + (size_t)rng_below(&r, (int)count);
-    int orientation = rng_below(&r, TRN_ORIENTATIONS);
+    int orientation = rng_below(&r, ORIENTATIONS);
     out->strength = trn_draw_strength(&r);
     float strength = trn_draw_strength(&r);
     status s = trn_dataset_sh(from->data, other, orientation, out->target_sh);
@@ -125,7 +126,7 @@ static void fill_item(void *context, size_t i)
     rng r =
         rng_at((uint64_t)c->seed, it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
     trn_lighting lighting = {.target = trn_draw_light(&r)};
-    int orientation = f->validation ? 0 : rng_below(&r, TRN_ORIENTATIONS);
+    int orientation = f->validation ? 0 : rng_below(&r, ORIENTATIONS);
     trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
     it->result = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
     if (it->result == OK && f->source.environment) it->result = draw_environments(f, it, &lighting);

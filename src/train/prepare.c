@@ -73,11 +73,6 @@ static void take_photograph(const trn_view *v, bool global, const trn_camera *le
     }
 }
 
-static vec3 at3(const float *data, size_t i)
-{
-    return vec3_make(data[3 * i], data[3 * i + 1], data[3 * i + 2]);
-}
-
 void trn_render(const trn_view *maps, vec3 light, float *out)
 {
     int size = maps->size;
@@ -88,9 +83,9 @@ void trn_render(const trn_view *maps, vec3 light, float *out)
         for (int x = 0; x < size; x++) {
             size_t i = (size_t)y * (size_t)size + (size_t)x;
             if (maps->mask[i] <= 0.5f) continue;
-            shade_input in = {.albedo = at3(maps->albedo, i),
+            shade_input in = {.albedo = vec3_of(maps->albedo + 3 * i),
                               .roughness = maps->roughness[i],
-                              .normal = at3(maps->normal, i),
+                              .normal = vec3_of(maps->normal + 3 * i),
                               .depth = maps->depth[i],
                               .ray = {((float)x + 0.5f - half) * pixel, (half - (float)y - 0.5f) * pixel, -1},
                               .light = light,
@@ -115,8 +110,8 @@ void trn_add_environment(const trn_view *maps, const float sh[9][3], float *imag
     size_t pixels = (size_t)maps->size * (size_t)maps->size;
     for (size_t i = 0; i < pixels; i++) {
         if (maps->mask[i] <= 0) continue;
-        vec3 white = vec3_scale(sh_irradiance(sh, at3(maps->normal, i)), maps->mask[i] / BRDF_PI);
-        add3(image, i, vec3_mul(white, at3(maps->albedo, i)));
+        vec3 white = vec3_scale(sh_irradiance(sh, vec3_of(maps->normal + 3 * i)), maps->mask[i] / BRDF_PI);
+        add3(image, i, vec3_mul(white, vec3_of(maps->albedo + 3 * i)));
     }
 }
 
@@ -130,7 +125,7 @@ static void subtract_highlights(const trn_view *maps, const float sh[9][3], floa
             size_t i = (size_t)y * (size_t)size + (size_t)x;
             if (maps->mask[i] <= 0) continue;
             vec3 view = vec3_scale(camera_ray(&c, (float)x + 0.5f, (float)y + 0.5f), -1);
-            vec3 reflected = ambient_specular(sh, maps->roughness[i], at3(maps->normal, i), view);
+            vec3 reflected = ambient_specular(sh, maps->roughness[i], vec3_of(maps->normal + 3 * i), view);
             add3(image, i, vec3_scale(reflected, -maps->mask[i]));
         }
     }

@@ -40,6 +40,7 @@ absent out.merlin
 echo "wrong use"
 refuses 2 'no photograph' estimate
 refuses 2 'unknown option' estimate disc.hdr --nonsense
+refuses 1 'no weights file merlin-nowhere' estimate disc.hdr --model merlin-nowhere
 refuses 2 'multiple of 32' estimate disc.hdr --size 100
 refuses 2 '--size' estimate disc.hdr --size huge
 refuses 2 '--exposure' estimate disc.hdr --exposure nan

@@ -3,6 +3,7 @@
 #include "image/image.h"
 #include "image/write.h"
 #include "merlin/merlin.h"
+#include "scratch.h"
 #include "weights.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@
 enum { SIDE = 64 };
 
 typedef struct fixture {
-    char folder[64], weights[96], point_weights[96], output[96], surroundings[96];
+    char *folder, weights[96], point_weights[96], output[96], surroundings[96];
     merlin_model *model, *point;
     merlin_image photo, mask;
     merlin_maps maps;
@@ -61,8 +62,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     *state = f;
-    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
-    if (!mkdtemp(f->folder)) return -1;
+    f->folder = scratch_new();
     snprintf(f->weights, sizeof f->weights, "%s/both.safetensors", f->folder);
     snprintf(f->point_weights, sizeof f->point_weights, "%s/point.safetensors", f->folder);
     snprintf(f->output, sizeof f->output, "%s/out", f->folder);
@@ -85,11 +85,9 @@ static int tear_down(void **state)
     merlin_model_close(f->point);
     merlin_image_free(&f->photo);
     merlin_image_free(&f->mask);
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", f->folder);
-    int code = system(command);
+    scratch_remove(f->folder);
     free(f);
-    return code;
+    return 0;
 }
 
 static void photographs_environment_is_estimated_and_kept(void **state)

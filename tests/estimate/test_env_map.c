@@ -4,6 +4,7 @@
 #include "estimate/env_map.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
+#include "surroundings.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
 #include <setjmp.h>
@@ -13,24 +14,10 @@
 
 #include <cmocka.h>
 
-enum { WIDTH = 256, HEIGHT = 128 };
-
-/* A map of what `radiance` gives in the middle of every texel. */
 static env_map map_of(vec3 (*radiance)(vec3))
 {
-    img latlong = {0};
     env_map e;
-    assert_int_equal(img_new(&latlong, WIDTH, HEIGHT, 3), OK);
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++) {
-            vec3 c = radiance(latlong_direction(((float)x + 0.5f) / WIDTH, ((float)y + 0.5f) / HEIGHT));
-            float *p = img_at(&latlong, x, y);
-            p[0] = c.x;
-            p[1] = c.y;
-            p[2] = c.z;
-        }
-    assert_int_equal(env_map_new(&latlong, &e), OK);
-    img_free(&latlong);
+    assert_int_equal(surroundings(radiance, 256, &e), OK);
     return e;
 }
 

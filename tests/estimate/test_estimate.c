@@ -3,6 +3,7 @@
 #include "base/rng.h"
 #include "image/read.h"
 #include "merlin/merlin.h"
+#include "scratch.h"
 #include "weights.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@
 enum { WIDTH = 150, HEIGHT = 110 };
 
 typedef struct fixture {
-    char folder[64], weights[96], output[96];
+    char *folder, weights[96], output[96];
     merlin_model *model;
     merlin_image photo, mask;
 } fixture;
@@ -48,8 +49,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     *state = f;
-    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
-    if (!mkdtemp(f->folder)) return -1;
+    f->folder = scratch_new();
     snprintf(f->weights, sizeof f->weights, "%s/random.safetensors", f->folder);
     snprintf(f->output, sizeof f->output, "%s/out", f->folder);
     draw(f);
@@ -63,11 +63,9 @@ static int tear_down(void **state)
     merlin_model_close(f->model);
     merlin_image_free(&f->photo);
     merlin_image_free(&f->mask);
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", f->folder);
-    int code = system(command);
+    scratch_remove(f->folder);
     free(f);
-    return code;
+    return 0;
 }
 
 static merlin_params small(void)

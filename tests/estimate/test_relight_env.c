@@ -6,6 +6,7 @@
 #include "optics/camera.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
+#include "surroundings.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
 #include <setjmp.h>
@@ -15,7 +16,7 @@
 
 #include <cmocka.h>
 
-enum { SIZE = 24, PIXELS = SIZE * SIZE, WIDTH = 512, HEIGHT = 256 };
+enum { SIZE = 24, PIXELS = SIZE * SIZE };
 
 static vec3 view_of(int i)
 {
@@ -50,21 +51,10 @@ static surface wall(float least)
     return s;
 }
 
-static env_map surroundings(vec3 (*radiance)(vec3))
+static env_map map_of(vec3 (*radiance)(vec3))
 {
-    img latlong = {0};
     env_map e;
-    assert_int_equal(img_new(&latlong, WIDTH, HEIGHT, 3), OK);
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++) {
-            vec3 c = radiance(latlong_direction(((float)x + 0.5f) / WIDTH, ((float)y + 0.5f) / HEIGHT));
-            float *p = img_at(&latlong, x, y);
-            p[0] = c.x;
-            p[1] = c.y;
-            p[2] = c.z;
-        }
-    assert_int_equal(env_map_new(&latlong, &e), OK);
-    img_free(&latlong);
+    assert_int_equal(surroundings(radiance, 512, &e), OK);
     return e;
 }
 
@@ -99,7 +89,7 @@ static void white_furnace_gives_the_brdfs_directional_albedo(void **state)
 {
     (void)state;
     surface s = wall(0.2f);
-    env_map e = surroundings(white);
+    env_map e = map_of(white);
     img image = picture();
     surface_add_ambient(&s, (const float(*)[3])e.sh, &image);
     surface_add_reflections(&s, &e, &image);
@@ -130,7 +120,7 @@ static void small_bright_spot_is_a_distant_light(void **state)
 {
     (void)state;
     surface s = wall(0.3f);
-    env_map e = surroundings(small_bright_spot);
+    env_map e = map_of(small_bright_spot);
     img diffuse = picture(), shiny = picture();
     surface_add_ambient(&s, (const float(*)[3])e.sh, &diffuse);
     surface_add_reflections(&s, &e, &shiny);
@@ -158,7 +148,7 @@ static void highlights_turn_with_the_environment(void **state)
 {
     (void)state;
     surface s = wall(0.3f);
-    env_map e = surroundings(small_bright_spot);
+    env_map e = map_of(small_bright_spot);
     img before = picture(), after = picture(), back = picture();
     surface_add_reflections(&s, &e, &before);
     env_map_turn(&e, 120);
@@ -189,7 +179,7 @@ static void highlights_of_smooth_surroundings_need_no_map(void **state)
 {
     (void)state;
     surface s = wall(0.2f);
-    env_map e = surroundings(sunset);
+    env_map e = map_of(sunset);
     img by_map = picture(), by_coefficients = picture();
     surface_add_reflections(&s, &e, &by_map);
     surface_add_ambient_highlights(&s, (const float(*)[3])e.sh, &by_coefficients);

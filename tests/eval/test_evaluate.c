@@ -7,9 +7,11 @@
 
 #include "base/file.h"
 #include "eval/evaluate.h"
+#include "eval/maps.h"
 #include "eval/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
+#include "scratch.h"
 #include "sphere.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
@@ -52,7 +54,7 @@ static void write_weights(const char *path, const model_config *config)
 }
 
 typedef struct fixture {
-    char folder[64], *data, *weights, *figure;
+    char *folder, *data, *weights, *figure;
 } fixture;
 
 static void write_sphere(const char *folder, int index, int size, int targets)
@@ -61,6 +63,8 @@ static void write_sphere(const char *folder, int index, int size, int targets)
     sample s;
     assert_int_equal(sphere_sample(&of, targets, &s), OK);
     s.index = (uint64_t)index;
+    for (int c = 0; c < 3; c++)
+        s.sh[0][c] = (float)(index + 1); /* even surroundings, brighter from one to the next */
     strcpy(s.shape, index == 2 ? "relief" : "union");
     char *path = sample_path(folder, s.index);
     assert_int_equal(sample_write(path, &s), OK);
@@ -72,8 +76,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
-    strcpy(f->folder, "/tmp/merlin-test-XXXXXX");
-    assert_non_null(mkdtemp(f->folder));
+    f->folder = scratch_new();
     f->data = file_join(f->folder, "data");
     f->weights = file_join(f->folder, "tiny.safetensors");
     f->figure = file_join(f->folder, "sheet.png");
@@ -85,22 +88,10 @@ static int set_up(void **state)
     return 0;
 }
 
-static void empty_folder(const char *folder)
-{
-    char **names;
-    size_t count;
-    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
-    for (size_t i = 0; i < count; i++)
-        assert_int_equal(unlink(names[i]), 0);
-    file_list_free(names, count);
-    assert_int_equal(rmdir(folder), 0);
-}
-
 static int tear_down(void **state)
 {
     fixture *f = *state;
-    empty_folder(f->data);
-    empty_folder(f->folder);
+    scratch_remove(f->folder);
     free(f->data);
     free(f->weights);
     free(f->figure);
@@ -122,6 +113,10 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_string_equal(r.class_names[1], "relief");
     assert_int_equal(r.classes[0].samples, 2);
     for (int row = 0; row < EVAL_ROWS; row++) {
+        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF) {
+            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's */
+            continue;
+        }
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MODEL)));
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MEAN)));
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_INFLATED)));
@@ -151,6 +146,29 @@ static void evaluation_is_deterministic(void **state)
     assert_string_equal(json[0], json[1]);
     free(json[0]);
     free(json[1]);
+}
+
+/* The decoder sees one view still; the maps, and all that is rendered from them, change. */
+static void more_views_change_the_maps(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    eval_report one, eight;
+    assert_int_equal(eval_run(&options, &one), OK);
+    options.views = 1;
+    assert_int_equal(eval_run(&options, &eight), OK);
+    assert_memory_equal(&one.all, &eight.all, sizeof one.all);
+    options.views = 8;
+    assert_int_equal(eval_run(&options, &eight), OK);
+    for (int row = 0; row < EVAL_ROWS; row++) {
+        if (!one.all.count[row][EVAL_MODEL]) continue;
+        double a = eval_score(&one.all, (eval_row)row, EVAL_MODEL),
+               b = eval_score(&eight.all, (eval_row)row, EVAL_MODEL);
+        if (row == EVAL_RELIT_NETWORK)
+            assert_true(a == b);
+        else
+            assert_true(isfinite(b) && a != b);
+    }
 }
 
 static void a_model_without_extras_leaves_its_rows_empty(void **state)
@@ -187,7 +205,6 @@ static void samples_of_another_size_are_refused(void **state)
     write_sphere(folder, 1, 96, 0);
     assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
-    empty_folder(folder);
     free(folder);
 }
 
@@ -210,6 +227,28 @@ static void a_verdict_compares_with_the_better_trivial_answer(void **state)
     s.sum[EVAL_RELIT_BRDF][EVAL_MODEL] = 0.98; /* against 0.92 */
     assert_true(eval_judge(&s, EVAL_RELIT_BRDF).holds);
     assert_false(eval_judge(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
+}
+
+static void even_surroundings_show_the_albedo(void **state)
+{
+    (void)state;
+    sphere of = {{0, 0, -1}, 0.3f, {0.2f, 0.5f, 0.8f}, 0.5f, 64};
+    sample s;
+    eval_maps maps;
+    img lit;
+    assert_int_equal(sphere_sample(&of, 0, &s), OK);
+    assert_int_equal(eval_maps_of_sample(&s, &maps), OK);
+    float radiance = 0.7f, even[9][3] = {0};
+    for (int c = 0; c < 3; c++)
+        even[0][c] = radiance / 0.28209479f;
+    eval_lighting surroundings = {{0, 0, 0}, (const float(*)[3])even};
+    assert_int_equal(eval_render(&maps, &s.mask, 60, 0, &surroundings, &lit), OK);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(img_at(&lit, 32, 32)[c], radiance * of.albedo[c], 1e-5);
+    assert_float_equal(img_at(&lit, 0, 0)[0], 0, 0);
+    img_free(&lit);
+    eval_maps_free(&maps);
+    sample_free(&s);
 }
 
 static void remove_environments(const char *folder)
@@ -235,7 +274,13 @@ static void models_of_both_lights_are_shown_the_environment_too(void **state)
     eval_report r;
     assert_int_equal(eval_run(&options, &r), OK);
     assert_true(isfinite(eval_score(&r.all, EVAL_RECONSTRUCTION, EVAL_MODEL)));
-    assert_int_equal(r.all.count[EVAL_RELIT_NETWORK][EVAL_MODEL], 0);
+    assert_int_equal(r.all.count[EVAL_RELIT_NETWORK][EVAL_MODEL], 4 * SAMPLES);
+    assert_int_equal(r.all.count[EVAL_BOTH_NETWORK][EVAL_MODEL], 4 * SAMPLES);
+    assert_int_equal(r.all.count[EVAL_BOTH_BRDF][EVAL_INFLATED], 4 * SAMPLES);
+    /* 1, 2 and 3 times Y00, at 0.316 of their strength: the mean is off by 1, 0 and 1 */
+    assert_true(isfinite(eval_score(&r.all, EVAL_SURROUNDINGS, EVAL_MODEL)));
+    double one = 0.316 * 0.28209479;
+    assert_float_equal(eval_score(&r.all, EVAL_SURROUNDINGS, EVAL_MEAN), 2 * one * one / 3, 1e-7);
     remove_environments(f->data);
     assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "--no-env"));
@@ -246,9 +291,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluation_fills_every_row_and_class),
         cmocka_unit_test(evaluation_is_deterministic),
+        cmocka_unit_test(more_views_change_the_maps),
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
+        cmocka_unit_test(even_surroundings_show_the_albedo),
         cmocka_unit_test(models_of_both_lights_are_shown_the_environment_too),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

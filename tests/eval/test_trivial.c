@@ -8,31 +8,12 @@
 #include "base/file.h"
 #include "eval/metrics.h"
 #include "eval/trivial.h"
+#include "scratch.h"
 #include "sphere.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 static const sphere ball = {{0.1f, -0.05f, -1.2f}, 0.35f, {0.6f, 0.4f, 0.2f}, 0.7f, 96};
-
-static char *temporary_folder(void)
-{
-    char *path = strdup("/tmp/merlin-test-XXXXXX");
-    assert_non_null(path);
-    assert_non_null(mkdtemp(path));
-    return path;
-}
-
-static void remove_folder(char *folder)
-{
-    char **names;
-    size_t count;
-    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
-    for (size_t i = 0; i < count; i++)
-        assert_int_equal(unlink(names[i]), 0);
-    file_list_free(names, count);
-    assert_int_equal(rmdir(folder), 0);
-    free(folder);
-}
 
 static void write_sphere(const char *folder, const sphere *of, uint64_t index)
 {
@@ -79,7 +60,7 @@ static void an_inflated_sphere_comes_close_to_the_sphere(void **state)
 static void means_of_one_sample_are_the_sample(void **state)
 {
     (void)state;
-    char *folder = temporary_folder();
+    char *folder = scratch_new();
     write_sphere(folder, &ball, 0);
     write_sphere(folder, &ball, 1);
     sample s;
@@ -99,13 +80,13 @@ static void means_of_one_sample_are_the_sample(void **state)
     eval_means_free(&means);
     eval_maps_free(&truth);
     sample_free(&s);
-    remove_folder(folder);
+    scratch_remove(folder);
 }
 
 static void means_survive_their_file_and_another_size(void **state)
 {
     (void)state;
-    char *folder = temporary_folder();
+    char *folder = scratch_new();
     write_sphere(folder, &ball, 0);
     eval_means means, back;
     char *path = file_join(folder, "means.exr");
@@ -128,13 +109,13 @@ static void means_survive_their_file_and_another_size(void **state)
     eval_means_free(&back);
     eval_means_free(&means);
     free(path);
-    remove_folder(folder);
+    scratch_remove(folder);
 }
 
 static void samples_of_two_sizes_have_no_mean(void **state)
 {
     (void)state;
-    char *folder = temporary_folder();
+    char *folder = scratch_new();
     sphere small = ball;
     small.size = 64;
     write_sphere(folder, &ball, 0);
@@ -142,19 +123,19 @@ static void samples_of_two_sizes_have_no_mean(void **state)
     eval_means means;
     assert_int_equal(eval_means_of_folder(folder, 0, true, &means), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
-    remove_folder(folder);
+    scratch_remove(folder);
 }
 
 static void a_sample_is_no_file_of_means(void **state)
 {
     (void)state;
-    char *folder = temporary_folder();
+    char *folder = scratch_new();
     write_sphere(folder, &ball, 0);
     char *path = sample_path(folder, 0);
     eval_means means;
     assert_int_equal(eval_means_read(path, 96, 96, &means), ERROR_INPUT);
     free(path);
-    remove_folder(folder);
+    scratch_remove(folder);
 }
 
 int main(void)

@@ -3,7 +3,7 @@
 
 #include "image/exr.h"
 
-#include "folder.h"
+#include "writes.h"
 
 enum { WIDTH = 37, HEIGHT = 41, COUNT = WIDTH * HEIGHT };
 
@@ -31,9 +31,9 @@ static void written_channels_and_attributes_are_read_back(void **state)
     (void)state;
     static float rgb[3 * COUNT], depth[COUNT], rgb2[4 * COUNT], depth2[COUNT];
     fill(rgb, depth);
-    assert_int_equal(write_example(in_folder("a.exr"), rgb, depth), OK);
+    assert_int_equal(write_example(scratch_path("a.exr"), rgb, depth), OK);
     exr_file *f = NULL;
-    assert_int_equal(exr_open(in_folder("a.exr"), &f), OK);
+    assert_int_equal(exr_open(scratch_path("a.exr"), &f), OK);
     assert_int_equal(exr_width(f), WIDTH);
     assert_int_equal(exr_height(f), HEIGHT);
     assert_true(exr_has_channel(f, "albedo.G"));
@@ -70,9 +70,9 @@ static void values_beyond_half_are_clamped(void **state)
     float back[4] = {0};
     const exr_channel channel = {"Y", values, 1};
     const exr_target target = {"Y", back, 1};
-    assert_int_equal(exr_write(in_folder("b.exr"), 2, 2, &channel, 1, NULL, 0), OK);
+    assert_int_equal(exr_write(scratch_path("b.exr"), 2, 2, &channel, 1, NULL, 0), OK);
     exr_file *f = NULL;
-    assert_int_equal(exr_open(in_folder("b.exr"), &f), OK);
+    assert_int_equal(exr_open(scratch_path("b.exr"), &f), OK);
     assert_int_equal(exr_read(f, &target, 1), OK);
     exr_close(f);
     assert_true(back[0] == 65504 && back[1] == -65504 && back[2] == 65504 && back[3] == 0x1p-24f);
@@ -83,9 +83,9 @@ static void missing_channel_is_named(void **state)
     (void)state;
     float y = 0;
     const exr_channel channel = {"Y", &y, 1};
-    assert_int_equal(exr_write(in_folder("c.exr"), 1, 1, &channel, 1, NULL, 0), OK);
+    assert_int_equal(exr_write(scratch_path("c.exr"), 1, 1, &channel, 1, NULL, 0), OK);
     exr_file *f = NULL;
-    assert_int_equal(exr_open(in_folder("c.exr"), &f), OK);
+    assert_int_equal(exr_open(scratch_path("c.exr"), &f), OK);
     const exr_target target = {"normal.X", &y, 1};
     assert_int_equal(exr_read(f, &target, 1), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "normal.X"));
@@ -113,16 +113,16 @@ static void every_truncation_is_refused(void **state)
     (void)state;
     static float rgb[3 * COUNT], depth[COUNT];
     fill(rgb, depth);
-    assert_int_equal(write_example(in_folder("d.exr"), rgb, depth), OK);
+    assert_int_equal(write_example(scratch_path("d.exr"), rgb, depth), OK);
     char *data = NULL;
     size_t size = 0;
-    assert_int_equal(file_read(in_folder("d.exr"), 1u << 20, &data, &size), OK);
+    assert_int_equal(file_read(scratch_path("d.exr"), 1u << 20, &data, &size), OK);
     for (size_t keep = 0; keep < size; keep += keep < 700 ? 1 : 97) {
-        FILE *out = fopen(in_folder("cut.exr"), "wb");
+        FILE *out = fopen(scratch_path("cut.exr"), "wb");
         assert_non_null(out);
         assert_int_equal(fwrite(data, 1, keep, out), keep);
         fclose(out);
-        assert_int_not_equal(read_depth(in_folder("cut.exr")), OK);
+        assert_int_not_equal(read_depth(scratch_path("cut.exr")), OK);
         assert_non_null(strstr(status_message(), "cut.exr"));
         assert_null(strchr(status_message(), '\n'));
     }
@@ -133,11 +133,11 @@ static void missing_and_foreign_files_are_refused(void **state)
 {
     (void)state;
     exr_file *f = NULL;
-    assert_int_equal(exr_open(in_folder("none.exr"), &f), ERROR_INPUT);
+    assert_int_equal(exr_open(scratch_path("none.exr"), &f), ERROR_INPUT);
     assert_null(f);
     assert_non_null(strstr(status_message(), "none.exr"));
-    assert_int_equal(file_write(in_folder("text.exr"), "not a picture\n", 14), OK);
-    assert_int_equal(exr_open(in_folder("text.exr"), &f), ERROR_INPUT);
+    assert_int_equal(file_write(scratch_path("text.exr"), "not a picture\n", 14), OK);
+    assert_int_equal(exr_open(scratch_path("text.exr"), &f), ERROR_INPUT);
     assert_null(f);
 }
 
@@ -146,24 +146,24 @@ static void failed_write_leaves_nothing(void **state)
     (void)state;
     float y = 0;
     const exr_channel channel = {"Y", &y, 1};
-    assert_int_equal(exr_write(in_folder("no/such/folder.exr"), 1, 1, &channel, 1, NULL, 0), ERROR_OUTPUT);
+    assert_int_equal(exr_write(scratch_path("no/such/folder.exr"), 1, 1, &channel, 1, NULL, 0), ERROR_OUTPUT);
     assert_non_null(strstr(status_message(), "folder.exr"));
     assert_null(strchr(status_message(), '~'));
     /* the header is refused after the file was begun: an attribute may not change the type of a standard one */
     const exr_attribute wrong = exr_text("screenWindowWidth", "wide");
-    assert_int_equal(exr_write(in_folder("wrong.exr"), 1, 1, &channel, 1, &wrong, 1), ERROR_OUTPUT);
-    assert_false(file_exists(in_folder("wrong.exr")));
+    assert_int_equal(exr_write(scratch_path("wrong.exr"), 1, 1, &channel, 1, &wrong, 1), ERROR_OUTPUT);
+    assert_false(file_exists(scratch_path("wrong.exr")));
     const exr_channel twice[] = {{"Y", &y, 1}, {"Y", &y, 1}};
-    assert_int_equal(exr_write(in_folder("twice.exr"), 1, 1, twice, 2, NULL, 0), ERROR_USAGE);
-    assert_false(file_exists(in_folder("twice.exr")));
+    assert_int_equal(exr_write(scratch_path("twice.exr"), 1, 1, twice, 2, NULL, 0), ERROR_USAGE);
+    assert_false(file_exists(scratch_path("twice.exr")));
     static float rgb[3 * COUNT], depth[COUNT];
     fill(rgb, depth);
     limit_file_size(500); /* inside the first chunk */
-    status full = write_example(in_folder("full.exr"), rgb, depth);
+    status full = write_example(scratch_path("full.exr"), rgb, depth);
     limit_file_size(0);
     assert_int_equal(full, ERROR_OUTPUT);
     assert_non_null(strstr(status_message(), "full.exr"));
-    assert_false(file_exists(in_folder("full.exr")));
+    assert_false(file_exists(scratch_path("full.exr")));
     assert_false(folder_has_leftovers());
 }
 
@@ -210,9 +210,9 @@ static void tiles_of_float_and_uint_are_read(void **state)
         depth[i] = 0.1f * (float)i;
         id[i] = (uint32_t)i;
     }
-    write_tiles(in_folder("tiles.exr"), depth, id, 16);
+    write_tiles(scratch_path("tiles.exr"), depth, id, 16);
     exr_file *f = NULL;
-    assert_int_equal(exr_open(in_folder("tiles.exr"), &f), OK);
+    assert_int_equal(exr_open(scratch_path("tiles.exr"), &f), OK);
     const exr_target targets[] = {{"id.Y", id2, 1}, {"depth.Z", depth2, 1}};
     assert_int_equal(exr_read(f, targets, 2), OK);
     exr_close(f);
@@ -231,5 +231,5 @@ int main(void)
         cmocka_unit_test(failed_write_leaves_nothing),
         cmocka_unit_test(tiles_of_float_and_uint_are_read),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

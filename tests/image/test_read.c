@@ -5,7 +5,7 @@
 #include "image/read.h"
 #include "image/write.h"
 
-#include "folder.h"
+#include "writes.h"
 
 /* A libvips image of 8- or 16-bit codes, for fixtures. */
 static VipsImage *fixture(const void *codes, int width, int height, int bands, VipsInterpretation interpretation)
@@ -24,7 +24,7 @@ static VipsImage *fixture(const void *codes, int width, int height, int bands, V
 /* Saves by the name's ending and drops the image. */
 static const char *save(VipsImage *image, const char *name)
 {
-    const char *path = in_folder(name);
+    const char *path = scratch_path(name);
     if (vips_image_write_to_file(image, path, NULL)) print_error("%s", vips_error_buffer());
     g_object_unref(image);
     assert_true(file_exists(path));
@@ -50,9 +50,9 @@ static void every_8_bit_code_becomes_its_linear_value_and_back(void **state)
     /* the table is the double formula rounded to float */
     for (int i = 0; i < 768; i++)
         assert_true(color.data[i] == (float)exact(i / 3 / 255.0));
-    assert_int_equal(img_write_png(in_folder("b.png"), &color, IMG_SRGB8), OK);
+    assert_int_equal(img_write_png(scratch_path("b.png"), &color, IMG_SRGB8), OK);
     img again = {0};
-    assert_int_equal(img_read(in_folder("b.png"), &again, NULL), OK);
+    assert_int_equal(img_read(scratch_path("b.png"), &again, NULL), OK);
     assert_memory_equal(again.data, color.data, 768 * sizeof(float));
     img_free(&color);
     img_free(&again);
@@ -89,8 +89,8 @@ static void linear_png_round_trips_within_half_a_code(void **state)
     for (int i = 0; i < 63; i++)
         map.data[i] = (float)i / 40 - 0.2f;
     for (int k = 0; k < 2; k++) {
-        assert_int_equal(img_write_png(in_folder("d.png"), &map, kinds[k].encoding), OK);
-        assert_int_equal(img_read_mask(in_folder("d.png"), &back), OK);
+        assert_int_equal(img_write_png(scratch_path("d.png"), &map, kinds[k].encoding), OK);
+        assert_int_equal(img_read_mask(scratch_path("d.png"), &back), OK);
         assert_int_equal(back.channels, 1);
         for (int i = 0; i < 63; i++) {
             float expected = fminf(fmaxf(map.data[i], 0), 1);
@@ -123,7 +123,7 @@ static void every_photograph_format_is_read(void **state)
         img color = {0};
         if (strstr(names[k], "heic")) {
             VipsImage *image = quarters();
-            int failed = vips_heifsave(image, in_folder(names[k]), "Q", 90, NULL);
+            int failed = vips_heifsave(image, scratch_path(names[k]), "Q", 90, NULL);
             g_object_unref(image);
             if (failed) {
                 print_message("HEIC cannot be written here (%s): not tested\n", vips_error_buffer());
@@ -133,7 +133,7 @@ static void every_photograph_format_is_read(void **state)
         } else {
             save(quarters(), names[k]);
         }
-        if (img_read(in_folder(names[k]), &color, NULL) != OK) print_error("%s\n", status_message());
+        if (img_read(scratch_path(names[k]), &color, NULL) != OK) print_error("%s\n", status_message());
         assert_int_equal(color.width, 16);
         assert_int_equal(color.height, 8);
         /* away from the borders, where lossy formats smear; 0.06 is what their default quality costs here */
@@ -220,10 +220,10 @@ static void embedded_profile_is_honoured(void **state)
         assert_true(fabsf(srgb_encode(tagged.data[3 + c]) * 255 - codes[1][c]) < 1.5f);
     }
     /* without the profile the P3 codes mean a duller red */
-    VipsImage *stripped = vips_image_new_from_file(in_folder("p3.png"), NULL);
-    assert_int_equal(vips_pngsave(stripped, in_folder("stripped.png"), "strip", TRUE, NULL), 0);
+    VipsImage *stripped = vips_image_new_from_file(scratch_path("p3.png"), NULL);
+    assert_int_equal(vips_pngsave(stripped, scratch_path("stripped.png"), "strip", TRUE, NULL), 0);
     g_object_unref(stripped);
-    assert_int_equal(img_read(in_folder("stripped.png"), &untagged, NULL), OK);
+    assert_int_equal(img_read(scratch_path("stripped.png"), &untagged, NULL), OK);
     assert_true(untagged.data[0] < tagged.data[0] - 0.02f);
     img_free(&tagged);
     img_free(&untagged);
@@ -253,8 +253,8 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     assert_int_equal(img_new(&picture, 5, 3, 3), OK);
     for (int i = 0; i < 45; i++)
         picture.data[i] = (float)i / 8;
-    assert_int_equal(img_write_exr(in_folder("rgb.exr"), &picture), OK);
-    assert_int_equal(img_read(in_folder("rgb.exr"), &color, &alpha), OK);
+    assert_int_equal(img_write_exr(scratch_path("rgb.exr"), &picture), OK);
+    assert_int_equal(img_read(scratch_path("rgb.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     assert_null(alpha.data);
     img_free(&color);
@@ -262,19 +262,19 @@ static void exr_pictures_are_found_by_their_channels(void **state)
                                  {"env.R", picture.data, 3},
                                  {"env.G", picture.data + 1, 3},
                                  {"env.B", picture.data + 2, 3}};
-    assert_int_equal(exr_write(in_folder("layer.exr"), 5, 3, layer, 4, NULL, 0), OK);
-    assert_int_equal(img_read(in_folder("layer.exr"), &color, &alpha), OK);
+    assert_int_equal(exr_write(scratch_path("layer.exr"), 5, 3, layer, 4, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("layer.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     img_free(&color);
     const exr_channel grey[] = {{"Y", picture.data, 1}, {"A", picture.data, 1}};
-    assert_int_equal(exr_write(in_folder("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
-    assert_int_equal(img_read(in_folder("grey.exr"), &color, &alpha), OK);
+    assert_int_equal(exr_write(scratch_path("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("grey.exr"), &color, &alpha), OK);
     assert_true(color.data[3] == picture.data[1] && color.data[5] == picture.data[1]);
     assert_true(alpha.data[3] == picture.data[3] && alpha.data[14] == 1);
     img_free(&color);
     img_free(&alpha);
-    assert_int_equal(exr_write(in_folder("depth.exr"), 5, 3, layer, 1, NULL, 0), OK);
-    assert_int_equal(img_read(in_folder("depth.exr"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(exr_write(scratch_path("depth.exr"), 5, 3, layer, 1, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("depth.exr"), &color, NULL), ERROR_INPUT);
     img_free(&picture);
 }
 
@@ -307,20 +307,20 @@ static void assert_refused(const char *path, const char *words)
 
 static void put(const char *name, const void *data, size_t size)
 {
-    assert_int_equal(file_write(in_folder(name), data, size), OK);
+    assert_int_equal(file_write(scratch_path(name), data, size), OK);
 }
 
 static void what_is_no_picture_is_refused(void **state)
 {
     (void)state;
-    assert_refused(in_folder("missing.png"), "No such file");
+    assert_refused(scratch_path("missing.png"), "No such file");
     assert_refused("/tmp/.", "folder");
     put("empty.png", "", 0);
-    assert_refused(in_folder("empty.png"), "empty");
+    assert_refused(scratch_path("empty.png"), "empty");
     put("text.png", "these are words, not a picture\n", 31);
-    assert_refused(in_folder("text.png"), "not a picture");
+    assert_refused(scratch_path("text.png"), "not a picture");
     put("drawing.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"/>", 62);
-    assert_refused(in_folder("drawing.svg"), "not a picture");
+    assert_refused(scratch_path("drawing.svg"), "not a picture");
 }
 
 static void truncated_pictures_are_refused(void **state)
@@ -367,11 +367,11 @@ static void huge_pictures_are_refused_by_their_header(void **state)
         head[29 + i] = (uint8_t)(crc >> (24 - 8 * i));
     memcpy(head + 33, (uint8_t[]){0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e}, 12);
     put("huge.png", head, sizeof head);
-    assert_refused(in_folder("huge.png"), "20000 x 20000");
+    assert_refused(scratch_path("huge.png"), "20000 x 20000");
     static float line[20000];
     const exr_channel channel = {"Y", line, 1};
-    assert_int_equal(exr_write(in_folder("wide.exr"), 20000, 1, &channel, 1, NULL, 0), OK);
-    assert_refused(in_folder("wide.exr"), "20000 x 1");
+    assert_int_equal(exr_write(scratch_path("wide.exr"), 20000, 1, &channel, 1, NULL, 0), OK);
+    assert_refused(scratch_path("wide.exr"), "20000 x 1");
 }
 
 static void what_is_not_finite_is_refused(void **state)
@@ -379,8 +379,8 @@ static void what_is_not_finite_is_refused(void **state)
     (void)state;
     float values[4] = {1, NAN, 2, 3};
     const exr_channel channel = {"Y", values, 1};
-    assert_int_equal(exr_write(in_folder("nan.exr"), 2, 2, &channel, 1, NULL, 0), OK);
-    assert_refused(in_folder("nan.exr"), "not finite");
+    assert_int_equal(exr_write(scratch_path("nan.exr"), 2, 2, &channel, 1, NULL, 0), OK);
+    assert_refused(scratch_path("nan.exr"), "not finite");
     values[1] = INFINITY;
     VipsImage *bare = vips_image_new_from_memory_copy(values, sizeof values, 2, 2, 1, VIPS_FORMAT_FLOAT);
     assert_refused(save(bare, "inf.tif"), "not finite");
@@ -388,7 +388,7 @@ static void what_is_not_finite_is_refused(void **state)
 
 static int start(void **state)
 {
-    return VIPS_INIT("test") || make_folder(state);
+    return VIPS_INIT("test") || scratch_open(state);
 }
 
 int main(void)
@@ -410,5 +410,5 @@ int main(void)
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
         cmocka_unit_test(what_is_not_finite_is_refused),
     };
-    return cmocka_run_group_tests(tests, start, remove_folder);
+    return cmocka_run_group_tests(tests, start, scratch_close);
 }

@@ -3,7 +3,7 @@
 #include "image/resize.h"
 #include "image/write.h"
 
-#include "folder.h"
+#include "writes.h"
 
 static float noise(unsigned i)
 {
@@ -224,5 +224,5 @@ int main(void)
         cmocka_unit_test(nothing_leaks_through_the_mask),
         cmocka_unit_test(guided_upsampling_refuses_sizes_that_do_not_fit),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

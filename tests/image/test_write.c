@@ -5,7 +5,7 @@
 #include "image/read.h"
 #include "image/write.h"
 
-#include "folder.h"
+#include "writes.h"
 
 static img make(int width, int height, int channels)
 {
@@ -50,7 +50,7 @@ static void animations_loop_with_their_frames_and_delays(void **state)
             frames[i].data[k] = k / 3 % 24 / 8 == i;
     }
     for (int k = 0; k < 2; k++) {
-        const char *path = in_folder(names[k]);
+        const char *path = scratch_path(names[k]);
         if (img_write_animation(path, frames, 3, 80) != OK) print_error("%s\n", status_message());
         assert_int_equal(header(path, "n-pages"), 3);
         assert_int_equal(header(path, "page-height"), 16);
@@ -63,8 +63,8 @@ static void animations_loop_with_their_frames_and_delays(void **state)
         assert_int_equal(delays[1], 80);
         g_object_unref(image);
     }
-    assert_int_equal(img_write_animation(in_folder("turn.mp4"), frames, 3, 80), ERROR_USAGE);
-    assert_int_equal(img_write_animation(in_folder("none.gif"), frames, 0, 80), ERROR_USAGE);
+    assert_int_equal(img_write_animation(scratch_path("turn.mp4"), frames, 3, 80), ERROR_USAGE);
+    assert_int_equal(img_write_animation(scratch_path("none.gif"), frames, 0, 80), ERROR_USAGE);
     for (int i = 0; i < 3; i++)
         img_free(&frames[i]);
 }
@@ -74,27 +74,27 @@ static void failed_writes_leave_nothing_and_say_where(void **state)
     (void)state;
     img image = make(4, 4, 3);
     const figure_tile tile = {"tile", &image};
-    const char *path = in_folder("no/such/place.png");
+    const char *path = scratch_path("no/such/place.png");
     assert_int_equal(img_write_png(path, &image, IMG_SRGB8), ERROR_OUTPUT);
     assert_non_null(strstr(status_message(), "place.png"));
     assert_null(strchr(status_message(), '~'));
     assert_int_equal(img_write_exr(path, &image), ERROR_OUTPUT);
-    assert_int_equal(img_write_animation(in_folder("no/such/place.gif"), &image, 1, 80), ERROR_OUTPUT);
+    assert_int_equal(img_write_animation(scratch_path("no/such/place.gif"), &image, 1, 80), ERROR_OUTPUT);
     assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), ERROR_OUTPUT);
     /* a folder in the file's place: all is written, and the last step, the renaming, fails */
-    assert_int_equal(file_make_folder(in_folder("taken.png")), OK);
-    assert_int_equal(img_write_png(in_folder("taken.png"), &image, IMG_SRGB8), ERROR_OUTPUT);
-    assert_int_equal(img_write_exr(in_folder("taken.png"), &image), ERROR_OUTPUT);
+    assert_int_equal(file_make_folder(scratch_path("taken.png")), OK);
+    assert_int_equal(img_write_png(scratch_path("taken.png"), &image, IMG_SRGB8), ERROR_OUTPUT);
+    assert_int_equal(img_write_exr(scratch_path("taken.png"), &image), ERROR_OUTPUT);
     limit_file_size(32);
-    status full = img_write_png(in_folder("full.png"), &image, IMG_SRGB8);
+    status full = img_write_png(scratch_path("full.png"), &image, IMG_SRGB8);
     limit_file_size(0);
     assert_int_equal(full, ERROR_OUTPUT);
     assert_non_null(strstr(status_message(), "full.png"));
-    assert_false(file_exists(in_folder("full.png")));
+    assert_false(file_exists(scratch_path("full.png")));
     assert_false(folder_has_leftovers());
-    assert_int_equal(rmdir(in_folder("taken.png")), 0);
+    assert_int_equal(rmdir(scratch_path("taken.png")), 0);
     image.channels = 2;
-    assert_int_equal(img_write_png(in_folder("two.png"), &image, IMG_SRGB8), ERROR_USAGE);
+    assert_int_equal(img_write_png(scratch_path("two.png"), &image, IMG_SRGB8), ERROR_USAGE);
     image.channels = 3;
     img_free(&image);
 }
@@ -109,8 +109,8 @@ static void sheet_shows_its_tiles_where_they_belong(void **state)
     for (int i = 0; i < 400; i++)
         grey.data[i] = 1;
     const figure_tile tiles[] = {{"wide <&> red", &wide}, {"grey", &grey}, {"w\xc3\xa4ide", &wide}};
-    assert_int_equal(figure_sheet(in_folder("sheet.png"), tiles, 3, 2, TILE), OK);
-    assert_int_equal(img_read(in_folder("sheet.png"), &sheet, NULL), OK);
+    assert_int_equal(figure_sheet(scratch_path("sheet.png"), tiles, 3, 2, TILE), OK);
+    assert_int_equal(img_read(scratch_path("sheet.png"), &sheet, NULL), OK);
     assert_true(sheet.width > 2 * TILE && sheet.width < 3 * TILE);
     assert_true(sheet.height > 2 * TILE && sheet.height < 4 * TILE);
     int red = 0, white = 0, ink = 0;
@@ -141,11 +141,11 @@ static void chart_is_drawn_from_any_curves(void **state)
     const figure_curve curves[] = {{"falling", x, falling, 200}, {"never above zero", x, nothing, 200}};
     const figure_curve one = {"one point", x, falling, 1};
     img chart = {0};
-    assert_int_equal(figure_chart(in_folder("log.png"), "loss & more", "step", "loss", true, curves, 2), OK);
-    assert_int_equal(figure_chart(in_folder("linear.png"), "loss", "step", "loss", false, curves, 2), OK);
-    assert_int_equal(figure_chart(in_folder("point.png"), NULL, NULL, NULL, true, &one, 1), OK);
-    assert_int_equal(figure_chart(in_folder("empty.png"), "", "", "", false, NULL, 0), OK);
-    assert_int_equal(img_read(in_folder("log.png"), &chart, NULL), OK);
+    assert_int_equal(figure_chart(scratch_path("log.png"), "loss & more", "step", "loss", true, curves, 2), OK);
+    assert_int_equal(figure_chart(scratch_path("linear.png"), "loss", "step", "loss", false, curves, 2), OK);
+    assert_int_equal(figure_chart(scratch_path("point.png"), NULL, NULL, NULL, true, &one, 1), OK);
+    assert_int_equal(figure_chart(scratch_path("empty.png"), "", "", "", false, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("log.png"), &chart, NULL), OK);
     assert_int_equal(chart.width, 960);
     assert_int_equal(chart.height, 600);
     int blue = 0;
@@ -181,7 +181,7 @@ static void normals_and_depth_become_colours_inside_the_mask(void **state)
 
 static int start(void **state)
 {
-    return VIPS_INIT("test") || make_folder(state);
+    return VIPS_INIT("test") || scratch_open(state);
 }
 
 int main(void)
@@ -194,5 +194,5 @@ int main(void)
         cmocka_unit_test(chart_is_drawn_from_any_curves),
         cmocka_unit_test(normals_and_depth_become_colours_inside_the_mask),
     };
-    return cmocka_run_group_tests(tests, start, remove_folder);
+    return cmocka_run_group_tests(tests, start, scratch_close);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/rng.h"
+#include "compiled.h"
 #include "model/model.h"
 #include "optics/sh.h"
 
@@ -30,14 +31,8 @@ static const model_config both = {.name = "both",
 
 static nn_program *compile(const model_config *c, model_part part, nn_purpose purpose, nn_params **params)
 {
-    nn_graph *g;
-    nn_program *p = NULL;
-    nn_options options = {.batch = BATCH, .height = SIZE, .width = SIZE, .type = NN_FLOAT32, .purpose = purpose};
-    status s = model_build(c, part, &g);
-    if (s == OK && !*params) s = nn_params_new(g, 7, params);
-    if (s == OK) s = nn_compile(g, *params, &options, &p);
-    if (s != OK) fail_msg("%s: %s", c->name, status_message());
-    nn_graph_free(g);
+    nn_program *p = compiled(c, part, purpose, BATCH, SIZE, params);
+    if (!p) fail_msg("%s: %s", c->name, status_message());
     return p;
 }
 

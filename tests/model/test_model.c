@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiled.h"
 #include "model/model.h"
 
 /* cmocka names a macro 'fail', so that it comes behind base/status.h */
@@ -26,14 +27,8 @@ static void read_config(const char *name, model_config *c)
 
 static nn_program *compile(const model_config *c, model_part part, nn_purpose purpose, int size, nn_params **params)
 {
-    nn_graph *g;
-    nn_program *p = NULL;
-    nn_options options = {.batch = 1, .height = size, .width = size, .type = NN_FLOAT32, .purpose = purpose};
-    status s = model_build(c, part, &g);
-    if (s == OK && !*params) s = nn_params_new(g, 7, params);
-    if (s == OK) s = nn_compile(g, *params, &options, &p);
-    if (s != OK) fail_msg("%s: %s", c->name, status_message());
-    nn_graph_free(g);
+    nn_program *p = compiled(c, part, purpose, 1, size, params);
+    if (!p) fail_msg("%s: %s", c->name, status_message());
     return p;
 }
 

@@ -10,26 +10,23 @@
 
 #include "base/file.h"
 #include "base/half.h"
+#include "scratch.h"
 
 #include <cmocka.h>
 
-static char folder[] = "/tmp/merlin-safetensors-XXXXXX";
 static char *path;
 
-static int make_folder(void **state)
+static int open_folder(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder)) return -1;
-    path = file_join(folder, "w.safetensors");
+    scratch_open(state);
+    path = file_join(scratch, "w.safetensors");
     return path ? 0 : -1;
 }
 
-static int remove_folder(void **state)
+static int close_folder(void **state)
 {
-    (void)state;
-    unlink(path);
     free(path);
-    return rmdir(folder);
+    return scratch_close(state);
 }
 
 static const float values[6] = {1.5f, -2, 0.25f, 3, -0.125f, 1000};
@@ -270,5 +267,5 @@ int main(void)
         cmocka_unit_test(a_huge_header_is_refused),
         cmocka_unit_test(a_failed_write_leaves_the_old_file),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, open_folder, close_folder);
 }

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "optics/camera.h"
 #include "optics/light.h"
+#include "scratch.h"
 
 /* last: it claims the word fail */
 #include <setjmp.h>
@@ -54,29 +55,10 @@ static void assert_same_sets(const char *a, const char *b)
     }
 }
 
-static char *new_folder(void)
-{
-    char *name = strdup("/tmp/merlin-test-generate-XXXXXX");
-    assert_non_null(mkdtemp(name));
-    return name;
-}
-
-static void remove_folder(char *folder)
-{
-    char **names;
-    size_t count;
-    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
-    for (size_t i = 0; i < count; i++)
-        unlink(names[i]);
-    file_list_free(names, count);
-    assert_int_equal(rmdir(folder), 0);
-    free(folder);
-}
-
 static void set_is_the_same_from_one_thread_and_from_two(void **state)
 {
     (void)state;
-    char *one = new_folder(), *two = new_folder();
+    char *one = scratch_new(), *two = scratch_new();
     render_stats stats;
     render_options o = small(one);
     parallel_set_threads(1);
@@ -87,8 +69,8 @@ static void set_is_the_same_from_one_thread_and_from_two(void **state)
     parallel_set_threads(2);
     assert_int_equal(render_samples(&o, &stats), OK);
     assert_same_sets(one, two);
-    remove_folder(one);
-    remove_folder(two);
+    scratch_remove(one);
+    scratch_remove(two);
 }
 
 static int polls;
@@ -100,7 +82,7 @@ static int stop_after_two(void)
 static void interrupted_set_is_continued_to_the_same_files(void **state)
 {
     (void)state;
-    char *whole = new_folder(), *parts = new_folder();
+    char *whole = scratch_new(), *parts = scratch_new();
     render_stats stats;
     render_options o = small(whole);
     assert_int_equal(render_samples(&o, &stats), OK);
@@ -115,14 +97,14 @@ static void interrupted_set_is_continued_to_the_same_files(void **state)
     assert_int_equal(stats.kept, before);
     assert_int_equal(stats.rendered, COUNT - before);
     assert_same_sets(whole, parts);
-    remove_folder(whole);
-    remove_folder(parts);
+    scratch_remove(whole);
+    scratch_remove(parts);
 }
 
 static void samples_of_other_options_are_not_mixed_in(void **state)
 {
     (void)state;
-    char *folder = new_folder();
+    char *folder = scratch_new();
     render_stats stats;
     render_options o = small(folder);
     o.count = 1;
@@ -130,7 +112,7 @@ static void samples_of_other_options_are_not_mixed_in(void **state)
     o.seed++;
     assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
     assert_non_null(strstr(status_message(), "other options"));
-    remove_folder(folder);
+    scratch_remove(folder);
 }
 
 static void impossible_options_are_refused(void **state)

@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "image/exr.h"
+#include "scratch.h"
 
 /* last: it claims the word fail */
 #include <setjmp.h>
@@ -19,7 +20,6 @@
 #include <cmocka.h>
 
 enum { WIDTH = 20, HEIGHT = 20 };
-static char folder[] = "/tmp/merlin-test-sample-XXXXXX";
 static char path[64];
 
 static void fill(img *image, int channels, float start)
@@ -170,17 +170,9 @@ static void image_that_is_no_sample_is_refused(void **state)
 
 static int open_folder(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder)) return 1;
-    snprintf(path, sizeof path, "%s/s.exr", folder);
+    scratch_open(state);
+    snprintf(path, sizeof path, "%s/s.exr", scratch);
     return 0;
-}
-
-static int close_folder(void **state)
-{
-    (void)state;
-    unlink(path);
-    return rmdir(folder);
 }
 
 int main(void)
@@ -193,5 +185,5 @@ int main(void)
         cmocka_unit_test(sample_with_nan_or_infinity_is_refused),
         cmocka_unit_test(image_that_is_no_sample_is_refused),
     };
-    return cmocka_run_group_tests(tests, open_folder, close_folder);
+    return cmocka_run_group_tests(tests, open_folder, scratch_close);
 }

@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "scene/scene.h"
+#include "scratch.h"
 
 /* last: it defines a macro named fail */
 #include <cmocka.h>
@@ -25,42 +26,11 @@ static const char INSIDE_OUT[] = CUBE_VERTICES "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\
 static const char PLY_HEAD[] = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                                "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
 
-typedef struct folder {
-    char path[64];
-} folder;
-
-static int set_up(void **state)
+static status load(const char *name, const void *data, size_t size, scn_object *out)
 {
-    folder *f = calloc(1, sizeof *f);
-    if (!f) return -1;
-    strcpy(f->path, "/tmp/merlin-mesh-XXXXXX");
-    *state = f;
-    return mkdtemp(f->path) ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    folder *f = *state;
-    char **names;
-    size_t count;
-    if (file_list(f->path, NULL, &names, &count) == OK) {
-        for (size_t i = 0; i < count; i++)
-            unlink(names[i]);
-        file_list_free(names, count);
-    }
-    rmdir(f->path);
-    free(f);
-    return 0;
-}
-
-static status load(void **state, const char *name, const void *data, size_t size, scn_object *out)
-{
-    folder *f = *state;
-    char *path = file_join(f->path, name);
+    const char *path = scratch_path(name);
     assert_int_equal(file_write(path, data, size), OK);
-    status s = scn_object_from_mesh(path, 1, 2, 60, out);
-    free(path);
-    return s;
+    return scn_object_from_mesh(path, 1, 2, 60, out);
 }
 
 static double signed_volume(const scn_object *o)
@@ -90,9 +60,10 @@ static void check_cube(const scn_object *o)
 
 static void polygons_without_normals_are_triangulated_and_creased(void **state)
 {
+    (void)state;
     scn_object o;
     const char text[] = CUBE_VERTICES CUBE_FACES;
-    assert_int_equal(load(state, "cube.obj", text, sizeof text - 1, &o), OK);
+    assert_int_equal(load("cube.obj", text, sizeof text - 1, &o), OK);
     check_cube(&o);
     assert_string_equal(o.shape, "mesh");
     scn_object_free(&o);
@@ -100,20 +71,22 @@ static void polygons_without_normals_are_triangulated_and_creased(void **state)
 
 static void inward_surfaces_are_turned_outward(void **state)
 {
+    (void)state;
     scn_object o;
-    assert_int_equal(load(state, "cube.obj", INSIDE_OUT, sizeof INSIDE_OUT - 1, &o), OK);
+    assert_int_equal(load("cube.obj", INSIDE_OUT, sizeof INSIDE_OUT - 1, &o), OK);
     check_cube(&o);
     scn_object_free(&o);
 }
 
 static void ascii_ply_is_read(void **state)
 {
+    (void)state;
     char text[600];
     int size =
         snprintf(text, sizeof text,
                  "ply\nformat ascii 1.0\n%s0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", PLY_HEAD);
     scn_object o;
-    assert_int_equal(load(state, "t.ply", text, (size_t)size, &o), OK);
+    assert_int_equal(load("t.ply", text, (size_t)size, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
     scn_object_free(&o);
@@ -121,6 +94,7 @@ static void ascii_ply_is_read(void **state)
 
 static void binary_ply_is_read(void **state)
 {
+    (void)state;
     static const float POINTS[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const int32_t FACES[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     char data[600];
@@ -133,16 +107,17 @@ static void binary_ply_is_read(void **state)
         size += sizeof FACES[i];
     }
     scn_object o;
-    assert_int_equal(load(state, "t.ply", data, size, &o), OK);
+    assert_int_equal(load("t.ply", data, size, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
     scn_object_free(&o);
     for (size_t left = 0; left < size; left += 7)
-        assert_int_equal(load(state, "cut.ply", data, left, &o), ERROR_INPUT);
+        assert_int_equal(load("cut.ply", data, left, &o), ERROR_INPUT);
 }
 
 static void gltf_is_read(void **state)
 {
+    (void)state;
     /* the tetrahedron above: 48 bytes of positions, then 12 indices of 16 bits, in base64 */
     static const char TEXT[] =
         "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
@@ -155,30 +130,31 @@ static void gltf_is_read(void **state)
         "\"min\":[0,0,0],\"max\":[1,1,1]},"
         "{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
     scn_object o;
-    assert_int_equal(load(state, "t.gltf", TEXT, sizeof TEXT - 1, &o), OK);
+    assert_int_equal(load("t.gltf", TEXT, sizeof TEXT - 1, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
     scn_object_free(&o);
 }
 
-static void assert_refused(void **state, const char *name, const char *text)
+static void assert_refused(const char *name, const char *text)
 {
     scn_object o;
-    assert_int_equal(load(state, name, text, strlen(text), &o), ERROR_INPUT);
+    assert_int_equal(load(name, text, strlen(text), &o), ERROR_INPUT);
     assert_non_null(strstr(status_message(), name));
     assert_null(strchr(status_message(), '\n'));
 }
 
 static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **state)
 {
-    assert_refused(state, "empty.obj", "");
-    assert_refused(state, "points.obj", CUBE_VERTICES);
-    assert_refused(state, "flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    assert_refused(state, "nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
-    assert_refused(state, "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
-    assert_refused(state, "junk.ply", "this is not a mesh\n");
-    assert_refused(state, "junk.glb", "glTFnot really");
-    assert_refused(state, "photo.jpg", "anything");
+    (void)state;
+    assert_refused("empty.obj", "");
+    assert_refused("points.obj", CUBE_VERTICES);
+    assert_refused("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    assert_refused("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_refused("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    assert_refused("junk.ply", "this is not a mesh\n");
+    assert_refused("junk.glb", "glTFnot really");
+    assert_refused("photo.jpg", "anything");
     scn_object o;
     assert_int_equal(scn_object_from_mesh("/nowhere/cow.obj", 1, 1, 60, &o), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
@@ -220,5 +196,5 @@ int main(void)
         cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
         cmocka_unit_test(meshes_of_the_world_are_posed_before_the_camera),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

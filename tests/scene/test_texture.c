@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "image/write.h"
+#include "scratch.h"
 
 /* last: it claims the word fail */
 #include <setjmp.h>
@@ -17,23 +18,6 @@
 #include <stdint.h>
 
 #include <cmocka.h>
-
-static char folder[64];
-
-static int new_folder(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/merlin-test-texture-XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command);
-}
 
 /* A picture of one colour, [0, 1] as the file stores it. */
 static void put(const char *name, float r, float g, float b)
@@ -45,7 +29,7 @@ static void put(const char *name, float r, float g, float b)
         image.data[3 * i + 1] = g;
         image.data[3 * i + 2] = b;
     }
-    char *path = file_join(folder, name), *slash = strrchr(path, '/');
+    char *path = file_join(scratch, name), *slash = strrchr(path, '/');
     *slash = 0;
     assert_int_equal(file_make_folder(path), OK);
     *slash = '/';
@@ -72,7 +56,7 @@ static void files_of_one_name_make_one_material(void **state)
     put("wood/old_wood_disp_1k.png", 0.5f, 0.5f, 0.5f);
     put("photo.png", 0, 0, 1);
     scn_textures t;
-    assert_int_equal(scn_textures_read(folder, &t), OK);
+    assert_int_equal(scn_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 3);
     vec3 up = {0, 0, 1}, at = {0.3f, 0.2f, 0};
     texture_place brick = plainly(&t.texture[0]), photo = plainly(&t.texture[1]), wood = plainly(&t.texture[2]);
@@ -97,7 +81,7 @@ static void normal_maps_become_slopes(void **state)
     put("dx_albedo.png", 1, 1, 1);
     put("dx_nor_dx.png", x, 0.5f + y, z);
     scn_textures t;
-    assert_int_equal(scn_textures_read(folder, &t), OK);
+    assert_int_equal(scn_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 2);
     for (int i = 0; i < 2; i++) {
         texture_place place = plainly(&t.texture[i]);
@@ -117,7 +101,7 @@ static void folder_without_materials_is_refused(void **state)
     (void)state;
     put("brick_roughness.png", 1, 1, 1);
     scn_textures t;
-    assert_int_equal(scn_textures_read(folder, &t), ERROR_INPUT);
+    assert_int_equal(scn_textures_read(scratch, &t), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "brick_albedo.png"));
     assert_int_equal(scn_textures_read("/nowhere", &t), ERROR_INPUT);
 }
@@ -129,7 +113,7 @@ static void objects_wear_the_folder(void **state)
     put("red_roughness.png", 0.5f, 0.5f, 0.5f);
     put("red_normal.png", 0.8f, 0.5f, 0.9f);
     scn_textures t;
-    assert_int_equal(scn_textures_read(folder, &t), OK);
+    assert_int_equal(scn_textures_read(scratch, &t), OK);
     int worn = 0, points = 0;
     for (uint64_t index = 0; index < 40; index++) {
         scn_object with, again, without;
@@ -161,10 +145,10 @@ static void objects_wear_the_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(files_of_one_name_make_one_material, new_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(normal_maps_become_slopes, new_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(folder_without_materials_is_refused, new_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(objects_wear_the_folder, new_folder, remove_folder),
+        in_scratch(files_of_one_name_make_one_material),
+        in_scratch(normal_maps_become_slopes),
+        in_scratch(folder_without_materials_is_refused),
+        in_scratch(objects_wear_the_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* Balls rendered here under known lights, and the real ones where they are at hand. */
 #include "base/light_list.h"
-#include "scratch.h"
+#include "capture_files.h"
 #include "stereo/calibrate.h"
 #include "stereo/solve.h"
 
@@ -137,8 +137,8 @@ static void pictures_without_a_ball_or_its_light_are_refused(void **state)
         write_flat((const char *[]){"0.png", "1.png", "2.png"}[i], 64, 64, 3, 0.5f, IMG_LINEAR16);
     assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
     assert_says("no ball is seen");
-    scratch_remove(state);
-    scratch_make(state);
+    scratch_close(state);
+    scratch_open(state);
     write_balls(chrome, IMG_LINEAR16);
     write_flat("99.png", SIZE, SIZE, 1, 0, IMG_LINEAR16);
     assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);

@@ -1,4 +1,4 @@
-#include "scratch.h"
+#include "capture_files.h"
 #include "stereo/capture.h"
 
 static const pst_read_options PLAIN = {0};

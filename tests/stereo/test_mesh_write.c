@@ -12,31 +12,12 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "scratch.h"
 #include "stereo/mesh_write.h"
 
 #include <cmocka.h>
 
 enum { WIDTH = 12, HEIGHT = 9 };
-
-static char folder[] = "/tmp/merlin-mesh-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char **names = NULL;
-    size_t count = 0;
-    if (file_list(folder, NULL, &names, &count) != OK) return -1;
-    for (size_t i = 0; i < count; i++)
-        unlink(names[i]);
-    file_list_free(names, count);
-    return rmdir(folder);
-}
 
 /* A wavy sheet one unit away, whose mask lacks the top left pixel and whose right third lies far behind. */
 typedef struct sheet {
@@ -80,13 +61,6 @@ static void sheet_free(sheet *s)
     img_free(&s->albedo);
 }
 
-static const char *in_folder(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 /* The near part has 8 × 9 − 1 vertices and 7 × 8 squares, one of them half; the far part 4 × 9 and 3 × 8. */
 enum { VERTICES = 71 + 36, TRIANGLES = 2 * 56 - 1 + 2 * 24 };
 
@@ -123,8 +97,8 @@ static void every_format_is_read_back_as_the_same_surface(void **state)
     sheet s;
     sheet_new(&s, true);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(pst_mesh_write(in_folder(names[i]), &s.source), OK);
-        check_mesh(in_folder(names[i]), i == 0, i > 0);
+        assert_int_equal(pst_mesh_write(scratch_path(names[i]), &s.source), OK);
+        check_mesh(scratch_path(names[i]), i == 0, i > 0);
     }
     sheet_free(&s);
 }
@@ -134,16 +108,16 @@ static void an_obj_names_its_material_and_texture(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, false);
-    assert_int_equal(pst_mesh_write(in_folder("b.obj"), &s.source), OK);
+    assert_int_equal(pst_mesh_write(scratch_path("b.obj"), &s.source), OK);
     char *text;
     size_t size;
-    assert_int_equal(file_read(in_folder("b.obj"), 1 << 20, &text, &size), OK);
+    assert_int_equal(file_read(scratch_path("b.obj"), 1 << 20, &text, &size), OK);
     assert_non_null(strstr(text, "mtllib b.mtl\n"));
     free(text);
-    assert_int_equal(file_read(in_folder("b.mtl"), 1 << 20, &text, &size), OK);
+    assert_int_equal(file_read(scratch_path("b.mtl"), 1 << 20, &text, &size), OK);
     assert_non_null(strstr(text, "map_Kd b.png\n"));
     free(text);
-    assert_true(file_exists(in_folder("b.png")));
+    assert_true(file_exists(scratch_path("b.png")));
     sheet_free(&s);
 }
 
@@ -158,10 +132,10 @@ static void a_glb_keeps_the_container_rules(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, true);
-    assert_int_equal(pst_mesh_write(in_folder("c.glb"), &s.source), OK);
+    assert_int_equal(pst_mesh_write(scratch_path("c.glb"), &s.source), OK);
     char *data;
     size_t size;
-    assert_int_equal(file_read(in_folder("c.glb"), 1 << 20, &data, &size), OK);
+    assert_int_equal(file_read(scratch_path("c.glb"), 1 << 20, &data, &size), OK);
     assert_memory_equal(data, "glTF", 4);
     assert_int_equal(word(data + 4), 2);
     assert_int_equal(word(data + 8), size);
@@ -191,10 +165,10 @@ static void albedo_and_normals_may_be_missing(void **state)
     sheet_new(&s, true);
     s.source.albedo = s.source.normal = NULL;
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(pst_mesh_write(in_folder(names[i]), &s.source), OK);
-        check_mesh(in_folder(names[i]), i == 0, i > 0);
+        assert_int_equal(pst_mesh_write(scratch_path(names[i]), &s.source), OK);
+        check_mesh(scratch_path(names[i]), i == 0, i > 0);
     }
-    assert_false(file_exists(in_folder("d.png")));
+    assert_false(file_exists(scratch_path("d.png")));
     sheet_free(&s);
 }
 
@@ -203,12 +177,12 @@ static void what_cannot_be_a_mesh_is_refused(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, true);
-    assert_int_equal(pst_mesh_write(in_folder("e.stl"), &s.source), ERROR_USAGE);
+    assert_int_equal(pst_mesh_write(scratch_path("e.stl"), &s.source), ERROR_USAGE);
     assert_int_equal(pst_mesh_write("/proc/merlin.ply", &s.source), ERROR_OUTPUT);
     assert_int_equal(pst_mesh_write("/proc/merlin.glb", &s.source), ERROR_OUTPUT);
     memset(s.mask.data, 0, sizeof(float) * WIDTH * HEIGHT);
-    assert_int_equal(pst_mesh_write(in_folder("e.ply"), &s.source), ERROR_INPUT);
-    assert_false(file_exists(in_folder("e.ply")));
+    assert_int_equal(pst_mesh_write(scratch_path("e.ply"), &s.source), ERROR_INPUT);
+    assert_false(file_exists(scratch_path("e.ply")));
     sheet_free(&s);
 }
 
@@ -221,5 +195,5 @@ int main(void)
         cmocka_unit_test(albedo_and_normals_may_be_missing),
         cmocka_unit_test(what_cannot_be_a_mesh_is_refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

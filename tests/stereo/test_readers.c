@@ -1,7 +1,7 @@
 /* The layouts of data sets and the array files in them, made here byte by byte. */
 #include <zlib.h>
 
-#include "scratch.h"
+#include "capture_files.h"
 #include "stereo/array_file.h"
 #include "stereo/capture.h"
 #include "stereo/luces.h"

@@ -79,24 +79,4 @@ static inline void sphere_write(const char *folder, int size, int which)
     sample_free(&s);
 }
 
-/* A folder of its own under the system's temporary folder. */
-static inline void scratch_folder(char *path, size_t size)
-{
-    const char *root = getenv("TMPDIR");
-    snprintf(path, size, "%s/merlin-train-XXXXXX", root ? root : "/tmp");
-    assert_non_null(mkdtemp(path));
-}
-
-static inline void scratch_remove(const char *path)
-{
-    char **names;
-    size_t count;
-    if (file_list(path, NULL, &names, &count) == OK) {
-        for (size_t i = 0; i < count; i++)
-            unlink(names[i]);
-        file_list_free(names, count);
-    }
-    rmdir(path);
-}
-
 #endif

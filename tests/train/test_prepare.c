@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "optics/orientation.h"
 #include "train/dataset.h"
 #include "train/prepare.h"
 
@@ -13,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "scratch.h"
 #include "synthetic.h"
 
 enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 28 * PIXELS + 3 + 2 * MODEL_SH };
@@ -21,7 +23,7 @@ static const trn_dataset_options usual = {.size = SIZE, .memory_gib = 1};
 static const trn_lighting at_the_camera = {.target = {0, 0, 0}};
 
 typedef struct fixture {
-    char folder[256];
+    char *folder;
     trn_dataset *data;
     float *memory;
     trn_view view;
@@ -46,7 +48,7 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
-    scratch_folder(f->folder, sizeof f->folder);
+    f->folder = scratch_new();
     for (int i = 0; i < 3; i++)
         sphere_write(f->folder, SIZE, i);
     f->memory = malloc(FLOATS * sizeof(float));
@@ -74,7 +76,7 @@ static void turned_maps_render_to_the_turned_image(void **state)
     fixture *f = *state;
     float *image = malloc(3 * PIXELS * sizeof(float));
     assert_non_null(image);
-    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+    for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
         assert_int_equal(trn_dataset_get(f->data, 1, orientation, &f->view), OK);
         trn_render(&f->view, vec3_make(0, 0, 0), image);
         int inside = 0;
@@ -91,9 +93,9 @@ static void turned_maps_render_to_the_turned_image(void **state)
 static void the_eight_orientations_differ(void **state)
 {
     fixture *f = *state;
-    float *all = malloc(TRN_ORIENTATIONS * 3 * PIXELS * sizeof(float));
+    float *all = malloc(ORIENTATIONS * 3 * PIXELS * sizeof(float));
     assert_non_null(all);
-    for (int i = 0; i < TRN_ORIENTATIONS; i++) {
+    for (int i = 0; i < ORIENTATIONS; i++) {
         assert_int_equal(trn_dataset_get(f->data, 1, i, &f->view), OK);
         memcpy(all + (size_t)i * 3 * PIXELS, f->view.direct, 3 * PIXELS * sizeof(float));
         for (int k = 0; k < i; k++)
@@ -137,8 +139,7 @@ static void sample_of_another_size_is_refused(void **state)
 static void empty_folder_is_refused(void **state)
 {
     (void)state;
-    char folder[256];
-    scratch_folder(folder, sizeof folder);
+    char *folder = scratch_new();
     trn_dataset *d;
     assert_int_equal(trn_dataset_open(folder, &usual, &d), ERROR_INPUT);
     scratch_remove(folder);
@@ -248,20 +249,20 @@ static vec3 random_direction(rng *r)
 /* As trn_dataset_get turns normals; rows run downwards, y upwards. */
 static vec3 turned(int orientation, vec3 d)
 {
-    if (orientation & TRN_FLIP_X) d.x = -d.x;
-    if (orientation & TRN_FLIP_Y) d.y = -d.y;
-    return orientation & TRN_TRANSPOSE ? vec3_make(-d.y, -d.x, d.z) : d;
+    if (orientation & ORIENTATION_FLIP_X) d.x = -d.x;
+    if (orientation & ORIENTATION_FLIP_Y) d.y = -d.y;
+    return orientation & ORIENTATION_TRANSPOSE ? vec3_make(-d.y, -d.x, d.z) : d;
 }
 
 static void turned_sky_in_a_turned_direction_is_the_sky(void **unused)
 {
     (void)unused;
     rng r = rng_at(3, 1, 4);
-    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+    for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
         float before[9][3], after[9][3];
         sphere_sky(1, before);
         sphere_sky(1, after);
-        trn_turn_sh(orientation, after);
+        orientation_turn_sh(orientation, after);
         for (int i = 0; i < 50; i++) {
             vec3 d = random_direction(&r);
             vec3 a = sh_irradiance((const float(*)[3])before, d);
@@ -278,7 +279,7 @@ static void turned_maps_reflect_the_turned_environment(void **state)
     fixture *f = *state;
     trn_dataset *d = with_environments(f);
     const trn_view *v = &f->view;
-    for (int orientation = 0; orientation < TRN_ORIENTATIONS; orientation++) {
+    for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
         assert_int_equal(trn_dataset_get(d, 2, orientation, v), OK);
         float sh[9][3], alone[9][3];
         memcpy(sh, v->sh, sizeof sh);

@@ -16,12 +16,13 @@
 
 #include <cmocka.h>
 
+#include "scratch.h"
 #include "synthetic.h"
 
 enum { SIZE = 64, SAMPLES = 6 };
 
 typedef struct fixture {
-    char data[256], root[256], config[300];
+    char *data, *root, config[4200];
 } fixture;
 
 static const char *const jitter = "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05";
@@ -60,8 +61,8 @@ static int set_up(void **state)
 {
     fixture *f = calloc(1, sizeof *f);
     assert_non_null(f);
-    scratch_folder(f->data, sizeof f->data);
-    scratch_folder(f->root, sizeof f->root);
+    f->data = scratch_new();
+    f->root = scratch_new();
     snprintf(f->config, sizeof f->config, "%s/tiny.json", f->root);
     for (int i = 0; i < SAMPLES; i++)
         sphere_write(f->data, SIZE, i);
@@ -72,12 +73,6 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     fixture *f = *state;
-    static const char *const runs[] = {"a", "b", "c"};
-    for (int i = 0; i < 3; i++) {
-        char *path = file_join(f->root, runs[i]);
-        scratch_remove(path);
-        free(path);
-    }
     scratch_remove(f->data);
     scratch_remove(f->root);
     free(f);

@@ -26,22 +26,17 @@ static row row_at(const cpu_environment *in, const cpu_tensor *mask, size_t y)
                  .width = width};
 }
 
-static vec3 at3(const float *data, size_t i)
-{
-    return vec3_make(data[3 * i], data[3 * i + 1], data[3 * i + 2]);
-}
-
 /* What a white surface would reflect, times the mask. */
 static vec3 white(const row *r, size_t i)
 {
-    return vec3_scale(sh_irradiance(r->sh, at3(r->normal, i)), r->mask[i] * INVERSE_PI);
+    return vec3_scale(sh_irradiance(r->sh, vec3_of(r->normal + 3 * i)), r->mask[i] * INVERSE_PI);
 }
 
 /* Albedo comes in the network's [-1, 1]. */
 static vec3 albedo_at(const row *r, size_t i)
 {
     const vec3 half = {0.5f, 0.5f, 0.5f};
-    return vec3_fma(half, 0.5f, at3(r->albedo, i));
+    return vec3_fma(half, 0.5f, vec3_of(r->albedo + 3 * i));
 }
 
 static void put3(float *to, size_t i, vec3 v)
@@ -95,7 +90,7 @@ static void differentiate_row(const row *r, const float *dy, cpu_environment *gr
             store3(&gradients->normal, pixel, none, accumulate.normal);
             continue;
         }
-        vec3 d = at3(dy, i), n = at3(r->normal, i);
+        vec3 d = vec3_of(dy + 3 * i), n = vec3_of(r->normal + 3 * i);
         vec3 outgoing = vec3_scale(vec3_mul(d, albedo_at(r, i)), r->mask[i] * INVERSE_PI);
         store3(&gradients->albedo, pixel, vec3_scale(vec3_mul(d, white(r, i)), 0.5f), accumulate.albedo);
         store3(&gradients->normal, pixel, sh_irradiance_gradient(r->sh, n, outgoing), accumulate.normal);

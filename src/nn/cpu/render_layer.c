@@ -38,7 +38,7 @@ static span span_of_row(const cpu_render_tensors *maps, const cpu_tensor *mask, 
                   .mask = m + begin,
                   .first = camera_point(&c, x, y, 1),
                   .step = camera_pixel_size(&c),
-                  .light = vec3_make(l[0], l[1], l[2]),
+                  .light = vec3_of(l),
                   .power = power,
                   .at = begin,
                   .count = end - begin};
@@ -55,7 +55,7 @@ static inline shade_input pixel_of(const span *s, size_t i)
     const float *a = s->albedo + 3 * i, *n = s->normal + 3 * i;
     return (shade_input){.albedo = vec3_make(to_unit(a[0]), to_unit(a[1]), to_unit(a[2])),
                          .roughness = to_unit(s->roughness[i]),
-                         .normal = vec3_make(n[0], n[1], n[2]),
+                         .normal = vec3_of(n),
                          .depth = s->depth[i],
                          .ray = vec3_make(s->first.x + (float)i * s->step, s->first.y, s->first.z),
                          .light = s->light,

@@ -1,6 +1,6 @@
-/* What tests of captures share: cmocka, and for each test a folder of its own. */
-#ifndef MERLIN_TESTS_STEREO_SCRATCH_H
-#define MERLIN_TESTS_STEREO_SCRATCH_H
+/* What tests of captures share: cmocka, and files to write in a test's folder. */
+#ifndef MERLIN_TESTS_STEREO_CAPTURE_FILES_H
+#define MERLIN_TESTS_STEREO_CAPTURE_FILES_H
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,42 +13,10 @@
 
 #include "base/file.h"
 #include "image/write.h"
+#include "scratch.h"
 
 /* after the project's headers: its macro fail() would break the declaration of ours */
 #include <cmocka.h>
-
-static char scratch[64];
-
-static int scratch_make(void **state)
-{
-    (void)state;
-    strcpy(scratch, "/tmp/merlin-stereo-XXXXXX");
-    return mkdtemp(scratch) ? 0 : -1;
-}
-
-static int scratch_remove(void **state)
-{
-    (void)state;
-    char **names = NULL;
-    size_t count = 0;
-    if (file_list(scratch, NULL, &names, &count) != OK) return -1;
-    for (size_t i = 0; i < count; i++)
-        unlink(names[i]);
-    file_list_free(names, count);
-    return rmdir(scratch);
-}
-
-#define in_scratch(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
-
-/* A path in the folder; one of four in turn. */
-static inline const char *scratch_path(const char *name)
-{
-    static char paths[4][160];
-    static int turn;
-    char *path = paths[turn++ & 3];
-    snprintf(path, sizeof paths[0], "%s/%s", scratch, name);
-    return path;
-}
 
 static inline void write_text(const char *name, const char *text)
 {

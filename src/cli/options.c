@@ -1,0 +1,83 @@
+#include "cli/options.h"
+
+#include <assert.h>
+#include <getopt.h>
+#include <stdio.h>
+
+#include "cli/cli.h"
+
+enum { FIRST_LONG = 256, LETTERS = 2 * CLI_MOST_OPTIONS + 2 };
+
+/* Letters that take values are followed by a colon; the one in front has a missing value told from a wrong option. */
+static void describe(const cli_option *options, struct option *longs, char *letters)
+{
+    size_t n = 0;
+    *letters++ = ':';
+    for (; options[n].name; n++) {
+        const cli_option *o = &options[n];
+        assert(n < CLI_MOST_OPTIONS);
+        longs[n] = (struct option){
+            .name = o->name, .has_arg = o->flag ? no_argument : required_argument, .val = FIRST_LONG + (int)n};
+        if (!o->letter) continue;
+        *letters++ = o->letter;
+        if (!o->flag) *letters++ = ':';
+    }
+    *letters = 0;
+    longs[n] = (struct option){0};
+}
+
+static const cli_option *find(const cli_option *options, int value)
+{
+    if (value >= FIRST_LONG) return &options[value - FIRST_LONG];
+    while (options->letter != value)
+        options++;
+    return options;
+}
+
+static status take_number(const cli_option *o, const char *spelled, const char *value)
+{
+    double real = 0;
+    long whole = 0;
+    if (o->real) {
+        status s = cli_float(spelled, value, (double)o->low, (double)o->high, &real);
+        if (s == OK) *o->real = (float)real;
+        return s;
+    }
+    status s = cli_int(spelled, value, o->low, o->high, &whole);
+    if (s == OK && o->integer) *o->integer = (int)whole;
+    if (s == OK && o->count) *o->count = (size_t)whole;
+    return s;
+}
+
+static status take(const cli_option *o, const char *value)
+{
+    char spelled[64];
+    snprintf(spelled, sizeof spelled, "--%s", o->name);
+    if (o->take) return o->take(value, o->into);
+    if (o->flag)
+        *o->flag = true;
+    else if (o->text)
+        *o->text = value;
+    else
+        return take_number(o, spelled, value);
+    return OK;
+}
+
+status cli_read_options(int *argc, char ***argv, const cli_option *options)
+{
+    struct option longs[CLI_MOST_OPTIONS + 1];
+    char letters[LETTERS];
+    describe(options, longs, letters);
+    opterr = 0;
+    optind = 1;
+    for (int value; (value = getopt_long(*argc, *argv, letters, longs, NULL)) != -1;) {
+        const char *given = (*argv)[optind - 1];
+        if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
+        if (value == '?') return fail(ERROR_USAGE, "unknown option %s", given);
+        status s = take(find(options, value), optarg);
+        if (s != OK) return s;
+    }
+    *argc -= optind;
+    *argv += optind;
+    return OK;
+}

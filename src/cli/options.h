@@ -1,0 +1,42 @@
+/* A command's options as a table: what each is called and where its value goes.
+ *
+ *     const cli_option options[] = {
+ *         {"mask", .text = &r->mask},
+ *         {"output", 'o', .text = &r->output},
+ *         {"count", .count = &r->count, .low = 1, .high = 1000},
+ *         {"by", .take = take_way, .into = r},
+ *         {"json", .flag = &r->json},
+ *         {"help", 'h', .flag = &r->help},
+ *         {0},
+ *     };
+ *     status s = cli_read_options(&argc, &argv, options);
+ *
+ * Each row fills one of the places. */
+#ifndef MERLIN_CLI_OPTIONS_H
+#define MERLIN_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+typedef struct cli_option {
+    const char *name; /* of --name */
+    char letter;      /* of -l, or 0 */
+    bool *flag;       /* takes no value; is set to true */
+    const char **text;
+    int *integer;  /* from low to high */
+    size_t *count; /* from low to high */
+    float *real;   /* from low to high */
+    long low, high;
+    status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
+    void *into;
+} cli_option;
+
+enum { CLI_MOST_OPTIONS = 32 };
+
+/* Reads options wherever they stand, as getopt_long does; *argc and *argv are then the operands alone. A later value
+ * replaces an earlier one, but take is called for each. ERROR_USAGE names the option. At most CLI_MOST_OPTIONS rows. */
+status cli_read_options(int *argc, char ***argv, const cli_option *options);
+
+#endif

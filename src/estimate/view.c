@@ -1,0 +1,68 @@
+#include "estimate/view.h"
+
+#include <string.h>
+
+#include "optics/orientation.h"
+
+status view_mean_new(int size, network_estimation *mean)
+{
+    *mean = (network_estimation){0};
+    status s = img_new(&mean->maps.albedo, size, size, 3);
+    if (s == OK) s = img_new(&mean->maps.normal, size, size, 3);
+    if (s == OK) s = img_new(&mean->maps.roughness, size, size, 1);
+    if (s == OK) s = img_new(&mean->maps.depth, size, size, 1);
+    if (s == OK) s = img_new(&mean->indirect, size, size, 3);
+    if (s != OK) network_estimation_free(mean);
+    return s;
+}
+
+static size_t pixel_count(const img *image)
+{
+    return (size_t)image->width * (size_t)image->height;
+}
+
+status view_turn(const img *image, int view, img *turned)
+{
+    status s = img_new(turned, image->width, image->height, image->channels);
+    if (s != OK) return s;
+    size_t channels = (size_t)image->channels;
+    for (size_t i = 0, n = pixel_count(image); i < n; i++)
+        memcpy(turned->data + channels * orientation_place(view, image->width, i), image->data + channels * i,
+               channels * sizeof(float));
+    return OK;
+}
+
+void view_add(img *mean, const img *turned, int view, float weight)
+{
+    size_t channels = (size_t)mean->channels;
+    for (size_t i = 0, n = pixel_count(mean); i < n; i++) {
+        const float *from = turned->data + channels * orientation_place(view, mean->width, i);
+        for (size_t c = 0; c < channels; c++)
+            mean->data[channels * i + c] += weight * from[c];
+    }
+}
+
+void view_add_normals(img *mean, const img *turned, int view, float weight)
+{
+    for (size_t i = 0, n = pixel_count(mean); i < n; i++) {
+        float normal[3];
+        memcpy(normal, turned->data + 3 * orientation_place(view, mean->width, i), sizeof normal);
+        orientation_turn(orientation_inverse(view), normal);
+        for (size_t c = 0; c < 3; c++)
+            mean->data[3 * i + c] += weight * normal[c];
+    }
+}
+
+void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight)
+{
+    float sh[9][3];
+    memcpy(sh, turned->environment, sizeof sh);
+    orientation_turn_sh(orientation_inverse(view), sh);
+    for (int i = 0; i < 27; i++)
+        mean->environment[i / 3][i % 3] += weight * sh[i / 3][i % 3];
+    view_add(&mean->maps.albedo, &turned->maps.albedo, view, weight);
+    view_add_normals(&mean->maps.normal, &turned->maps.normal, view, weight);
+    view_add(&mean->maps.roughness, &turned->maps.roughness, view, weight);
+    view_add(&mean->maps.depth, &turned->maps.depth, view, weight);
+    view_add(&mean->indirect, &turned->indirect, view, weight);
+}

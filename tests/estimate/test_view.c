@@ -1,0 +1,121 @@
+/* The mean over all eight orientations turns with the photograph. */
+#include "estimate/view.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "optics/orientation.h"
+#include "scratch.h"
+#include "weights.h"
+
+/* cmocka names a macro fail, so that it comes behind base/status.h */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { SIZE = 64 };
+
+/* A shaded blob that looks different from every side. */
+static void draw(img *photo, img *mask)
+{
+    assert_int_equal(img_new(photo, SIZE, SIZE, 3), OK);
+    assert_int_equal(img_new(mask, SIZE, SIZE, 1), OK);
+    for (int y = 0; y < SIZE; y++)
+        for (int x = 0; x < SIZE; x++) {
+            float u = ((float)x - 28) / 24, v = ((float)y - 34) / 20, inside = 1 - u * u - v * v;
+            if (inside <= 0) continue;
+            *img_at(mask, x, y) = 1;
+            for (int c = 0; c < 3; c++)
+                img_at(photo, x, y)[c] = inside * (0.3f + 0.1f * (float)c + 0.2f * u) + (x > 30 && y < 20 ? 0.2f : 0);
+        }
+}
+
+static float largest_difference(const img *a, const img *b)
+{
+    float most = 0;
+    for (size_t i = 0, n = (size_t)a->width * (size_t)a->height * (size_t)a->channels; i < n; i++)
+        most = fmaxf(most, fabsf(a->data[i] - b->data[i]));
+    return most;
+}
+
+static void orientations_are_undone_by_their_inverse(void **state)
+{
+    (void)state;
+    for (int o = 0; o < ORIENTATIONS; o++) {
+        int back = orientation_inverse(o);
+        float v[3] = {0.1f, 0.2f, 0.3f};
+        orientation_turn(o, v);
+        orientation_turn(back, v);
+        assert_float_equal(v[0], 0.1f, 0);
+        assert_float_equal(v[1], 0.2f, 0);
+        for (size_t i = 0; i < 25; i++)
+            assert_int_equal(orientation_place(back, 5, orientation_place(o, 5, i)), i);
+    }
+}
+
+/* Sums of the same eight numbers in another order: the tolerances are rounding's. */
+static void the_mean_over_all_views_turns_with_the_photograph(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask, turned_photo, turned_mask;
+    network_estimation one = {0}, other = {0};
+    assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    assert_int_equal(network_estimate(n, &photo, &mask, ORIENTATIONS, NULL, &one), OK);
+    for (int o = 1; o < ORIENTATIONS; o += 3) {
+        img albedo, normal;
+        assert_int_equal(view_turn(&photo, o, &turned_photo), OK);
+        assert_int_equal(view_turn(&mask, o, &turned_mask), OK);
+        assert_int_equal(network_estimate(n, &turned_photo, &turned_mask, ORIENTATIONS, NULL, &other), OK);
+        assert_int_equal(img_new(&albedo, SIZE, SIZE, 3), OK);
+        assert_int_equal(img_new(&normal, SIZE, SIZE, 3), OK);
+        view_add(&albedo, &other.maps.albedo, o, 1);
+        view_add_normals(&normal, &other.maps.normal, o, 1);
+        assert_true(largest_difference(&albedo, &one.maps.albedo) < 1e-5f);
+        assert_true(largest_difference(&normal, &one.maps.normal) < 1e-4f);
+        orientation_turn_sh(orientation_inverse(o), other.environment);
+        for (int i = 0; i < 27; i++)
+            assert_float_equal(other.environment[i / 3][i % 3], one.environment[i / 3][i % 3], 1e-4);
+        network_estimation_free(&other);
+        img_free(&albedo);
+        img_free(&normal);
+        img_free(&turned_photo);
+        img_free(&turned_mask);
+    }
+    network_estimation_free(&one);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
+static void a_wrong_number_of_views_is_refused(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask;
+    network_estimation e;
+    assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    assert_int_equal(network_estimate(n, &photo, &mask, 0, NULL, &e), ERROR_USAGE);
+    assert_int_equal(network_estimate(n, &photo, &mask, 9, NULL, &e), ERROR_USAGE);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(orientations_are_undone_by_their_inverse),
+        in_scratch(the_mean_over_all_views_turns_with_the_photograph),
+        in_scratch(a_wrong_number_of_views_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
