@@ -62,6 +62,9 @@ void bundle_fit_albedo(bundle *b);
  * gain little or steps are done. */
 status bundle_refine(bundle *b, float width, int steps);
 
+/* What a light's picture costs if the light is at a place; width as of bundle_refine. */
+double bundle_light_cost(const bundle *b, int light, vec3 place, float width);
+
 /* What a cell sees of a light of power 1: cosine over squared distance, below 0 if turned away. */
 float bundle_shading(const bundle *b, int cell, vec3 light);
 

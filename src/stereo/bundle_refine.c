@@ -179,7 +179,7 @@ static double add_priors(const bundle *b, equations *y)
         double off = (double)log_distance(b, k) - mean;
         f.cost += prior * off * off;
         if (!y) continue;
-        size_t at = (size_t)(b->corners + 3 * k + 2);
+        size_t at = (size_t)b->corners + 3 * (size_t)k + 2;
         y->right[at] -= prior * off;
         for (int j = 0; j <= k; j++)
             y->matrix[at * n + (size_t)(b->corners + 3 * j + 2)] += prior * ((j == k) - 1.0 / b->lights);
@@ -204,6 +204,20 @@ static double cost_of(const bundle *b, float width)
             sum += t / (1 + t);
         }
         cost += (double)sum;
+    }
+    return cost;
+}
+
+double bundle_light_cost(const bundle *b, int light, vec3 place, float width)
+{
+    double cost = 0;
+    for (int i = 0; i < b->cells; i++) {
+        const bundle_cell *c = &b->cell[i];
+        size_t at = (size_t)i * (size_t)b->lights + (size_t)light;
+        patch p = patch_of(b, c);
+        float r = b->value[at] - c->albedo * seen_shading(shading(&p, place), b->value[at], c->level);
+        float t = r * r * b->precision[at] / (width * width);
+        cost += (double)(t / (1 + t));
     }
     return cost;
 }
@@ -245,7 +259,7 @@ typedef struct slopes {
 
 static void add_value(const bundle *b, equations *y, const bundle_cell *c, int light, const slopes *j, loss w, float r)
 {
-    size_t n = (size_t)y->size, at = (size_t)(b->corners + 3 * light);
+    size_t n = (size_t)y->size, at = (size_t)b->corners + 3 * (size_t)light;
     double *coupling = y->coupling + 4 + 3 * (size_t)light;
     for (int i = 0; i < 4; i++) {
         double own = (double)(w.curvature * j->corner[i]);
@@ -377,7 +391,7 @@ static bool descend(bundle *b, equations *y, float width, double *damping)
 
 static status system_new(const bundle *b, equations *y)
 {
-    size_t n = (size_t)(b->corners + 3 * b->lights), lights = (size_t)b->lights;
+    size_t lights = (size_t)b->lights, n = (size_t)b->corners + 3 * lights;
     *y = (equations){
         .size = (int)n, .corners = (size_t)b->corners, .matrix = malloc((2 * n * n + 3 * n + 4) * sizeof *y->matrix)};
     y->turn = malloc(4 * lights * sizeof *y->turn);

@@ -14,9 +14,11 @@
 #include "stereo/uncalibrated_parts.h"
 
 /* Cells along the object; directions that are tried for a light, and how often. */
-enum { COARSE = 12, FINE = 22, DIRECTIONS = 240, SCANS = 4 };
+enum { COARSE = 12, FINE = 22, DIRECTIONS = 240, SCANS = 4, RECALLS = 2 };
 /* Highlights count as this in ordinary values, at most, while lights are looked for. */
 static const float bright = 1.5f;
+/* A light moves elsewhere for this share of what it costs. */
+static const double better = 0.95;
 
 typedef struct start {
     float relief, distance; /* of an inflated outline's height; of lights, in radii of the object */
@@ -32,7 +34,8 @@ typedef struct pass {
     int steps;
 } pass;
 
-static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
+static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, last_pass = {0.1f, 30};
+static const pass fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
 
 /* On a spiral over the camera's side of the object and a little beyond. */
 static vec3 place(const bundle *b, int i, float distance)
@@ -94,6 +97,24 @@ static status find_lights(bundle *b, float distance)
     return OK;
 }
 
+/* A light that went astray while surface and albedo were wrong finds its place now that they are better. */
+static void recall_lights(bundle *b, float width)
+{
+    float distance = 0;
+    for (int k = 0; k < b->lights; k++)
+        distance += vec3_length(vec3_sub(b->position[k], b->centre)) / (b->radius * (float)b->lights);
+    for (int k = 0; k < b->lights; k++) {
+        double least = better * bundle_light_cost(b, k, b->position[k], width);
+        for (int j = 0; j < DIRECTIONS; j++) {
+            vec3 at = place(b, j, distance);
+            double cost = bundle_light_cost(b, k, at, width);
+            if (cost >= least) continue;
+            least = cost;
+            b->position[k] = at;
+        }
+    }
+}
+
 static status refine(bundle *b, const pass *passes, int count)
 {
     status s = OK;
@@ -126,6 +147,10 @@ static status solve_coarse(const pst_problem *p, const pst_camera *camera, bundl
         }
         bundle_free(&worse);
     }
+    for (int i = 0; i < RECALLS && s == OK; i++) {
+        recall_lights(best, last_pass.width);
+        s = refine(best, &last_pass, 1);
+    }
     return s;
 }
 
@@ -136,8 +161,8 @@ static status take_result(const bundle *b, pst_light *light, img *depth)
     status s = img_new(depth, p->capture->width, p->capture->height, 1);
     if (s != OK) return s;
     for (size_t i = 0; i < p->pixel_count; i++) {
-        float x = (float)(p->pixel[i] % width) + 0.5f, y = (float)(p->pixel[i] / width) + 0.5f;
-        depth->data[p->pixel[i]] = b->camera.mean_distance * bundle_depth(b, x, y);
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        depth->data[p->pixel[i]] = b->camera.mean_distance * bundle_depth(b, (float)column + 0.5f, (float)row + 0.5f);
     }
     for (int k = 0; k < b->lights; k++) {
         light[k] = p->light[k];
