@@ -16,6 +16,7 @@ typedef struct fit_job {
     const pst_field *field;
     field_task task;
     const int32_t *slot;   /* spread */
+    const bool *news;      /* spread: whose shading has changed since the neighbours saw it; NULL: all */
     pst_shading *next;     /* spread: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_surface *out;      /* store */
@@ -123,10 +124,16 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
 }
 
-/* Neighbours that differ from the pixel and cost less; returns how many. */
+static bool alike(const pst_shading *a, const pst_shading *b)
+{
+    static const float cosine = 0.9994f; /* of 2 degrees */
+    return vec3_dot(a->normal, b->normal) >= cosine;
+}
+
+/* Neighbours that differ from the pixel and from each other and cost less; returns how many. */
 static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
 {
-    static const float differs = 0.9994f, cheaper = 0.3f; /* cosine of 2 degrees; a third of an outlier */
+    static const float cheaper = 0.3f; /* of an outlier */
     static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const pst_field *f = job->field;
     const pst_shading *own = &f->shading[i];
@@ -136,9 +143,12 @@ static int better_neighbours(const fit_job *job, size_t i, const pst_shading *fo
         int nx = x + step[k][0], ny = y + step[k][1];
         if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
         int32_t other = job->slot[(size_t)ny * (size_t)width + (size_t)nx];
-        if (other < 0) continue;
+        if (other < 0 || (job->news && !job->news[other])) continue;
         const pst_shading *from = &f->shading[other];
-        if (vec3_dot(from->normal, own->normal) < differs && from->cost < own->cost - cheaper) found[count++] = from;
+        bool known = alike(from, own) || from->cost >= own->cost - cheaper;
+        for (int m = 0; m < count; m++)
+            known |= alike(from, found[m]);
+        if (!known) found[count++] = from;
     }
     return count;
 }
@@ -289,17 +299,37 @@ status pst_field_store(const pst_field *f, pst_surface *out)
     return run(&(fit_job){.field = f, .task = STORE, .out = out});
 }
 
-status pst_field_spread(const pst_field *f, const int32_t *slot, size_t *moved)
+static size_t take(const pst_field *f, const pst_shading *next, bool *news)
 {
-    fit_job job = {.field = f, .task = SPREAD, .slot = slot, .next = malloc(f->count * sizeof *job.next)};
-    if (!job.next) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
-    status s = run(&job);
-    *moved = 0;
-    for (size_t i = 0; s == OK && i < f->count; i++) {
-        *moved += job.next[i].cost < f->shading[i].cost;
-        f->shading[i] = job.next[i];
+    size_t moved = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        news[i] = next[i].cost < f->shading[i].cost;
+        moved += news[i];
+        f->shading[i] = next[i];
     }
-    free(job.next);
+    return moved;
+}
+
+status pst_field_spread(const pst_field *f, int sweeps)
+{
+    const pst_capture *c = f->problem->capture;
+    size_t size = (size_t)c->width * (size_t)c->height, moved = 1;
+    pst_shading *next = malloc(f->count * sizeof *next);
+    int32_t *slot = malloc(size * sizeof *slot);
+    bool *news = malloc(f->count * sizeof *news);
+    status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    if (s == OK) {
+        memset(slot, 0xff, size * sizeof *slot);
+        for (size_t i = 0; i < f->count; i++)
+            slot[f->pixel[i]] = (int32_t)i;
+    }
+    for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
+        s = run(&(fit_job){.field = f, .task = SPREAD, .slot = slot, .news = k > 0 ? news : NULL, .next = next});
+        if (s == OK) moved = take(f, next, news);
+    }
+    free(next);
+    free(slot);
+    free(news);
     return s;
 }
 

@@ -30,9 +30,9 @@ status pst_field_refine(const pst_field *f, double *cost);
 /* cost: what pst_lobe_foretell says, summed; the field's shading is neither read nor written. */
 status pst_field_foretell(const pst_field *f, double *cost);
 
-/* Fits again from the four neighbours' results where they differ, and keeps what costs less. slot: a pixel's place in
- * the list, -1 outside. *moved: pixels that took another's. */
-status pst_field_spread(const pst_field *f, const int32_t *slot, size_t *moved);
+/* Fits again from the four neighbours' results where they differ, and keeps what costs less; at most so many times over
+ * all pixels. */
+status pst_field_spread(const pst_field *f, int sweeps);
 
 /* Each observation's share in the fit and what the fit makes of it (both count × pst_padded(pictures)). */
 status pst_field_model(const pst_field *f, float *weight, float *model);

@@ -7,6 +7,9 @@
 /* A choice that explains less than this share of the loss is taken for a chance of the sample. */
 static const double worth_kind = 0.02, worth_view = 0.05, worth_terminator = 0.1;
 
+/* What is tried first: nearer than 0 to all that occur. */
+static const float likely_terminator = 0.07f;
+
 /* Of what is foretold: a lobe, or another width, that gains less is taken for a chance. */
 static const double worth_freedom = 0.03, worth_width = 0.015;
 
@@ -72,26 +75,38 @@ static void try_views(choice *c)
     }
 }
 
-static void try_terminators(choice *c)
+/* Fitted anew with lobes of both kinds: those that stand in for a terminator do not give way to it step by step. */
+static void try_terminator(choice *c)
 {
-    for (int k = 1; k <= 4; k++) {
+    for (int k = 0; k < (c->best.tail > 0 ? UNLIKE : 1); k++) {
         c->trial = c->best;
-        c->trial.terminator = 0.05f * (float)k;
-        attempt(c, c->best.terminator > 0 ? 0 : worth_terminator, false);
-        if (c->best.terminator != c->trial.terminator) return;
+        c->trial.terminator = likely_terminator;
+        if (c->best.tail > 0) {
+            c->trial.masking = kinds[k].masking;
+            c->trial.tail = kinds[k].tail;
+        }
+        attempt(c, c->best.terminator > 0 ? 0 : worth_terminator, true);
     }
+}
+
+/* In steps as long as they help. */
+static void move_terminator(choice *c, float step)
+{
+    float from;
+    do {
+        from = c->best.terminator;
+        c->trial = c->best;
+        c->trial.terminator = from + step;
+        if (c->trial.terminator > 0) attempt(c, 0, false);
+    } while (c->best.terminator != from);
 }
 
 static void refine_terminator(choice *c)
 {
-    float step = 0.02f;
+    float step = 0.03f;
     for (int round = 0; round < 5; round++, step /= 2) {
-        float around = c->best.terminator;
-        for (int side = -1; side <= 1; side += 2) {
-            c->trial = c->best;
-            c->trial.terminator = around + step * (float)side;
-            attempt(c, 0, false);
-        }
+        move_terminator(c, -step);
+        move_terminator(c, step);
     }
 }
 
@@ -135,12 +150,8 @@ static void choose(choice *c)
         try_lobes(c);
     else
         attempt(c, 0, true);
-    try_terminators(c);
-    if (c->best.terminator > 0) {
-        /* lobes that have stood in for it are given up */
-        if (glossy) try_kinds(c, UNLIKE, true);
-        refine_terminator(c);
-    }
+    try_terminator(c);
+    if (c->best.terminator > 0) refine_terminator(c);
     if (glossy) try_kinds(c, KINDS, false);
 }
 

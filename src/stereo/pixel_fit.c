@@ -23,11 +23,13 @@ enum { STARTS = sizeof window / sizeof *window };
 /* albedo · (n·l − τ) = b · (l − τ n): linear in b for the last n. */
 static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *restrict w)
 {
+    const float *lx = o->x, *ly = o->y, *lz = o->z, *value = o->value;
+    const int count = pst_whole(o->padded);
     vec3 n = vec3_scale(vec3_normalize(last), o->terminator);
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, bx = 0, by = 0, bz = 0;
 #pragma omp simd reduction(+ : xx, xy, xz, yy, yz, zz, bx, by, bz)
-    for (int i = 0; i < o->padded; i++) {
-        float x = o->x[i] - n.x, y = o->y[i] - n.y, z = o->z[i] - n.z, u = w[i], v = u * o->value[i];
+    for (int i = 0; i < count; i++) {
+        float x = lx[i] - n.x, y = ly[i] - n.y, z = lz[i] - n.z, u = w[i], v = u * value[i];
         xx += u * x * x;
         xy += u * x * y;
         xz += u * x * z;
@@ -44,15 +46,17 @@ static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *rest
 /* Sets the weights for residuals of the given width (in albedos) and returns the loss. */
 static float reweigh(const pst_observations *o, vec3 b, float width, float *restrict w)
 {
+    const float *lx = o->x, *ly = o->y, *lz = o->z, *value = o->value, *usable = o->usable;
+    const int count = pst_whole(o->padded);
     float albedo = vec3_length(b), sigma = width * albedo, cost = 0, offset = o->terminator * albedo;
     float inverse = 1 / (sigma * sigma + 1e-20f);
 #pragma omp simd reduction(+ : cost)
-    for (int i = 0; i < o->padded; i++) {
-        float fit = b.x * o->x[i] + b.y * o->y[i] + b.z * o->z[i] - offset;
-        float r = o->value[i] - (fit > 0 ? fit : 0);
+    for (int i = 0; i < count; i++) {
+        float fit = b.x * lx[i] + b.y * ly[i] + b.z * lz[i] - offset, v = value[i];
+        float r = v - (fit > 0 ? fit : 0);
         float t = r * r * inverse, g = 1 / (1 + t);
-        cost += o->usable[i] * (PST_IS_SHADOW(o->value[i], r) ? PST_SHADOW_COST : 1) * t * g;
-        w[i] = fit > 0 ? o->usable[i] * g * g : 0;
+        cost += usable[i] * (PST_IS_SHADOW(v, r) ? PST_SHADOW_COST : 1) * t * g;
+        w[i] = (fit > 0 ? usable[i] : 0) * g * g;
     }
     return cost;
 }

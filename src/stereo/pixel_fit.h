@@ -11,7 +11,7 @@
 #include "base/vec.h"
 
 /* Lengths are rounded up to whole vectors, so that loops over lights have no remainder; the padding is not usable. */
-enum { PST_LANES = 8, PST_MAX_LIGHTS = 1024 };
+enum { PST_LANES = 16, PST_MAX_LIGHTS = 1024 };
 
 /* With fewer, what is fitted beside Lambert's law is easily fitted to noise and to errors of the lights. */
 enum { PST_MANY_LIGHTS = 40 };
@@ -19,6 +19,12 @@ enum { PST_MANY_LIGHTS = 40 };
 static inline int pst_padded(int count)
 {
     return (count + PST_LANES - 1) / PST_LANES * PST_LANES;
+}
+
+/* A loop to this needs no code for a remainder, and the compiler knows. */
+static inline int pst_whole(int padded)
+{
+    return padded / PST_LANES * PST_LANES;
 }
 
 /* An observation below a quarter of the fit is taken for a shadow, which costs less than any other outlier: shadows may

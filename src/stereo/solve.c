@@ -78,7 +78,7 @@ static status check_mask(const pst_capture *c)
     return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
 }
 
-static status list_pixels(const pst_capture *c, pst_problem *p)
+status pst_list_pixels(const pst_capture *c, pst_problem *p)
 {
     size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     p->pixel = malloc(size * sizeof *p->pixel);
@@ -145,7 +145,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .iterations = options->iterations};
     s = list_lights(c, light);
     if (s == OK) s = check_mask(c);
-    if (s == OK && out->method != PST_LS) s = list_pixels(c, &p);
+    if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
     free(p.pixel);

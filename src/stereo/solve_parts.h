@@ -20,6 +20,9 @@ typedef struct pst_problem {
 /* Directions are unit already. Fewer than 3 lights, or all in a plane through the origin, are refused. */
 status pst_check_directions(const pst_light *light, int count);
 
+/* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */
+status pst_list_pixels(const pst_capture *c, pst_problem *p);
+
 status pst_solve_ls(const pst_problem *p, pst_surface *out);
 status pst_solve_robust(const pst_problem *p, pst_surface *out);
 status pst_solve_near(const pst_problem *p, pst_surface *out);

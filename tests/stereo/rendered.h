@@ -86,11 +86,11 @@ static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 v
         sum = vec3_scale(rendered_shade(r, at, view, l), power);
     if (r->how->paths > 0) {
         point_light source = {.position = position, .power = led ? 1 : far * far};
-        path_points point = {at, &view, 1};
-        path_source drawn = {&r->spread, r->next++, &r->random};
-        vec3 bounce[2];
-        point_light_paths(&r->scene, &point, &source, &drawn, 1, bounce);
-        sum = vec3_add(sum, vec3_add(bounce[0], bounce[1]));
+        path_points point = {at, &view, 1, r->next++};
+        path_source drawn = {&r->spread, &r->random};
+        vec3 bounce[1][2];
+        point_light_paths(&r->scene, &point, 1, &source, &drawn, 1, bounce);
+        sum = vec3_add(sum, vec3_add(bounce[0][0], bounce[0][1]));
     }
     /* the lobe is applied to all that the LED sends, as seen from the surface */
     return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe)) : sum;
@@ -172,7 +172,7 @@ static inline void rendered_capture(const rendered *how, const scn_object *objec
                                  .center_y = 0.5f * (float)how->size};
     }
     assert_int_equal(trace_device_new(&device), OK);
-    assert_int_equal(trace_scene_new(device, object, scn_surface_eval, &r.scene), OK);
+    assert_int_equal(trace_scene_new(device, object, scn_surfaces_eval, 1e6, &r.scene), OK);
     for (int i = 0; i < how->size * how->size; i++)
         rendered_pixel(&r, i % how->size, i / how->size);
     trace_scene_free(&r.scene);

@@ -9,7 +9,8 @@
 
 #include "relief.h"
 
-enum { SIZE = 48, LIGHTS = 32 };
+/* enough pixels to be searched small */
+enum { SIZE = 128, LIGHTS = 32 };
 static const float radius = 0.3f; /* of the ball at (0, 0, -1) */
 
 /* Positions on two rings about the camera, one to two diameters from the ball. */

@@ -1,0 +1,134 @@
+#include "stereo/shrink.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+
+typedef struct shrink_job {
+    const pst_capture *from;
+    pst_capture *to;
+    int factor;
+    uint16_t high;
+} shrink_job;
+
+/* The part of a block that lies inside the picture. */
+typedef struct block {
+    int left, right, top, bottom;
+} block;
+
+static block block_of(const shrink_job *job, int x, int y)
+{
+    int f = job->factor, right = (x + 1) * f, bottom = (y + 1) * f;
+    return (block){x * f, right < job->from->width ? right : job->from->width, y * f,
+                   bottom < job->from->height ? bottom : job->from->height};
+}
+
+static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)
+{
+    const pst_capture *c = job->from;
+    uint64_t sum[3] = {0}, count = 0;
+    bool saturated = false;
+    for (int y = b.top; y < b.bottom; y++)
+        for (int x = b.left; x < b.right; x++) {
+            size_t at = (size_t)y * (size_t)c->width + (size_t)x;
+            if (c->mask.data[at] <= 0.5f) continue;
+            count++;
+            for (int ch = 0; ch < c->channels; ch++) {
+                uint16_t code = picture[at * (size_t)c->channels + (size_t)ch];
+                sum[ch] += code;
+                saturated |= code >= job->high;
+            }
+        }
+    for (int ch = 0; ch < c->channels; ch++)
+        out[ch] = saturated ? UINT16_MAX : (uint16_t)(count ? (sum[ch] + count / 2) / count : 0);
+}
+
+static void shrink_picture(void *context, size_t k)
+{
+    const shrink_job *job = context;
+    pst_capture *to = job->to;
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++) {
+            size_t at = (size_t)y * (size_t)to->width + (size_t)x;
+            if (to->mask.data[at] <= 0.5f) continue;
+            mean_of(job, job->from->picture[k], block_of(job, x, y), to->picture[k] + at * (size_t)to->channels);
+        }
+}
+
+static void shrink_mask(const shrink_job *job)
+{
+    const img *from = &job->from->mask;
+    img *to = &job->to->mask;
+    for (int y = 0; y < from->height; y++)
+        for (int x = 0; x < from->width; x++)
+            if (from->data[(size_t)y * (size_t)from->width + (size_t)x] > 0.5f)
+                to->data[(size_t)(y / job->factor) * (size_t)to->width + (size_t)(x / job->factor)] = 1;
+}
+
+static status allocate(const pst_capture *c, int factor, pst_capture *out)
+{
+    size_t count = (size_t)c->count, samples;
+    *out = (pst_capture){.width = (c->width + factor - 1) / factor,
+                         .height = (c->height + factor - 1) / factor,
+                         .channels = c->channels,
+                         .lighting = c->lighting,
+                         .intensities_known = c->intensities_known,
+                         .camera = c->camera};
+    out->camera.focal /= (float)factor;
+    out->camera.center_x /= (float)factor;
+    out->camera.center_y /= (float)factor;
+    samples = (size_t)out->width * (size_t)out->height * (size_t)c->channels;
+    out->light = malloc(count * sizeof *out->light);
+    out->picture = calloc(count, sizeof *out->picture);
+    if (!out->light || !out->picture) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+    memcpy(out->light, c->light, count * sizeof *out->light);
+    for (; (size_t)out->count < count; out->count++) {
+        out->picture[out->count] = calloc(samples, sizeof **out->picture);
+        if (!out->picture[out->count]) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+    }
+    return img_new(&out->mask, out->width, out->height, 1);
+}
+
+status pst_shrink(const pst_capture *c, int factor, float saturation, pst_capture *out)
+{
+    status s = allocate(c, factor, out);
+    if (s != OK) {
+        pst_capture_free(out);
+        return s;
+    }
+    float high = saturation * 65535;
+    shrink_job job = {c, out, factor, (uint16_t)(high < 65535 ? high : 65535)};
+    shrink_mask(&job);
+    parallel_for((size_t)c->count, shrink_picture, &job);
+    return OK;
+}
+
+/* Bilinear between the small pixels' middles, as far as they are on the object. */
+static float between(const img *small, const img *small_mask, float x, float y)
+{
+    int left = (int)(x + 1) - 1, top = (int)(y + 1) - 1; /* rounded down: -1 at the least */
+    float sum = 0, weights = 0;
+    for (int k = 0; k < 4; k++) {
+        int i = left + k % 2, j = top + k / 2;
+        if (i < 0 || j < 0 || i >= small->width || j >= small->height) continue;
+        size_t at = (size_t)j * (size_t)small->width + (size_t)i;
+        float along = k % 2 ? x - (float)left : 1 - x + (float)left, down = k / 2 ? y - (float)top : 1 - y + (float)top;
+        float w = small_mask->data[at] > 0.5f ? along * down : 0;
+        sum += w * small->data[at];
+        weights += w;
+    }
+    return weights > 0 ? sum / weights : 0;
+}
+
+void pst_enlarge(const img *small, const img *small_mask, const img *mask, int factor, img *out)
+{
+    float scale = 1 / (float)factor;
+    for (int y = 0; y < mask->height; y++)
+        for (int x = 0; x < mask->width; x++) {
+            size_t at = (size_t)y * (size_t)mask->width + (size_t)x;
+            if (mask->data[at] <= 0.5f) continue;
+            out->data[at] =
+                between(small, small_mask, ((float)x + 0.5f) * scale - 0.5f, ((float)y + 0.5f) * scale - 0.5f);
+        }
+}
