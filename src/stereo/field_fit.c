@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "stereo/near_lights.h"
 #include "stereo/pixel_fit.h"
 
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
@@ -57,44 +58,6 @@ void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float
     for (size_t j = 0; j < count; j++)
         for (size_t k = (size_t)c->count; k < (size_t)pst_padded(c->count); k++)
             value[j * stride + k] = usable[j * stride + k] = 0;
-}
-
-typedef struct near_lights {
-    float x[PST_MAX_LIGHTS], y[PST_MAX_LIGHTS], z[PST_MAX_LIGHTS], power[PST_MAX_LIGHTS];
-} near_lights;
-
-/* Directions from the point at(0..count) and what arrives there: a point source falls off with the squared distance,
- * an LED also with the lobe's power of the cosine to its axis. */
-static void point_lights(const pst_problem *p, vec3 at, int padded, near_lights *out)
-{
-    for (int k = 0; k < padded; k++)
-        out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
-    int count = p->capture->count;
-    for (int k = 0; k < count; k++) {
-        const pst_light *from = &p->light[k];
-        vec3 to = vec3_sub(from->position, at);
-        float squared = fmaxf(vec3_dot(to, to), 1e-12f);
-        vec3 l = vec3_scale(to, 1 / sqrtf(squared));
-        float power = 1 / squared;
-        if (from->lobe > 0 && vec3_dot(from->direction, from->direction) > 0)
-            power *= powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe);
-        out->x[k] = l.x;
-        out->y[k] = l.y;
-        out->z[k] = l.z;
-        out->power[k] = power;
-    }
-}
-
-static void divide_by_power(const near_lights *l, int padded, float *value, float *usable)
-{
-    float most = 0;
-    for (int k = 0; k < padded; k++)
-        most = l->power[k] > most ? l->power[k] : most;
-    for (int k = 0; k < padded; k++) {
-        bool lit = l->power[k] > 1e-4f * most; /* less is the lobe's dark side: nothing but noise, enlarged */
-        value[k] = lit ? value[k] / l->power[k] : 0;
-        usable[k] = lit ? usable[k] : 0;
-    }
 }
 
 static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
@@ -225,14 +188,14 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
 }
 
 /* Under near lights or from a near camera: where the pixel sees them. Returns the direction to the camera. */
-static vec3 look_from(const pst_field *f, size_t at, near_lights *lights, float *value, float *usable)
+static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
 {
     const pst_capture *c = f->problem->capture;
     int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width), padded = pst_padded(c->count);
     if (f->depth) {
         vec3 ray = pst_ray(&c->camera, x, y);
-        point_lights(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), padded, lights);
-        divide_by_power(lights, padded, value, usable);
+        pst_near_lights_at(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), lights);
+        pst_near_lights_divide(lights, padded, value, usable);
         return vec3_normalize(vec3_scale(ray, -1));
     }
     if (!f->lobe || f->lobe->focal <= 0) return vec3_make(0, 0, 1);
@@ -251,7 +214,7 @@ static bool concerns(const fit_job *job, size_t i)
 static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
 {
     const pst_field *f = job->field;
-    near_lights lights;
+    pst_near_lights lights;
     vec3 view = look_from(f, f->pixel[i], &lights, value, usable);
     pst_observations o = {pst_padded(f->problem->capture->count), job->x, job->y, job->z, value, usable, 0};
     if (f->depth) {
