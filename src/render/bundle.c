@@ -2,20 +2,21 @@
 
 #include "optics/brdf.h"
 
-/* A loop with a choice in it or a call does not become vectors: each is made twice, once for each value of
+/* A loop with a choice in it does not become vectors either: those below are made twice, once for each value of
  * diffuse_only. */
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/* All lanes are filled, so that loops over them have no tail; those beyond count repeat earlier ones and are never
+/* All lanes are filled, so that loops over them have no tail; those beyond count repeat the first and are never
  * traced. */
-void bundle_begin(bundle *b, uint32_t first, const scn_surface *at, const vec3 *view, int points, int count)
+void bundle_begin(bundle *b, const path_points *pixels, int count, int paths, int first)
 {
-    b->count = count;
+    int left = count * paths - first;
+    b->count = left < TRACE_PACKET ? left : TRACE_PACKET;
     for (int i = 0; i < TRACE_PACKET; i++) {
-        uint32_t index = first + (uint32_t)i;
-        const scn_surface *s = at + index % (uint32_t)points;
-        b->at[i] = s;
-        b->view[i] = view + index % (uint32_t)points;
+        int path = first + (i < left ? i : 0);
+        const path_points *p = &pixels[path / paths];
+        uint32_t index = p->index + (uint32_t)(path % paths), point = index % (uint32_t)p->count;
+        const scn_surface *s = p->at + point;
+        b->pixel[i] = path / paths;
         b->index[i] = index;
         vec3 origin = trace_leave(s);
         b->rays.x[i] = origin.x;
@@ -24,7 +25,7 @@ void bundle_begin(bundle *b, uint32_t first, const scn_surface *at, const vec3 *
         lanes_put(&b->albedo, i, s->albedo);
         lanes_put(&b->normal, i, s->normal);
         lanes_put(&b->geometric_normal, i, s->geometric_normal);
-        lanes_put(&b->toward, i, *b->view[i]);
+        lanes_put(&b->toward, i, p->view[point]);
         b->roughness[i] = s->roughness;
     }
 }

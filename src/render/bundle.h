@@ -2,8 +2,8 @@
  * their rays are traced together. Most paths end there, for most of an object's surface sees no other.
  *
  *     bundle b;
- *     bundle_begin(&b, &source, at, view, points, count);
- *     bundle_scatter(&b, diffuse_only);
+ *     bundle_begin(&b, pixels, count, paths, first);
+ *     bundle_scatter(&b, sequence, diffuse_only);
  *     trace_packet(scene, &b.rays, hits);
  *     for (int i = 0; i < b.count; i++) if (hits[i].distance >= 0) ... b.throughput ...
  */
@@ -13,15 +13,17 @@
 #include "render/sequence.h"
 #include "render/trace.h"
 
-/* Vectors, one a lane. */
-typedef struct lanes {
-    float x[TRACE_PACKET], y[TRACE_PACKET], z[TRACE_PACKET];
-} lanes;
+/* The points of a surface that one pixel shows: paths start at them in turn. */
+typedef struct path_points {
+    const scn_surface *at;
+    const vec3 *view; /* unit, from each point to the eye */
+    int count;
+    uint32_t index; /* of the pixel's first path in the sequence */
+} path_points;
 
 typedef struct bundle {
-    int count; /* lanes in use */
-    const scn_surface *at[TRACE_PACKET];
-    const vec3 *view[TRACE_PACKET];
+    int count;                                      /* lanes in use */
+    int pixel[TRACE_PACKET];                        /* that the path is for */
     uint32_t index[TRACE_PACKET];                   /* of the path in its sequence */
     lanes albedo, normal, geometric_normal, toward; /* toward: the viewer */
     float roughness[TRACE_PACKET];
@@ -30,8 +32,8 @@ typedef struct bundle {
     float pdf[TRACE_PACKET];
 } bundle;
 
-/* Paths `first` and on of a sequence start at the points in turn. */
-void bundle_begin(bundle *b, uint32_t first, const scn_surface *at, const vec3 *view, int points, int count);
+/* Of the paths of `count` pixels, so many each, `first` and the ones behind it. */
+void bundle_begin(bundle *b, const path_points *pixels, int count, int paths, int first);
 
 /* Draws directions from the BRDF; rays.valid tells which paths go on, throughput is f cosθ / pdf. */
 void bundle_scatter(bundle *b, const sequence *q, bool diffuse_only);
@@ -39,17 +41,5 @@ void bundle_scatter(bundle *b, const sequence *q, bool diffuse_only);
 /* The same for directions that are given (in rays, with their density in light_pdf): throughput is f cosθ over the sum
  * of both densities. */
 void bundle_reflect(bundle *b, const float *light_pdf, bool diffuse_only);
-
-static inline vec3 lanes_at(const lanes *l, int i)
-{
-    return vec3_make(l->x[i], l->y[i], l->z[i]);
-}
-
-static inline void lanes_put(lanes *l, int i, vec3 v)
-{
-    l->x[i] = v.x;
-    l->y[i] = v.y;
-    l->z[i] = v.z;
-}
 
 #endif

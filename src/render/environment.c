@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "optics/brdf.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
 #include "render/sky.h"
@@ -193,31 +194,57 @@ vec3 environment_look(const environment *env, vec3 d, real *pdf)
     return radiance_at(env, x, y);
 }
 
-/* The interval of a cumulative sum that holds u, and where in it. */
-static int find_interval(const float *cumulative, int count, float u, float *within)
+/* Where numbers fall in cumulative sums: in which interval, and how far into it. */
+typedef struct falls {
+    int interval[LANES];
+    float within[LANES];
+} falls;
+
+/* Lane i's sum of so many intervals begins at cumulative[first[i]]. Halving without branches, which nobody could
+ * predict. */
+static void find_intervals(const float *cumulative, const int first[LANES], int count, const float u[LANES], falls *out)
 {
-    int low = 0;
-    /* without branches, which nobody could predict */
+    int low[LANES];
+    for (int i = 0; i < LANES; i++)
+        low[i] = first[i];
     for (int left = count; left > 1;) {
         int half = left / 2;
-        low += cumulative[low + half] <= u ? half : 0;
+#pragma omp simd
+        for (int i = 0; i < LANES; i++)
+            low[i] += cumulative[low[i] + half] <= u[i] ? half : 0;
         left -= half;
     }
-    float width = cumulative[low + 1] - cumulative[low];
-    *within = width > 0 ? fminf(0.9999f, (u - cumulative[low]) / width) : 0.5f;
-    return low;
+#pragma omp simd
+    for (int i = 0; i < LANES; i++) {
+        float start = cumulative[low[i]], width = cumulative[low[i] + 1] - start;
+        float share = (u[i] - start) / width;
+        out->within[i] = width > 0 ? (share < 0.9999f ? share : 0.9999f) : 0.5f;
+        out->interval[i] = low[i] - first[i];
+    }
 }
 
-vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real *pdf)
+void environment_sample(const environment *env, const float u1[LANES], const float u2[LANES], int count,
+                        environment_rays *out)
 {
-    float fx, fy;
-    int w = env->map.width, h = env->map.height;
-    int y = find_interval(env->rows, h, u1, &fy);
-    int x = find_interval(env->columns + (size_t)y * (size_t)(w + 1), w, u2, &fx);
-    float top = env->cosines[y], bottom = env->cosines[y + 1];
-    float cosine = top + fy * (bottom - top), s = sqrtf(fmaxf(0, 1 - cosine * cosine));
-    float around = (((float)x + fx) / (float)w - 0.5f) * 2 * pi;
-    *d = vec3_make(s * sinf(around), cosine, -s * cosf(around));
-    *pdf = texel_pdf(env, x, y);
-    return radiance_at(env, (float)x + fx, acosf(cosine) / pi * (float)h);
+    int w = env->map.width, h = env->map.height, row[LANES] = {0};
+    float x[LANES], y[LANES];
+    falls down, across;
+    find_intervals(env->rows, row, h, u1, &down);
+    for (int i = 0; i < LANES; i++)
+        row[i] = down.interval[i] * (w + 1);
+    find_intervals(env->columns, row, w, u2, &across);
+#pragma omp simd
+    for (int i = 0; i < LANES; i++) {
+        float top = env->cosines[down.interval[i]], bottom = env->cosines[down.interval[i] + 1], c, s;
+        float cosine = top + down.within[i] * (bottom - top), rest = 1 - cosine * cosine;
+        float sine = sqrtf(rest > 0 ? rest : 0);
+        x[i] = (float)across.interval[i] + across.within[i];
+        y[i] = cosine;
+        brdf_turn(x[i] / (float)w, &c, &s);
+        lanes_put(&out->direction, i, vec3_make(-sine * s, cosine, sine * c));
+    }
+    for (int i = 0; i < count; i++) {
+        out->pdf[i] = texel_pdf(env, across.interval[i], down.interval[i]);
+        lanes_put(&out->radiance, i, radiance_at(env, x[i], acosf(y[i]) / pi * (float)h));
+    }
 }

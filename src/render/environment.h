@@ -9,8 +9,8 @@
 #ifndef MERLIN_RENDER_ENVIRONMENT_H
 #define MERLIN_RENDER_ENVIRONMENT_H
 
+#include "base/lanes.h"
 #include "base/rng.h"
-#include "base/vec.h"
 #include "image/image.h"
 
 /* Size of procedural maps, and of those from files once shrunk. */
@@ -36,8 +36,15 @@ vec3 environment_radiance(const environment *env, vec3 d);
 real environment_pdf(const environment *env, vec3 d);
 /* Both at once. */
 vec3 environment_look(const environment *env, vec3 d, real *pdf);
-/* Draws a direction about as often as the map is bright there; returns its radiance. */
-vec3 environment_sample(const environment *env, real u1, real u2, vec3 *d, real *pdf);
+/* Directions and what comes from there, one a lane. */
+typedef struct environment_rays {
+    lanes direction, radiance;
+    float pdf[LANES];
+} environment_rays;
+
+/* Draws `count` directions about as often as the map is bright there. */
+void environment_sample(const environment *env, const float u1[LANES], const float u2[LANES], int count,
+                        environment_rays *out);
 
 /* Every picture of a folder that can serve as a map (HDR, EXR and the like), shrunk to what lighting needs. */
 typedef struct environment_folder {

@@ -47,6 +47,14 @@ static status make_object(const run *r, uint64_t index, scn_object *out)
     return s;
 }
 
+/* About half of the pixels see the object. */
+static double expected_rays(const render_options *o)
+{
+    const image_settings *m = &o->image;
+    double layers = 1 + m->targets + o->environment;
+    return (double)m->size * m->size * (m->strata + 0.5 * m->paths * layers);
+}
+
 static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *rays)
 {
     const render_options *o = r->options;
@@ -56,7 +64,7 @@ static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *r
     status s = make_object(r, index, &object);
     if (s != OK) return s;
     s = make_environment(r, index, &env);
-    if (s == OK) s = trace_scene_new(r->device, &object, scn_surface_eval, &scene);
+    if (s == OK) s = trace_scene_new(r->device, &object, scn_surfaces_eval, expected_rays(o), &scene);
     if (s == OK) s = render_image(&scene, &o->image, o->seed, index, o->environment ? &env : NULL, out);
     *rays = scene.rays;
     trace_scene_free(&scene);

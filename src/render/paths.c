@@ -1,17 +1,12 @@
 #include "render/paths.h"
 
+#include <string.h>
+
 #include "optics/brdf.h"
-#include "render/bundle.h"
 
 static const vec3 black = {0, 0, 0};
 
-static vec3 reflect(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view)
-{
-    if (scene->diffuse_only) return vec3_scale(at->albedo, 1 / BRDF_PI);
-    return brdf_eval(at->albedo, at->roughness, at->normal, l, view);
-}
-
-/* The same with the density of scatter at l. */
+/* f and the density of scatter at l. */
 static vec3 reflect_density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view, real *pdf)
 {
     if (!scene->diffuse_only) return brdf_eval_pdf(at->albedo, at->roughness, at->normal, l, view, pdf);
@@ -52,71 +47,175 @@ static path_start random_start(rng *r)
     return (path_start){a, b};
 }
 
-vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light)
+/* ---- straight from a point light ------------------------------------------------------------------------------- */
+
+/* What shading takes, one point a lane; lanes beyond count repeat the first. */
+typedef struct shaded {
+    lanes position, normal, albedo, view;
+    float roughness[LANES];
+} shaded;
+
+static void gather(const scn_surface *at, const vec3 *view, int count, shaded *out)
 {
-    vec3 to_light = vec3_sub(light->position, at->position);
-    real distance2 = vec3_dot(to_light, to_light);
-    if (distance2 < (real)1e-6) return black;
-    vec3 l = vec3_scale(to_light, 1 / sqrt(distance2));
-    real cosine = vec3_dot(at->normal, l);
-    if (cosine <= 0) return black;
-    return vec3_scale(reflect(scene, at, l, view), light->power * cosine / distance2);
+    for (int i = 0; i < LANES; i++) {
+        int from = i < count ? i : 0;
+        lanes_put(&out->position, i, at[from].position);
+        lanes_put(&out->normal, i, at[from].normal);
+        lanes_put(&out->albedo, i, at[from].albedo);
+        lanes_put(&out->view, i, view[from]);
+        out->roughness[i] = at[from].roughness;
+    }
 }
 
-vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light)
+ALWAYS_INLINE void shade_lanes(const shaded *s, const point_light *light, bool diffuse_only, lanes *out)
 {
-    vec3 origin = trace_leave(at), to_light = vec3_sub(light->position, origin);
-    if (!faces(at, to_light)) return black;
-    vec3 radiance = point_light_unshadowed(scene, at, view, light);
-    if (radiance.x + radiance.y + radiance.z <= 0) return black;
-    real distance = vec3_length(to_light);
-    return trace_occluded(scene, origin, vec3_scale(to_light, 1 / distance), distance) ? black : radiance;
+    vec3 position = light->position;
+    real power = light->power;
+#pragma omp simd
+    for (int i = 0; i < LANES; i++) {
+        vec3 n = lanes_at(&s->normal, i), albedo = lanes_at(&s->albedo, i);
+        vec3 to_light = vec3_sub(position, lanes_at(&s->position, i));
+        real distance2 = vec3_dot(to_light, to_light);
+        vec3 l = vec3_scale(to_light, 1 / sqrt(distance2));
+        real cosine = vec3_dot(n, l);
+        vec3 f = diffuse_only ? vec3_scale(albedo, 1 / BRDF_PI)
+                              : brdf_eval(albedo, s->roughness[i], n, l, lanes_at(&s->view, i));
+        bool lit = (cosine > 0) & (distance2 >= (real)1e-6);
+        real strength = power * cosine / distance2;
+        lanes_put(out, i, vec3_make(lit ? f.x * strength : 0, lit ? f.y * strength : 0, lit ? f.z * strength : 0));
+    }
 }
 
-/* Bounce 2 of a path that has met `hit`, and bounce 3. */
-static void follow_point_light(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
-                               const point_light *light, const path_source *source, vec3 bounce[2])
+void point_light_unshadowed(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                            const point_light *light, vec3 *radiance)
 {
-    vec3 throughput = lanes_at(&b->throughput, lane), l;
-    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
-    scn_surface from, to;
+    shaded s;
+    lanes out;
+    for (int done = 0; done < count; done += LANES) {
+        int abreast = count - done < LANES ? count - done : LANES;
+        gather(at + done, view + done, abreast, &s);
+        if (scene->diffuse_only)
+            shade_lanes(&s, light, true, &out);
+        else
+            shade_lanes(&s, light, false, &out);
+        for (int i = 0; i < abreast; i++)
+            radiance[done + i] = lanes_at(&out, i);
+    }
+}
+
+/* Puts out what up to LANES points get from behind something. */
+static void cast_shadows(trace_scene *scene, const scn_surface *at, int count, const point_light *light, vec3 *radiance)
+{
+    ray_packet rays;
+    float far[LANES];
+    for (int i = 0; i < LANES; i++) {
+        int from = i < count ? i : 0;
+        vec3 origin = trace_leave(&at[from]), to_light = vec3_sub(light->position, origin), lit = radiance[from];
+        far[i] = vec3_length(to_light);
+        vec3 l = vec3_scale(to_light, 1 / far[i]);
+        rays.x[i] = origin.x;
+        rays.y[i] = origin.y;
+        rays.z[i] = origin.z;
+        rays.dx[i] = l.x;
+        rays.dy[i] = l.y;
+        rays.dz[i] = l.z;
+        rays.valid[i] = i < count && lit.x + lit.y + lit.z > 0 && faces(&at[from], to_light) ? -1 : 0;
+    }
+    trace_packet_free(scene, &rays, far);
+    for (int i = 0; i < count; i++)
+        if (!rays.valid[i]) radiance[i] = black;
+}
+
+void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                        const point_light *light, vec3 *radiance)
+{
+    point_light_unshadowed(scene, at, view, count, light, radiance);
+    for (int done = 0; done < count; done += LANES)
+        cast_shadows(scene, at + done, count - done < LANES ? count - done : LANES, light, radiance + done);
+}
+
+/* ---- paths that meet another surface --------------------------------------------------------------------------- */
+
+/* How many paths are begun before those of them that arrived somewhere go on together. */
+enum { WAVE = 16 * TRACE_PACKET };
+
+typedef struct arrivals {
+    int count;
+    int pixel[WAVE];
+    uint32_t index[WAVE]; /* of the path in its sequence */
+    vec3 throughput[WAVE], view[WAVE];
+    trace_hit hit[WAVE];
+    scn_surface at[WAVE];
+    vec3 direct[WAVE]; /* a point light's */
+} arrivals;
+
+static void arrive(arrivals *a, const bundle *b, int lane, const trace_hit *hit)
+{
+    int k = a->count++;
+    a->pixel[k] = b->pixel[lane];
+    a->index[k] = b->index[lane];
+    a->throughput[k] = lanes_at(&b->throughput, lane);
+    a->view[k] = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
+    a->hit[k] = *hit;
+}
+
+/* Bounce 2 of arrival k, and bounce 3. */
+static void follow_point_light(trace_scene *scene, const arrivals *a, int k, const point_light *light,
+                               const path_source *source, vec3 bounce[2])
+{
+    vec3 throughput = a->throughput[k], l, back, third;
+    const scn_surface *from = &a->at[k];
+    scn_surface to;
     real pdf;
-    trace_surface_at(scene, hit, v, &from);
-    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, point_light_direct(scene, &from, v, light))));
-    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, b->index[lane]);
-    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, b->index[lane]).u2;
-    if (!scatter(scene, &from, v, start, choice, &l, &pdf, &throughput)) return;
-    if (!trace_surface(scene, trace_leave(&from), l, &to)) return;
-    v = vec3_scale(l, -1);
-    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, point_light_direct(scene, &to, v, light))));
+    bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, a->direct[k])));
+    path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, a->index[k]);
+    real choice = sequence_at(source->sequence, SEQUENCE_CHOICE, a->index[k]).u2;
+    if (!scatter(scene, from, a->view[k], start, choice, &l, &pdf, &throughput)) return;
+    if (!trace_surface(scene, trace_leave(from), l, &to)) return;
+    back = vec3_scale(l, -1);
+    point_light_direct(scene, &to, &back, 1, light, &third);
+    bounce[1] = vec3_add(bounce[1], clamp_path(vec3_mul(throughput, third)));
 }
 
-void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
-                       const path_source *source, int count, vec3 bounce[2])
+void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
+                       const path_source *source, int paths, vec3 (*bounce)[2])
 {
     bundle b;
     trace_hit hits[TRACE_PACKET];
-    bounce[0] = bounce[1] = black;
-    for (int done = 0; done < count; done += TRACE_PACKET) {
-        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
-        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
-        bundle_scatter(&b, source->sequence, scene->diffuse_only);
-        trace_packet(scene, &b.rays, hits);
-        for (int i = 0; i < abreast; i++)
-            if (hits[i].distance >= 0) follow_point_light(scene, &b, i, &hits[i], light, source, bounce);
+    arrivals a;
+    for (int i = 0; i < count; i++)
+        bounce[i][0] = bounce[i][1] = black;
+    for (int done = 0; done < count * paths;) {
+        a.count = 0;
+        for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
+            bundle_begin(&b, pixels, count, paths, done);
+            bundle_scatter(&b, source->sequence, scene->diffuse_only);
+            trace_packet(scene, &b.rays, hits);
+            for (int i = 0; i < b.count; i++)
+                if (hits[i].distance >= 0) arrive(&a, &b, i, &hits[i]);
+        }
+        trace_surfaces_at(scene, a.hit, a.view, a.count, a.at);
+        point_light_direct(scene, a.at, a.view, a.count, light, a.direct);
+        for (int k = 0; k < a.count; k++)
+            follow_point_light(scene, &a, k, light, source, bounce[a.pixel[k]]);
     }
 }
+
+/* ---- the environment ------------------------------------------------------------------------------------------- */
 
 /* The environment's light at one surface, by a direction drawn from the map. */
 static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
                                path_start u)
 {
-    real light_pdf;
-    vec3 l, radiance = environment_sample(env, u.u1, u.u2, &l, &light_pdf);
+    float u1[LANES] = {u.u1}, u2[LANES] = {u.u2};
+    environment_rays drawn;
+    environment_sample(env, u1, u2, 1, &drawn);
+    vec3 l = lanes_at(&drawn.direction, 0);
     if (!faces(at, l)) return black;
     real pdf;
     vec3 f = reflect_density(scene, at, l, view, &pdf);
-    vec3 result = vec3_mul(vec3_scale(f, vec3_dot(at->normal, l) / (light_pdf + pdf)), radiance);
+    vec3 share = vec3_scale(f, vec3_dot(at->normal, l) / (drawn.pdf[0] + pdf));
+    vec3 result = vec3_mul(share, lanes_at(&drawn.radiance, 0));
     if (result.x + result.y + result.z <= 0) return black;
     return trace_occluded(scene, trace_leave(at), l, 1e4f) ? black : result;
 }
@@ -129,15 +228,12 @@ static vec3 environment_seen(const environment *env, vec3 l, real pdf)
     return vec3_scale(radiance, pdf / (pdf + light_pdf));
 }
 
-/* The light that a path brings once it has met `hit`: from the map at up to two more surfaces. */
-static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, const trace_hit *hit,
-                               const environment *env, rng *r)
+/* The light that arrival k brings: from the map at up to two more surfaces. */
+static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, const environment *env, rng *r)
 {
     enum { MORE_SURFACES = 2 };
-    vec3 sum = black, throughput = lanes_at(&b->throughput, lane), l;
-    vec3 v = vec3_make(-b->rays.dx[lane], -b->rays.dy[lane], -b->rays.dz[lane]);
-    scn_surface from, to;
-    trace_surface_at(scene, hit, v, &from);
+    vec3 sum = black, throughput = a->throughput[k], v = a->view[k], l;
+    scn_surface from = a->at[k], to;
     for (int left = MORE_SURFACES; left > 0; left--) {
         real pdf;
         vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, random_start(r)));
@@ -154,50 +250,68 @@ static vec3 follow_environment(trace_scene *scene, const bundle *b, int lane, co
     return sum;
 }
 
-/* The map's light at the first surfaces, by directions drawn from the map. */
-static vec3 first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q)
+static void add(vec3 *radiance, const bundle *b, int lane, vec3 light)
 {
-    lanes radiance = {0};
-    float light_pdf[TRACE_PACKET] = {0};
-    vec3 sum = black;
-    for (int i = 0; i < b->count; i++) {
-        path_start u = sequence_at(q, SEQUENCE_LIGHT, b->index[i]);
-        vec3 l;
-        lanes_put(&radiance, i, environment_sample(env, u.u1, u.u2, &l, &light_pdf[i]));
-        b->rays.dx[i] = l.x;
-        b->rays.dy[i] = l.y;
-        b->rays.dz[i] = l.z;
-    }
-    bundle_reflect(b, light_pdf, scene->diffuse_only);
-    trace_packet_free(scene, &b->rays);
-    for (int i = 0; i < b->count; i++)
-        if (b->rays.valid[i])
-            sum = vec3_add(sum, clamp_path(vec3_mul(lanes_at(&b->throughput, i), lanes_at(&radiance, i))));
-    return sum;
+    vec3 *sum = &radiance[b->pixel[lane]];
+    *sum = vec3_add(*sum, clamp_path(vec3_mul(lanes_at(&b->throughput, lane), light)));
 }
 
-vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
-                       int count)
+/* The map's light at the first surfaces, by directions drawn from the map. */
+static void first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+                                     vec3 *radiance)
+{
+    float u1[LANES], u2[LANES];
+    environment_rays drawn;
+#pragma omp simd
+    for (int i = 0; i < LANES; i++) {
+        path_start u = sequence_at(q, SEQUENCE_LIGHT, b->index[i]);
+        u1[i] = u.u1;
+        u2[i] = u.u2;
+    }
+    environment_sample(env, u1, u2, LANES, &drawn);
+    memcpy(b->rays.dx, drawn.direction.x, sizeof b->rays.dx);
+    memcpy(b->rays.dy, drawn.direction.y, sizeof b->rays.dy);
+    memcpy(b->rays.dz, drawn.direction.z, sizeof b->rays.dz);
+    bundle_reflect(b, drawn.pdf, scene->diffuse_only);
+    trace_packet_free(scene, &b->rays, NULL);
+    for (int i = 0; i < b->count; i++)
+        if (b->rays.valid[i]) add(radiance, b, i, lanes_at(&drawn.radiance, i));
+}
+
+/* What the first surfaces get from the map; paths that meet another surface arrive there. */
+static void begin_environment_paths(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+                                    vec3 *radiance, arrivals *a)
+{
+    trace_hit hits[TRACE_PACKET];
+    first_environment_direct(scene, b, env, q, radiance);
+    bundle_scatter(b, q, scene->diffuse_only);
+    trace_packet(scene, &b->rays, hits);
+    for (int i = 0; i < b->count; i++) {
+        vec3 l = vec3_make(b->rays.dx[i], b->rays.dy[i], b->rays.dz[i]);
+        if (hits[i].distance >= 0)
+            arrive(a, b, i, &hits[i]);
+        else if (b->rays.valid[i])
+            add(radiance, b, i, environment_seen(env, l, b->pdf[i]));
+    }
+}
+
+void environment_paths(trace_scene *scene, const path_points *pixels, int count, const environment *env,
+                       const path_source *source, int paths, vec3 *radiance)
 {
     bundle b;
-    trace_hit hits[TRACE_PACKET];
-    vec3 sum = black;
-    for (int done = 0; done < count; done += TRACE_PACKET) {
-        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
-        bundle_begin(&b, source->index + (uint32_t)done, points->at, points->view, points->count, abreast);
-        for (int i = abreast; i < TRACE_PACKET; i++)
-            b.rays.dx[i] = b.rays.dy[i] = b.rays.dz[i] = 1;
-        sum = vec3_add(sum, first_environment_direct(scene, &b, env, source->sequence));
-        bundle_scatter(&b, source->sequence, scene->diffuse_only);
-        trace_packet(scene, &b.rays, hits);
-        for (int i = 0; i < abreast; i++) {
-            vec3 l = vec3_make(b.rays.dx[i], b.rays.dy[i], b.rays.dz[i]), brought = black;
-            if (hits[i].distance >= 0)
-                brought = follow_environment(scene, &b, i, &hits[i], env, source->random);
-            else if (b.rays.valid[i])
-                brought = clamp_path(vec3_mul(lanes_at(&b.throughput, i), environment_seen(env, l, b.pdf[i])));
-            sum = vec3_add(sum, brought);
+    arrivals a;
+    for (int i = 0; i < count; i++)
+        radiance[i] = black;
+    for (int done = 0; done < count * paths;) {
+        a.count = 0;
+        for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
+            bundle_begin(&b, pixels, count, paths, done);
+            begin_environment_paths(scene, &b, env, source->sequence, radiance, &a);
+        }
+        trace_surfaces_at(scene, a.hit, a.view, a.count, a.at);
+        for (int k = 0; k < a.count; k++) {
+            vec3 *sum = &radiance[a.pixel[k]];
+            *sum = vec3_add(*sum, follow_environment(scene, &a, k, env, source->random));
         }
     }
-    return sum;
 }

@@ -6,6 +6,7 @@
 #define MERLIN_RENDER_PATHS_H
 
 #include "base/rng.h"
+#include "render/bundle.h"
 #include "render/environment.h"
 #include "render/sequence.h"
 #include "render/trace.h"
@@ -24,28 +25,22 @@ typedef struct point_light {
  */
 typedef struct path_source {
     const sequence *sequence;
-    uint32_t index; /* of the first path in the sequence */
     rng *random;
 } path_source;
 
-/* Bounce 1: radiance toward view, without looking for shadows. */
-vec3 point_light_unshadowed(const trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
+/* Bounce 1: radiance of points toward their views, without looking for shadows. */
+void point_light_unshadowed(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                            const point_light *light, vec3 *radiance);
 /* The same, zero where another surface or the surface's own back is in the way. */
-vec3 point_light_direct(trace_scene *scene, const scn_surface *at, vec3 view, const point_light *light);
-/* The points of a surface that one pixel shows: paths start at them in turn. */
-typedef struct path_points {
-    const scn_surface *at;
-    const vec3 *view; /* unit, from each point to the eye */
-    int count;
-} path_points;
+void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                        const point_light *light, vec3 *radiance);
+/* Bounces 2 and 3 for each of `count` pixels, the sums over so many paths each. */
+void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
+                       const path_source *source, int paths, vec3 (*bounce)[2]);
 
-/* Bounces 2 and 3, the sums over `count` paths. */
-void point_light_paths(trace_scene *scene, const path_points *points, const point_light *light,
-                       const path_source *source, int count, vec3 bounce[2]);
-
-/* Radiance from the environment, the sum over `count` paths of at most three surfaces; both the map and the BRDF are
- * sampled and combined by the balance heuristic (Veach & Guibas 1995). */
-vec3 environment_paths(trace_scene *scene, const path_points *points, const environment *env, const path_source *source,
-                       int count);
+/* Radiance from the environment for each of `count` pixels, the sums over so many paths each, of at most three
+ * surfaces; both the map and the BRDF are sampled and combined by the balance heuristic (Veach & Guibas 1995). */
+void environment_paths(trace_scene *scene, const path_points *pixels, int count, const environment *env,
+                       const path_source *source, int paths, vec3 *radiance);
 
 #endif

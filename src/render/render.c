@@ -16,6 +16,25 @@ typedef struct layer_source {
     rng random;
 } layer_source;
 
+/* The shaded points of one pixel and the share of the pixel that the object covers. */
+typedef struct pixel {
+    int x, y, count;
+    float coverage;
+    const scn_surface *at;
+    const vec3 *view;
+} pixel;
+
+/* Pixels beside one another that see the object. Together they fill the vectors, which one by one they would not. */
+enum { STRIP = 16 };
+typedef struct strip {
+    int count, points;
+    pixel pixel[STRIP];
+    trace_hit hit[STRIP * VISIBILITY_MAX_POINTS];
+    vec3 view[STRIP * VISIBILITY_MAX_POINTS];
+    scn_surface at[STRIP * VISIBILITY_MAX_POINTS];
+    vec3 radiance[STRIP * VISIBILITY_MAX_POINTS]; /* by one point light */
+} strip;
+
 typedef struct renderer {
     trace_scene *scene;
     const image_settings *settings;
@@ -23,31 +42,34 @@ typedef struct renderer {
     visibility *visibility;
     point_light flash, lights[SAMPLE_MAX_TARGETS];
     layer_source indirect, target, surroundings;
+    strip strip;
     sample *out;
 } renderer;
 
-/* What one pixel sees: the shaded points and the share of the pixel that the object covers. */
-typedef struct pixel {
-    int x, y, count;
-    float coverage;
-    scn_surface at[VISIBILITY_MAX_POINTS];
-    vec3 view[VISIBILITY_MAX_POINTS];
-} pixel;
-
-static void see_pixel(renderer *r, int x, int y, pixel *p)
+static void see_pixel(renderer *r, int x, int y)
 {
+    strip *s = &r->strip;
     pixel_hits seen;
     visibility_pixel(r->visibility, x, y, &seen);
-    p->x = x;
-    p->y = y;
-    p->coverage = seen.coverage;
-    p->count = seen.count;
+    if (seen.count == 0) return;
+    s->pixel[s->count++] = (pixel){x, y, seen.count, seen.coverage, s->at + s->points, s->view + s->points};
     for (int i = 0; i < seen.count; i++) {
-        scn_surface *at = &p->at[i];
-        p->view[i] = vec3_scale(seen.direction[i], -1);
-        trace_surface_at(r->scene, &seen.hit[i], p->view[i], at);
+        s->hit[s->points] = seen.hit[i];
+        s->view[s->points++] = vec3_scale(seen.direction[i], -1);
+    }
+}
+
+static void see_strip(renderer *r, int first, int y)
+{
+    strip *s = &r->strip;
+    s->count = s->points = 0;
+    for (int x = first; x < first + STRIP && x < r->settings->size; x++)
+        see_pixel(r, x, y);
+    trace_surfaces_at(r->scene, s->hit, s->view, s->points, s->at);
+    for (int i = 0; i < s->points; i++) {
+        vec3 *n = &s->at[i].normal;
         /* the stored normal must face the camera plane too; off the axis, facing the eye does not imply it */
-        if (at->normal.z < 0.01f) at->normal = vec3_normalize(vec3_make(at->normal.x, at->normal.y, 0.01f));
+        if (n->z < 0.01f) *n = vec3_normalize(vec3_make(n->x, n->y, 0.01f));
     }
 }
 
@@ -78,59 +100,77 @@ static void store_maps(renderer *r, const pixel *p)
     *img_at(&r->out->mask, p->x, p->y) = p->coverage;
 }
 
-static vec3 mean_direct(renderer *r, const pixel *p, const point_light *light)
+static void store_direct(renderer *r, const point_light *light, const img *image)
 {
-    vec3 sum = {0, 0, 0};
-    for (int i = 0; i < p->count; i++)
-        sum = vec3_add(sum, light->at_eye ? point_light_unshadowed(r->scene, &p->at[i], p->view[i], light)
-                                          : point_light_direct(r->scene, &p->at[i], p->view[i], light));
-    return vec3_scale(sum, p->coverage / (float)p->count);
+    strip *s = &r->strip;
+    if (light->at_eye)
+        point_light_unshadowed(r->scene, s->at, s->view, s->points, light, s->radiance);
+    else
+        point_light_direct(r->scene, s->at, s->view, s->points, light, s->radiance);
+    const vec3 *radiance = s->radiance;
+    for (int k = 0; k < s->count; k++) {
+        const pixel *p = &s->pixel[k];
+        vec3 sum = {0, 0, 0};
+        for (int i = 0; i < p->count; i++)
+            sum = vec3_add(sum, *radiance++);
+        store(image, p, sum, p->coverage / (float)p->count);
+    }
 }
 
-static path_source source_of(layer_source *layer, const pixel *p, int paths)
+/* Where the paths of the strip's pixels start. */
+static void make_starts(const strip *s, int paths, path_points starts[STRIP])
 {
-    return (path_source){&layer->sequence, sequence_index(p->x, p->y) * (uint32_t)paths, &layer->random};
+    for (int i = 0; i < s->count; i++) {
+        const pixel *p = &s->pixel[i];
+        starts[i] = (path_points){p->at, p->view, p->count, sequence_index(p->x, p->y) * (uint32_t)paths};
+    }
 }
 
-static void mean_indirect(renderer *r, const pixel *p, const point_light *light, layer_source *layer, vec3 bounce[2])
+/* bounces: images of bounce 2 and of bounce 3, or NULL. */
+static void store_indirect(renderer *r, const point_light *light, layer_source *layer, const img *both,
+                           const img *const bounces[2])
 {
     int paths = r->settings->paths;
-    path_source source = source_of(layer, p, paths);
-    path_points points = {p->at, p->view, p->count};
-    point_light_paths(r->scene, &points, light, &source, paths, bounce);
-    for (int b = 0; b < 2; b++)
-        bounce[b] = vec3_scale(bounce[b], p->coverage / (float)paths);
+    vec3 bounce[STRIP][2];
+    path_points starts[STRIP];
+    path_source source = {&layer->sequence, &layer->random};
+    make_starts(&r->strip, paths, starts);
+    point_light_paths(r->scene, starts, r->strip.count, light, &source, paths, bounce);
+    for (int i = 0; i < r->strip.count; i++) {
+        const pixel *p = &r->strip.pixel[i];
+        float share = p->coverage / (float)paths;
+        store(both, p, vec3_add(bounce[i][0], bounce[i][1]), share);
+        for (int k = 0; bounces && k < 2; k++)
+            store(bounces[k], p, bounce[i][k], share);
+    }
 }
 
-static vec3 mean_environment(renderer *r, const pixel *p)
+static void store_environment(renderer *r)
 {
     int paths = (5 * r->settings->paths + 7) / 8;
-    path_source source = source_of(&r->surroundings, p, paths);
-    path_points points = {p->at, p->view, p->count};
-    vec3 sum = environment_paths(r->scene, &points, r->env, &source, paths);
-    return vec3_scale(sum, p->coverage / (float)paths);
+    vec3 radiance[STRIP];
+    path_points starts[STRIP];
+    path_source source = {&r->surroundings.sequence, &r->surroundings.random};
+    make_starts(&r->strip, paths, starts);
+    environment_paths(r->scene, starts, r->strip.count, r->env, &source, paths, radiance);
+    for (int i = 0; i < r->strip.count; i++)
+        store(&r->out->env, &r->strip.pixel[i], radiance[i], r->strip.pixel[i].coverage / (float)paths);
 }
 
-static void render_pixel(renderer *r, int x, int y)
+static void render_strip(renderer *r, int first, int y)
 {
-    pixel p;
-    vec3 bounce[2];
-    see_pixel(r, x, y, &p);
-    if (p.count == 0) return;
-    store_maps(r, &p);
-    store(&r->out->direct, &p, mean_direct(r, &p, &r->flash), 1);
-    mean_indirect(r, &p, &r->flash, &r->indirect, bounce);
-    store(&r->out->indirect, &p, vec3_add(bounce[0], bounce[1]), 1);
-    if (r->settings->bounces) {
-        store(&r->out->bounce2, &p, bounce[0], 1);
-        store(&r->out->bounce3, &p, bounce[1], 1);
-    }
+    sample *out = r->out;
+    const img *const bounces[2] = {&out->bounce2, &out->bounce3};
+    see_strip(r, first, y);
+    for (int i = 0; i < r->strip.count; i++)
+        store_maps(r, &r->strip.pixel[i]);
+    store_direct(r, &r->flash, &out->direct);
+    store_indirect(r, &r->flash, &r->indirect, &out->indirect, r->settings->bounces ? bounces : NULL);
     for (int t = 0; t < r->settings->targets; t++) {
-        store(&r->out->targets[t].direct, &p, mean_direct(r, &p, &r->lights[t]), 1);
-        mean_indirect(r, &p, &r->lights[t], &r->target, bounce);
-        store(&r->out->targets[t].indirect, &p, vec3_add(bounce[0], bounce[1]), 1);
+        store_direct(r, &r->lights[t], &out->targets[t].direct);
+        store_indirect(r, &r->lights[t], &r->target, &out->targets[t].indirect, NULL);
     }
-    if (r->env) store(&r->out->env, &p, mean_environment(r, &p), 1);
+    if (r->env) store_environment(r);
 }
 
 /* ---- a sample -------------------------------------------------------------------------------------------------- */
@@ -223,8 +263,8 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     }
     if (env) memcpy(out->sh, env->sh, sizeof out->sh);
     for (int y = 0; y < settings->size; y++)
-        for (int x = 0; x < settings->size; x++)
-            render_pixel(&r, x, y);
+        for (int x = 0; x < settings->size; x += STRIP)
+            render_strip(&r, x, y);
     visibility_free(r.visibility);
     s = smooth_layers(out);
     if (s != OK) sample_free(out);

@@ -44,7 +44,7 @@ void trace_device_free(trace_device *device)
     free(device);
 }
 
-static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object)
+static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object, enum RTCBuildQuality quality)
 {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!geometry) return device_fail(device, "make a geometry");
@@ -62,21 +62,28 @@ static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object 
         vertices[3 * i + 2] = (float)object->position[i].z;
     }
     memcpy(triangles, object->triangle, (size_t)object->triangle_count * sizeof *object->triangle);
+    rtcSetGeometryBuildQuality(geometry, quality);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(bvh, geometry);
     rtcReleaseGeometry(geometry);
     return OK;
 }
 
-status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface,
+/* Per triangle. Measured: the quick build saves 0.18 µs a triangle and costs some 15 ns a ray. */
+static const double few_rays = 12;
+
+status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface, double rays,
                        trace_scene *out)
 {
     *out = (trace_scene){.object = object, .surface = surface};
     if (object->triangle_count == 0) return fail(ERROR_INPUT, "the object has no triangles");
     RTCScene bvh = rtcNewScene(device->device);
     if (!bvh) return device_fail(device->device, "make a scene");
+    bool quick = rays < few_rays * (double)object->triangle_count;
+    enum RTCBuildQuality quality = quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
     rtcSetSceneFlags(bvh, RTC_SCENE_FLAG_ROBUST);
-    status s = attach_triangles(device->device, bvh, object);
+    rtcSetSceneBuildQuality(bvh, quality);
+    status s = attach_triangles(device->device, bvh, object, quality);
     if (s == OK) {
         rtcCommitScene(bvh);
         if (rtcGetDeviceError(device->device) != RTC_ERROR_NONE) s = fail(ERROR_DEVICE, "Embree cannot build its tree");
@@ -117,7 +124,8 @@ void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, tr
     scene->rays += (uint64_t)count;
     for (int i = 0; i < count; i++) {
         bool met = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        hits[i] = (trace_hit){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i], met ? packet.ray.tfar[i] : -1.0f};
+        hits[i].at = (scn_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+        hits[i].distance = met ? packet.ray.tfar[i] : -1.0f;
     }
 }
 
@@ -153,16 +161,18 @@ void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRA
     rtcIntersect16(valid, bvh_of(scene), &context, &packet);
     for (int i = 0; i < TRACE_PACKET; i++) {
         bool met = rays->valid[i] && packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        hits[i] = (trace_hit){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i], met ? packet.ray.tfar[i] : -1.0f};
+        hits[i].at = (scn_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+        hits[i].distance = met ? packet.ray.tfar[i] : -1.0f;
     }
 }
 
-void trace_packet_free(trace_scene *scene, ray_packet *rays)
+void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far)
 {
     struct RTCRay16 packet;
     struct RTCIntersectContext context;
     _Alignas(64) int valid[TRACE_PACKET];
     fill_rays(scene, rays, &packet, valid);
+    if (far) memcpy(packet.tfar, far, sizeof packet.tfar);
     rtcInitIntersectContext(&context);
     rtcOccluded16(valid, bvh_of(scene), &context, &packet);
     for (int i = 0; i < TRACE_PACKET; i++)
@@ -176,14 +186,26 @@ static vec3 bend_toward(vec3 n, vec3 d, real least)
     return c < least ? vec3_normalize(vec3_fma(n, least - c, d)) : n;
 }
 
-void trace_surface_at(const trace_scene *scene, const trace_hit *hit, vec3 view, scn_surface *out)
+static void face(scn_surface *s, vec3 view)
 {
-    scene->surface(scene->object, hit->triangle, hit->u, hit->v, out);
-    if (vec3_dot(out->geometric_normal, view) < 0) {
-        out->geometric_normal = vec3_scale(out->geometric_normal, -1);
-        out->normal = vec3_scale(out->normal, -1);
+    if (vec3_dot(s->geometric_normal, view) < 0) {
+        s->geometric_normal = vec3_scale(s->geometric_normal, -1);
+        s->normal = vec3_scale(s->normal, -1);
     }
-    out->normal = bend_toward(out->normal, view, (real)0.03);
+    s->normal = bend_toward(s->normal, view, (real)0.03);
+}
+
+void trace_surfaces_at(const trace_scene *scene, const trace_hit *hits, const vec3 *view, int count, scn_surface *out)
+{
+    scn_place places[TRACE_PACKET];
+    for (int done = 0; done < count; done += TRACE_PACKET) {
+        int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
+        for (int i = 0; i < abreast; i++)
+            places[i] = hits[done + i].at;
+        scene->surface(scene->object, places, abreast, out + done);
+    }
+    for (int i = 0; i < count; i++)
+        face(&out[i], view[i]);
 }
 
 static struct RTCRay make_ray(vec3 origin, vec3 direction, float distance)
@@ -207,8 +229,9 @@ bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface 
     rtcIntersect1(bvh_of(scene), &context, &ray);
     scene->rays++;
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    trace_hit hit = {ray.hit.primID, ray.hit.u, ray.hit.v, ray.ray.tfar};
-    trace_surface_at(scene, &hit, vec3_scale(direction, -1), out);
+    trace_hit hit = {{ray.hit.primID, ray.hit.u, ray.hit.v}, ray.ray.tfar};
+    vec3 view = vec3_scale(direction, -1);
+    trace_surfaces_at(scene, &hit, &view, 1, out);
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/rng.h"
+#include "scene/number.h"
 
 enum { ROWS = 3 }; /* of probes kept: a pixel's own and those around it */
 
@@ -19,7 +20,8 @@ struct visibility {
     camera eye;
     int strata, rows; /* rows: probed so far */
     uint64_t key;
-    probe *probes; /* ROWS × width, row y at y % ROWS */
+    float pixel_size; /* at depth 1; a tangent */
+    probe *probes;    /* ROWS × width, row y at y % ROWS */
 };
 
 status visibility_new(trace_scene *scene, const camera *eye, int strata, uint64_t key, visibility **out)
@@ -34,6 +36,7 @@ status visibility_new(trace_scene *scene, const camera *eye, int strata, uint64_
     v->eye = *eye;
     v->strata = strata;
     v->key = key;
+    v->pixel_size = camera_pixel_size(eye);
     *out = v;
     return OK;
 }
@@ -58,8 +61,9 @@ static vec3 cell_direction(const visibility *v, int x, int y, int column, int ro
     uint64_t pixel = (uint64_t)y * (uint64_t)v->eye.width + (uint64_t)x;
     uint64_t bits = rng_mix(v->key + pixel * VISIBILITY_MAX_POINTS + (uint64_t)cell);
     float dx = (float)(bits >> 40) * 0x1p-24f, dy = (float)((bits >> 16) & 0xffffffu) * 0x1p-24f;
-    return camera_ray(&v->eye, (float)x + ((float)column + dx) / (float)v->strata,
-                      (float)y + ((float)row + dy) / (float)v->strata);
+    float right = (float)x + ((float)column + dx) / (float)v->strata - (float)v->eye.width / 2;
+    float up = (float)v->eye.height / 2 - ((float)y + ((float)row + dy) / (float)v->strata);
+    return vec3_normalize(vec3_make(right * v->pixel_size, up * v->pixel_size, -1));
 }
 
 static probe *probe_at(const visibility *v, int x, int y)
@@ -74,8 +78,8 @@ static void take_probe(probe *p, const trace_hit *hits, int count)
         p->hit[i] = hits[i];
         if (hits[i].distance < 0) continue;
         p->met++;
-        p->nearest = fminf(p->nearest, hits[i].distance);
-        p->farthest = fmaxf(p->farthest, hits[i].distance);
+        p->nearest = min_of(p->nearest, hits[i].distance);
+        p->farthest = max_of(p->farthest, hits[i].distance);
     }
 }
 
@@ -98,7 +102,7 @@ static void probe_row(visibility *v, int y)
 /* A surface may lean this much over so many pixels and still be one. */
 static bool is_smooth(const visibility *v, float nearest, float farthest, int pixels)
 {
-    return farthest - nearest < 6 * (float)pixels * camera_pixel_size(&v->eye) * nearest;
+    return farthest - nearest < 6 * (float)pixels * v->pixel_size * nearest;
 }
 
 typedef enum pixel_kind { PIXEL_EMPTY, PIXEL_PLAIN, PIXEL_EDGE } pixel_kind;
@@ -112,8 +116,8 @@ static pixel_kind kind_of(const visibility *v, int x, int y)
             const probe *p = probe_at(v, i, j);
             met += p->met;
             sent += v->strata;
-            nearest = fminf(nearest, p->nearest);
-            farthest = fmaxf(farthest, p->farthest);
+            nearest = min_of(nearest, p->nearest);
+            farthest = max_of(farthest, p->farthest);
         }
     if (met == 0) return PIXEL_EMPTY;
     const probe *own = probe_at(v, x, y);
@@ -149,8 +153,8 @@ static void keep_all(visibility *v, int x, int y, pixel_hits *out)
     for (int i = 0; i < cells; i++) {
         if (hit[i].distance < 0) continue;
         met++;
-        nearest = fminf(nearest, hit[i].distance);
-        farthest = fmaxf(farthest, hit[i].distance);
+        nearest = min_of(nearest, hit[i].distance);
+        farthest = max_of(farthest, hit[i].distance);
     }
     bool plain = met == cells && is_smooth(v, nearest, farthest, 1);
     out->coverage = (float)met / (float)cells;

@@ -49,13 +49,16 @@ scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *
 /* Lays photographed textures on some of the material's grounds, or on none. They must outlive it. */
 void material_wear(scn_material *material, const scn_textures *textures, rng *r);
 
-/* Albedo and roughness at a reference point; facing is the reference surface's normal. */
-void material_eval(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, vec3 *albedo,
-                   real *roughness);
+/* Where a material is looked up. */
+typedef struct material_points {
+    lane_set wanted;
+    lanes reference, facing; /* facing: the reference surface's normal */
+    uint8_t part[LANES];
+} material_points;
 
-/* Height of the normal detail at a reference point moved along a tangent: differences d[0], d[1] of the height a unit
- * length along the two unit tangents. */
-void material_slope(const scn_material *material, vec3 reference, vec3 facing, uint8_t part, const vec3 tangent[2],
-                    float d[2]);
+void material_eval(const scn_material *material, const material_points *at, lanes *albedo, float roughness[LANES]);
+
+/* Differences d[0], d[1] of the normal detail's height a unit length along two unit tangents. */
+void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES]);
 
 #endif

@@ -19,78 +19,134 @@ static float letters(const pattern *p, vec3 q, vec3 facing)
     return glyph_ink(q.x, q.z, 0.1f, p->seed + 2);
 }
 
-static float patches(const pattern *p, vec3 q)
+static void patches(const pattern *p, const lanes *q, float out[LANES])
 {
-    float nearest = 1e9f;
-    for (int i = 0; i < p->centres; i++) {
-        vec3 d = vec3_sub(q, p->centre[i]);
-        float e;
-        if (p->sharpness > 2.5f)
-            e = max_of(fabsf(d.x), max_of(fabsf(d.y), fabsf(d.z)));
-        else
-            e = vec3_length(d);
-        nearest = min_of(nearest, e);
+    bool boxes = p->sharpness > 2.5f;
+    for (int i = 0; i < LANES; i++)
+        out[i] = 1e9f;
+    for (int k = 0; k < p->centres; k++) {
+        vec3 centre = p->centre[k];
+#pragma omp simd
+        for (int i = 0; i < LANES; i++) {
+            vec3 d = vec3_sub(lanes_at(q, i), centre);
+            float box = max_of(fabsf(d.x), max_of(fabsf(d.y), fabsf(d.z))), round = vec3_length(d);
+            out[i] = min_of(out[i], boxes ? box : round);
+        }
     }
-    return max_of(0, 1 - 0.5f * nearest);
+    for (int i = 0; i < LANES; i++)
+        out[i] = max_of(0, 1 - 0.5f * out[i]);
 }
 
 /* Thin lines in three families of directions. */
-static float scratches(const pattern *p, vec3 q)
+static void scratches(const pattern *p, const lanes *at, float out[LANES])
 {
-    float best = 0;
-    for (int i = 0; i < 3; i++) {
-        vec3 s = vec3_make(0.25f * q.x + 0.1f * q.z, 6 * q.y + 1.5f * q.x, 0.25f * q.z);
-        float line = noise_gradient(s, p->seed + (uint32_t)i), where = noise_gradient(q, p->seed + 7 + (uint32_t)i);
-        best = max_of(best, (1 - min_of(1, fabsf(line) * 6)) * smooth_step(0, 0.3f, where));
-        q = vec3_make(q.y, q.z + 0.7f * q.x, q.x);
+    lanes q = *at, s;
+    float line[LANES], where[LANES];
+    for (int i = 0; i < LANES; i++)
+        out[i] = 0;
+    for (uint32_t k = 0; k < 3; k++) {
+#pragma omp simd
+        for (int i = 0; i < LANES; i++)
+            lanes_put(&s, i, vec3_make(0.25f * q.x[i] + 0.1f * q.z[i], 6 * q.y[i] + 1.5f * q.x[i], 0.25f * q.z[i]));
+        noise_gradients(&s, p->seed + k, line);
+        noise_gradients(&q, p->seed + 7 + k, where);
+#pragma omp simd
+        for (int i = 0; i < LANES; i++) {
+            float ink = (1 - min_of(1, fabsf(line[i]) * 6)) * smooth_step(0, 0.3f, where[i]);
+            out[i] = max_of(out[i], ink);
+            lanes_put(&q, i, vec3_make(q.y[i], q.z[i] + 0.7f * q.x[i], q.x[i]));
+        }
     }
-    return best;
 }
 
-static float raw_value(const pattern *p, vec3 q, vec3 facing)
+/* Patterns made of noise, for all lanes at once; false for the others. */
+static bool noise_values(const pattern *p, const lanes *q, float out[LANES])
 {
     switch (p->kind) {
     case PATTERN_FBM:
-        return 0.5f + 0.8f * noise_fbm(q, p->octaves, p->seed);
+        noise_fbms(q, p->octaves, p->seed, out);
+        for (int i = 0; i < LANES; i++)
+            out[i] = 0.5f + 0.8f * out[i];
+        return true;
     case PATTERN_TURBULENCE:
-        return 2 * noise_turbulence(q, p->octaves, p->seed);
-    case PATTERN_CELLS:
-        return noise_cellular(q, p->seed).first;
-    case PATTERN_CELL_EDGES: {
-        noise_cell c = noise_cellular(q, p->seed);
-        return 2 * (c.second - c.first);
+        noise_turbulences(q, p->octaves, p->seed, out);
+        for (int i = 0; i < LANES; i++)
+            out[i] = 2 * out[i];
+        return true;
+    case PATTERN_MARBLE:
+        noise_fbms(q, p->octaves, p->seed, out);
+        for (int i = 0; i < LANES; i++)
+            out[i] = 1 - min_of(1, 2.5f * fabsf(out[i]));
+        return true;
+    case PATTERN_SCRATCHES:
+        scratches(p, q, out);
+        return true;
+    case PATTERN_PATCHES:
+        patches(p, q, out);
+        return true;
+    default:
+        return false;
     }
-    case PATTERN_CELL_VALUES:
-        return noise_unit(noise_cellular(q, p->seed).id * 0x9e3779b9u);
+}
+
+static bool is_cellular(pattern_kind kind)
+{
+    return kind == PATTERN_CELLS || kind == PATTERN_CELL_EDGES || kind == PATTERN_CELL_VALUES || kind == PATTERN_SPOTS;
+}
+
+static void cellular_values(const pattern *p, const lanes *q, float out[LANES])
+{
+    noise_cells c;
+    noise_cellulars(q, p->seed, &c);
+    for (int i = 0; i < LANES; i++)
+        out[i] = p->kind == PATTERN_CELLS        ? c.first[i]
+                 : p->kind == PATTERN_CELL_EDGES ? 2 * (c.second[i] - c.first[i])
+                 : p->kind == PATTERN_SPOTS      ? 1 - c.first[i]
+                                                 : noise_unit(c.id[i] * 0x9e3779b9u);
+}
+
+/* Patterns of few points each, or of functions that have no vector form. */
+static float plain_value(const pattern *p, vec3 q, vec3 facing)
+{
+    switch (p->kind) {
     case PATTERN_STRIPES:
         return wave(q.x);
     case PATTERN_RINGS:
         return wave(hypotf(q.x, q.z) + 0.15f * q.y);
-    case PATTERN_MARBLE:
-        return 1 - min_of(1, 2.5f * fabsf(noise_fbm(q, p->octaves, p->seed)));
-    case PATTERN_SPOTS:
-        return 1 - noise_cellular(q, p->seed).first;
     case PATTERN_CHECKS:
         return 0.5f + 0.5f * sinf(3.1415927f * q.x) * sinf(3.1415927f * q.y) * sinf(3.1415927f * (q.z + 0.5f));
-    case PATTERN_SCRATCHES:
-        return scratches(p, q);
     case PATTERN_LETTERS:
         return letters(p, q, facing);
     case PATTERN_BANDS:
         return noise_unit(noise_hash((int)floorf(q.y + 0.6f * sinf(1.7f * q.y)), 0, 0, p->seed));
-    case PATTERN_PATCHES:
-        return patches(p, q);
     default:
         return 0.5f + 0.5f * q.y;
     }
 }
 
-float pattern_value(const pattern *p, vec3 reference, vec3 facing)
+void pattern_values(const pattern *p, const lanes *reference, const lanes *facing, lane_set wanted, float out[LANES])
 {
-    if (p->mirrored) reference.x = fabsf(reference.x);
-    vec3 q = vec3_add(mat3_apply(&p->frame, reference), p->offset);
-    if (p->warp > 0) q = vec3_fma(q, p->warp, noise_vector(q, p->seed + 101));
-    return smooth_step(p->low, p->high, raw_value(p, q, facing));
+    lanes q, bend;
+#pragma omp simd
+    for (int i = 0; i < LANES; i++) {
+        vec3 at = lanes_at(reference, i);
+        at.x = p->mirrored ? fabsf(at.x) : at.x;
+        lanes_put(&q, i, vec3_add(mat3_apply(&p->frame, at), p->offset));
+    }
+    if (p->warp > 0) {
+        noise_vectors(&q, p->seed + 101, &bend);
+#pragma omp simd
+        for (int i = 0; i < LANES; i++)
+            lanes_put(&q, i, vec3_fma(lanes_at(&q, i), p->warp, lanes_at(&bend, i)));
+    }
+    if (is_cellular(p->kind))
+        cellular_values(p, &q, out);
+    else if (!noise_values(p, &q, out))
+        for (int i = 0; i < LANES; i++)
+            out[i] = lane_in(wanted, i) ? plain_value(p, lanes_at(&q, i), lanes_at(facing, i)) : 0;
+#pragma omp simd
+    for (int i = 0; i < LANES; i++)
+        out[i] = smooth_step(p->low, p->high, out[i]);
 }
 
 static void choose_centres(rng *r, pattern *p, const scn_mesh *mesh)

@@ -1,10 +1,11 @@
 /* Scalar patterns in the solid space of an object: what colours, borders, roughness and normal detail are made from.
  *
- *     float share = pattern_value(&pattern, reference, facing);      // in [0, 1]
+ *     pattern_values(&pattern, &reference, &facing, lanes_first(count), share);      // in [0, 1]
  */
 #ifndef MERLIN_SCENE_PATTERN_H
 #define MERLIN_SCENE_PATTERN_H
 
+#include "base/lanes.h"
 #include "base/rng.h"
 #include "scene/mesh.h"
 
@@ -42,8 +43,9 @@ typedef struct pattern {
     uint32_t seed;
 } pattern;
 
-/* facing: normal of the undeformed surface, by which lettering picks the plane it lies in. */
-float pattern_value(const pattern *p, vec3 reference, vec3 facing);
+/* At sixteen points; those not wanted may be anything finite and are given anything. facing: normal of the undeformed
+ * surface, by which lettering picks the plane it lies in. */
+void pattern_values(const pattern *p, const lanes *reference, const lanes *facing, lane_set wanted, float out[LANES]);
 
 /* A random pattern of a kind, with features of about 1/frequency of the object's radius; centres are taken among the
  * mesh's vertices. Its low and high leave the raw value's whole range. */

@@ -47,18 +47,21 @@ static void mark_triangle(uint8_t *mask, const float a[2], const float b[2], con
 /* screen: room for two floats a vertex. */
 static silhouette measure(const scn_mesh *mesh, const pose *at, float tangent, float (*screen)[2])
 {
-    silhouette s = {0, 1e9f, -1e9f, 1e9f, -1e9f, 1e9f};
+    float low_x = 1e9f, high_x = -1e9f, low_y = 1e9f, high_y = -1e9f, nearest = 1e9f;
+    const pose to = *at;
+#pragma omp simd reduction(min : low_x, low_y, nearest) reduction(max : high_x, high_y)
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        vec3 p = pose_apply(at, mesh->position[i]);
+        vec3 p = pose_apply(&to, mesh->position[i]);
         float depth = max_of(0.05f, -p.z), x = p.x / (depth * tangent), y = p.y / (depth * tangent);
-        s.nearest = min_of(s.nearest, -p.z);
-        s.low_x = min_of(s.low_x, x);
-        s.high_x = max_of(s.high_x, x);
-        s.low_y = min_of(s.low_y, y);
-        s.high_y = max_of(s.high_y, y);
+        nearest = min_of(nearest, -p.z);
+        low_x = min_of(low_x, x);
+        high_x = max_of(high_x, x);
+        low_y = min_of(low_y, y);
+        high_y = max_of(high_y, y);
         screen[i][0] = (x + 1) * (0.5f * RASTER);
         screen[i][1] = (y + 1) * (0.5f * RASTER);
     }
+    silhouette s = {0, low_x, high_x, low_y, high_y, nearest};
     uint8_t mask[RASTER * RASTER] = {0};
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         const uint32_t *t = mesh->triangle[i];

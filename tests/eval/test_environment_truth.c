@@ -24,7 +24,7 @@ static void render(const environment *env, sample *out)
     trace_scene scene;
     image_settings settings = {.size = SIZE, .fov = 60, .strata = 2, .paths = 400};
     assert_int_equal(trace_device_new(&device), OK);
-    assert_int_equal(trace_scene_new(device, &sphere, shape_patterned, &scene), OK);
+    assert_int_equal(trace_scene_new(device, &sphere, shape_patterned, 1e6, &scene), OK);
     assert_int_equal(render_image(&scene, &settings, 5, 1, env, out), OK);
     trace_scene_free(&scene);
     trace_device_free(device);

@@ -75,9 +75,10 @@ static inline scn_object shape_quads(const shape_quad *quads, uint32_t count)
 }
 
 /* Position and both normals, as the real lookup gives them; grey of albedo one half, roughness 0.4. */
-static inline void shape_grey(const scn_object *o, uint32_t triangle, real u, real v, scn_surface *out)
+static inline void shape_grey_point(const scn_object *o, const scn_place *at, scn_surface *out)
 {
-    const uint32_t *t = o->triangle[triangle];
+    const uint32_t *t = o->triangle[at->triangle];
+    real u = at->u, v = at->v;
     vec3 a = o->position[t[0]], b = o->position[t[1]], c = o->position[t[2]];
     vec3 n = vec3_scale(o->normal[t[0]], 1 - u - v);
     out->position = vec3_fma(vec3_fma(vec3_scale(a, 1 - u - v), u, b), v, c);
@@ -88,13 +89,22 @@ static inline void shape_grey(const scn_object *o, uint32_t triangle, real u, re
     out->roughness = 0.4f;
 }
 
-/* The same with colour and roughness that wander smoothly over space. */
-static inline void shape_patterned(const scn_object *o, uint32_t triangle, real u, real v, scn_surface *out)
+static inline void shape_grey(const scn_object *o, const scn_place *places, int count, scn_surface *out)
 {
-    shape_grey(o, triangle, u, v, out);
-    vec3 p = out->position;
-    out->albedo = vec3_make(0.5f + 0.4f * sinf(9 * p.x), 0.5f + 0.4f * sinf(11 * p.y), 0.5f + 0.3f * sinf(7 * p.z));
-    out->roughness = 0.5f + 0.3f * sinf(8 * (p.x + p.y));
+    for (int i = 0; i < count; i++)
+        shape_grey_point(o, &places[i], &out[i]);
+}
+
+/* The same with colour and roughness that wander smoothly over space. */
+static inline void shape_patterned(const scn_object *o, const scn_place *places, int count, scn_surface *out)
+{
+    for (int i = 0; i < count; i++) {
+        scn_surface *s = &out[i];
+        shape_grey_point(o, &places[i], s);
+        vec3 p = s->position;
+        s->albedo = vec3_make(0.5f + 0.4f * sinf(9 * p.x), 0.5f + 0.4f * sinf(11 * p.y), 0.5f + 0.3f * sinf(7 * p.z));
+        s->roughness = 0.5f + 0.3f * sinf(8 * (p.x + p.y));
+    }
 }
 
 #endif

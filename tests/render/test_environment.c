@@ -35,7 +35,7 @@ static void uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo(voi
     sample out;
     scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 64);
     assert_int_equal(trace_device_new(&device), OK);
-    assert_int_equal(trace_scene_new(device, &sphere, shape_grey, &scene), OK);
+    assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 1e6, &scene), OK);
     scene.diffuse_only = true;
     image_settings settings = {.size = 32, .fov = 60, .strata = 4, .paths = 64};
     assert_int_equal(render_image(&scene, &settings, 1, 0, &env, &out), OK);
@@ -55,6 +55,14 @@ static void uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo(voi
     environment_free(&env);
 }
 
+static environment_rays draw_one(const environment *env, rng *r)
+{
+    float u1[LANES] = {rng_uniform(r)}, u2[LANES] = {rng_uniform(r)};
+    environment_rays drawn;
+    environment_sample(env, u1, u2, 1, &drawn);
+    return drawn;
+}
+
 static void sampling_a_map_integrates_what_looking_it_up_does(void **state)
 {
     (void)state;
@@ -65,10 +73,9 @@ static void sampling_a_map_integrates_what_looking_it_up_does(void **state)
         double sampled = 0, looked_up = 0;
         enum { SAMPLES = 200000, ROWS = 512 };
         for (int i = 0; i < SAMPLES; i++) {
-            vec3 d;
-            real pdf, u1 = rng_uniform(&r), u2 = rng_uniform(&r);
-            sampled += environment_sample(&env, u1, u2, &d, &pdf).y / pdf;
-            assert_true(fabsf(vec3_length(d) - 1) < 1e-4f);
+            environment_rays drawn = draw_one(&env, &r);
+            sampled += drawn.radiance.y[0] / drawn.pdf[0];
+            assert_true(fabsf(vec3_length(lanes_at(&drawn.direction, 0)) - 1) < 1e-4f);
         }
         for (int y = 0; y < ROWS; y++)
             for (int x = 0; x < 2 * ROWS; x++) {
@@ -93,10 +100,9 @@ static void density_at_a_drawn_direction_is_the_one_it_was_drawn_with(void **sta
     assert_int_equal(environment_procedural(&r, &env), OK);
     int equal = 0;
     for (int i = 0; i < 2000; i++) {
-        vec3 d;
-        real pdf, u1 = rng_uniform(&r), u2 = rng_uniform(&r);
-        environment_sample(&env, u1, u2, &d, &pdf);
-        equal += fabsf(environment_pdf(&env, d) - pdf) <= 1e-3f * pdf;
+        environment_rays drawn = draw_one(&env, &r);
+        vec3 d = lanes_at(&drawn.direction, 0);
+        equal += fabsf(environment_pdf(&env, d) - drawn.pdf[0]) <= 1e-3f * drawn.pdf[0];
     }
     /* directions on a texel's very edge may round to its neighbour */
     assert_true(equal > 1980);

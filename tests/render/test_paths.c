@@ -25,7 +25,7 @@ static void stage_open(stage *s, scn_object object, trace_surface_function *surf
 {
     s->object = object;
     assert_int_equal(trace_device_new(&s->device), OK);
-    assert_int_equal(trace_scene_new(s->device, &s->object, surface, &s->scene), OK);
+    assert_int_equal(trace_scene_new(s->device, &s->object, surface, 1e6, &s->scene), OK);
 }
 
 static void stage_close(stage *s)
@@ -155,16 +155,16 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         point_light flash = {{0, 0, 0}, 5.95f, true};
         rng r = rng_at(7, (uint64_t)k, 0);
         sequence spread = sequence_of(&r);
-        path_source source = {&spread, 0, &r};
+        path_source source = {&spread, &r};
         double sum[2] = {0, 0};
         vec3 view = vec3_normalize(vec3_scale(p, -1));
-        path_points points = {&at, &view, 1};
+        path_points points = {&at, &view, 1, 0};
         enum { ABREAST = 100 };
-        for (; source.index < PATHS; source.index += ABREAST) {
-            vec3 bounce[2];
-            point_light_paths(&s.scene, &points, &flash, &source, ABREAST, bounce);
-            sum[0] += bounce[0].x;
-            sum[1] += bounce[1].x;
+        for (; points.index < PATHS; points.index += ABREAST) {
+            vec3 bounce[1][2];
+            point_light_paths(&s.scene, &points, 1, &flash, &source, ABREAST, bounce);
+            sum[0] += bounce[0][0].x;
+            sum[1] += bounce[0][1].x;
         }
         /* 400000 paths, of which a tenth or more arrive: relative deviation below 0.005, and the quadratures' own */
         assert_within(sum[0] / PATHS, bounce2_at(p, floor_normal, on_wall, wall_normal, 400), 0.01);
@@ -227,9 +227,13 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     scn_surface under = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f}, beside = under;
     beside.position.x = 0.5f;
     vec3 view = vec3_normalize(vec3_make(0, 0.3f, 1));
-    assert_true(point_light_direct(&s.scene, &under, view, &above).x == 0);
-    assert_true(point_light_unshadowed(&s.scene, &under, view, &above).x > 0);
-    assert_true(point_light_direct(&s.scene, &beside, view, &above).x > 0);
+    scn_surface both[2] = {under, beside};
+    vec3 views[2] = {view, view}, shadowed[2], unshadowed[2];
+    point_light_direct(&s.scene, both, views, 2, &above, shadowed);
+    point_light_unshadowed(&s.scene, both, views, 2, &above, unshadowed);
+    assert_true(shadowed[0].x == 0);
+    assert_true(unshadowed[0].x > 0);
+    assert_true(shadowed[1].x > 0);
     stage_close(&s);
 }
 

@@ -52,7 +52,7 @@ static void check_cube(const scn_object *o)
     assert_true(signed_volume(o) > 0);
     for (uint32_t t = 0; t < o->triangle_count; t++) {
         scn_surface s;
-        scn_surface_eval(o, t, 0.3f, 0.3f, &s);
+        scn_surfaces_eval(o, &(scn_place){t, 0.3f, 0.3f}, 1, &s);
         for (int k = 0; k < 3; k++) /* flat faces: float rounding only */
             assert_true(vec3_dot(o->normal[o->triangle[t][k]], s.geometric_normal) > 0.9999f);
     }

@@ -39,8 +39,8 @@ static void same_seed_and_index_make_the_same_object(void **state)
         assert_memory_equal(a.normal, b.normal, a.vertex_count * sizeof(vec3));
         for (uint32_t t = 0; t < a.triangle_count; t += 97) {
             scn_surface at = {0}, bt = {0};
-            scn_surface_eval(&a, t, 0.2f, 0.3f, &at);
-            scn_surface_eval(&b, t, 0.2f, 0.3f, &bt);
+            scn_surfaces_eval(&a, &(scn_place){t, 0.2f, 0.3f}, 1, &at);
+            scn_surfaces_eval(&b, &(scn_place){t, 0.2f, 0.3f}, 1, &bt);
             assert_memory_equal(&at, &bt, sizeof at);
         }
         scn_object_free(&a);
@@ -188,7 +188,8 @@ static void surfaces_have_materials_in_range_and_unit_normals(void **state)
         for (int k = 0; k < 500; k++) {
             float u = rng_uniform(&r), v = rng_uniform(&r) * (1 - u);
             scn_surface s;
-            scn_surface_eval(&o, (uint32_t)rng_below(&r, (int)o.triangle_count), u, v, &s);
+            scn_place at = {(uint32_t)rng_below(&r, (int)o.triangle_count), u, v};
+            scn_surfaces_eval(&o, &at, 1, &s);
             assert_true(is_finite(s.position) && is_finite(s.normal));
             assert_float_equal(vec3_length(s.normal), 1, 1e-5f);
             assert_float_equal(vec3_length(s.geometric_normal), 1, 1e-5f);
@@ -213,8 +214,8 @@ static void materials_are_continuous_but_at_borders(void **state)
         for (int k = 0; k < 200; k++) {
             uint32_t t = (uint32_t)rng_below(&r, (int)o.triangle_count);
             scn_surface a, b;
-            scn_surface_eval(&o, t, 0.3f, 0.3f, &a);
-            scn_surface_eval(&o, t, 0.31f, 0.3f, &b); /* a hundredth of a triangle on */
+            scn_surfaces_eval(&o, &(scn_place){t, 0.3f, 0.3f}, 1, &a);
+            scn_surfaces_eval(&o, &(scn_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle on */
             vec3 d = vec3_sub(a.albedo, b.albedo);
             pairs++;
             jumps += vec3_length(d) > 0.1f || fabsf(a.roughness - b.roughness) > 0.1f;
@@ -233,10 +234,10 @@ static void surface_positions_are_interpolated(void **state)
     generate(5, &o);
     for (uint32_t t = 0; t < o.triangle_count; t += 31) {
         scn_surface a, b, c, m;
-        scn_surface_eval(&o, t, 0, 0, &a);
-        scn_surface_eval(&o, t, 1, 0, &b);
-        scn_surface_eval(&o, t, 0, 1, &c);
-        scn_surface_eval(&o, t, 0.25f, 0.5f, &m);
+        scn_surfaces_eval(&o, &(scn_place){t, 0, 0}, 1, &a);
+        scn_surfaces_eval(&o, &(scn_place){t, 1, 0}, 1, &b);
+        scn_surfaces_eval(&o, &(scn_place){t, 0, 1}, 1, &c);
+        scn_surfaces_eval(&o, &(scn_place){t, 0.25f, 0.5f}, 1, &m);
         vec3 want = vec3_fma(vec3_fma(vec3_scale(a.position, 0.25f), 0.25f, b.position), 0.5f, c.position);
         assert_memory_equal(&b.position, &o.position[o.triangle[t][1]], sizeof(vec3));
         assert_float_equal(vec3_length(vec3_sub(want, m.position)), 0, 1e-6f);
@@ -253,6 +254,30 @@ static void a_senseless_field_of_view_is_refused(void **state)
     scn_object_free(&o);
 }
 
+/* Every pattern gets its turn within forty objects; what a point is given must not depend on those beside it. */
+static void point_looks_the_same_alone_and_among_others(void **state)
+{
+    (void)state;
+    enum { POINTS = 37 };
+    for (uint64_t k = 0; k < 40; k++) {
+        scn_object o;
+        rng r = rng_at(3, k, 0);
+        scn_place places[POINTS];
+        scn_surface together[POINTS], alone;
+        assert_int_equal(scn_object_generate(21, k, 60, &o), OK);
+        for (int i = 0; i < POINTS; i++) {
+            uint32_t triangle = (uint32_t)rng_below(&r, (int)o.triangle_count);
+            places[i] = (scn_place){triangle, 0.5f * rng_uniform(&r), 0.5f * rng_uniform(&r)};
+        }
+        scn_surfaces_eval(&o, places, POINTS, together);
+        for (int i = 0; i < POINTS; i++) {
+            scn_surfaces_eval(&o, &places[i], 1, &alone);
+            assert_memory_equal(&alone, &together[i], sizeof alone);
+        }
+        scn_object_free(&o);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -265,6 +290,7 @@ int main(void)
         cmocka_unit_test(materials_are_continuous_but_at_borders),
         cmocka_unit_test(surface_positions_are_interpolated),
         cmocka_unit_test(a_senseless_field_of_view_is_refused),
+        cmocka_unit_test(point_looks_the_same_alone_and_among_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

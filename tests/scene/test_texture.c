@@ -124,9 +124,9 @@ static void objects_wear_the_folder(void **state)
         scn_object_wear(&again, &t, 5, index);
         for (uint32_t k = 0; k < with.triangle_count; k += 1 + with.triangle_count / 20) {
             scn_surface a = {0}, b = {0}, c = {0};
-            scn_surface_eval(&with, k, 0.2f, 0.3f, &a);
-            scn_surface_eval(&again, k, 0.2f, 0.3f, &b);
-            scn_surface_eval(&without, k, 0.2f, 0.3f, &c);
+            scn_surfaces_eval(&with, &(scn_place){k, 0.2f, 0.3f}, 1, &a);
+            scn_surfaces_eval(&again, &(scn_place){k, 0.2f, 0.3f}, 1, &b);
+            scn_surfaces_eval(&without, &(scn_place){k, 0.2f, 0.3f}, 1, &c);
             assert_memory_equal(&a, &b, sizeof a);
             assert_float_equal(vec3_length(a.normal), 1, 1e-4);
             assert_true(a.roughness >= 0.1f && a.roughness <= 1);

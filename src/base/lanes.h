@@ -1,0 +1,52 @@
+/* Sixteen of a kind at once: loops over lanes become vector instructions, as wide as the processor has them.
+ *
+ *     lanes p;
+ *     lanes_put(&p, i, point);
+ *     #pragma omp simd
+ *     for (int k = 0; k < LANES; k++) length[k] = vec3_length(lanes_at(&p, k));
+ *
+ * All lanes are computed, wanted or not: a loop that stops early has a tail. */
+#ifndef MERLIN_BASE_LANES_H
+#define MERLIN_BASE_LANES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec.h"
+
+enum { LANES = 16 };
+
+/* A loop with a call in it does not become vectors: what a lane does must be inlined, whatever its size. */
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+/* Vectors, one a lane. */
+typedef struct lanes {
+    float x[LANES], y[LANES], z[LANES];
+} lanes;
+
+/* Some of the lanes: bit i for lane i. */
+typedef uint32_t lane_set;
+
+static inline bool lane_in(lane_set set, int i)
+{
+    return (set >> i) & 1;
+}
+
+static inline lane_set lanes_first(int count)
+{
+    return (UINT32_C(1) << count) - 1;
+}
+
+static inline vec3 lanes_at(const lanes *l, int i)
+{
+    return vec3_make(l->x[i], l->y[i], l->z[i]);
+}
+
+static inline void lanes_put(lanes *l, int i, vec3 v)
+{
+    l->x[i] = v.x;
+    l->y[i] = v.y;
+    l->z[i] = v.z;
+}
+
+#endif
