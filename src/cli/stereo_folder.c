@@ -49,8 +49,10 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
     return count;
 }
 
-static void put_lights(cJSON *report, const pst_capture *c, const pst_light *light)
+/* Positions in the unit of the camera's mean distance, which is 1 if unknown. */
+static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s)
 {
+    const pst_light *light = s->light;
     cJSON *list = cJSON_AddArrayToObject(report, "lights_found");
     for (int i = 0; i < c->count; i++) {
         cJSON *o = cJSON_CreateObject();
@@ -58,6 +60,8 @@ static void put_lights(cJSON *report, const pst_capture *c, const pst_light *lig
         cJSON_AddStringToObject(o, "name", c->name[i]);
         const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
         cJSON_AddItemToObject(o, "direction", cJSON_CreateFloatArray(d, 3));
+        const float at[3] = {light[i].position.x, light[i].position.y, light[i].position.z};
+        if (s->lights_near) cJSON_AddItemToObject(o, "position", cJSON_CreateFloatArray(at, 3));
         cJSON_AddItemToObject(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
     }
 }
@@ -74,7 +78,7 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     put_statistics(report, "residual", values, take_errors(r, values));
     if (c->normal_true.data)
         put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
-    if (s->light) put_lights(report, c, s->light);
+    if (s->light) put_lights(report, c, s);
     free(values);
     return OK;
 }

@@ -32,12 +32,8 @@ status eval_means_write(const eval_means *means, const char *path);
 /* Resized to width × height. */
 status eval_means_read(const char *path, int width, int height, eval_means *out);
 
-/* Height over the mask (3 channels of unit normals and 1 of heights in pixels, both made here). The height is √u with
- * ∇²u = -4 inside the mask and u = 0 outside: over a disc exactly the hemisphere. */
-status eval_inflate_mask(const img *mask, img *normal, img *height);
-
-/* Maps from one flash picture (linear, times the mask) without learning anything: normals and relief by
- * eval_inflate_mask, depth with the data's mean, albedo as if every surface faced the flash and were diffuse (I π d² /
+/* Maps from one flash picture (linear, times the mask) without learning anything: normals and relief by pst_inflate
+ * (stereo/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were diffuse (I π d² /
  * Φ, clipped), the data's mean roughness. */
 status eval_inflate(const img *image, const img *mask, const eval_means *means, float fov, float power, eval_maps *out);
 

@@ -5,18 +5,20 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "stereo/near_lights.h"
 #include "stereo/pixel_fit.h"
 
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, FORETELL, SPREAD, MODEL, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MODEL, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
     const int32_t *slot;   /* spread */
     const bool *news;      /* spread: whose shading has changed since the neighbours saw it; NULL: all */
+    float limit;           /* search */
     pst_shading *next;     /* spread: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_surface *out;      /* store */
@@ -58,42 +60,9 @@ void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float
             value[j * stride + k] = usable[j * stride + k] = 0;
 }
 
-typedef struct near_lights {
-    float x[PST_MAX_LIGHTS], y[PST_MAX_LIGHTS], z[PST_MAX_LIGHTS], power[PST_MAX_LIGHTS];
-} near_lights;
-
-/* Directions from the point at(0..count) and what arrives there: a point source falls off with the squared distance,
- * an LED also with the lobe's power of the cosine to its axis. */
-static void point_lights(const pst_problem *p, vec3 at, int padded, near_lights *out)
+static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
 {
-    for (int k = 0; k < padded; k++)
-        out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
-    int count = p->capture->count;
-    for (int k = 0; k < count; k++) {
-        const pst_light *from = &p->light[k];
-        vec3 to = vec3_sub(from->position, at);
-        float squared = fmaxf(vec3_dot(to, to), 1e-12f);
-        vec3 l = vec3_scale(to, 1 / sqrtf(squared));
-        float power = 1 / squared;
-        if (from->lobe > 0 && vec3_dot(from->direction, from->direction) > 0)
-            power *= powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe);
-        out->x[k] = l.x;
-        out->y[k] = l.y;
-        out->z[k] = l.z;
-        out->power[k] = power;
-    }
-}
-
-static void divide_by_power(const near_lights *l, int padded, float *value, float *usable)
-{
-    float most = 0;
-    for (int k = 0; k < padded; k++)
-        most = l->power[k] > most ? l->power[k] : most;
-    for (int k = 0; k < padded; k++) {
-        bool lit = l->power[k] > 1e-4f * most; /* less is the lobe's dark side: nothing but noise, enlarged */
-        value[k] = lit ? value[k] / l->power[k] : 0;
-        usable[k] = lit ? usable[k] : 0;
-    }
+    return q->second ? f->second : f->lobe;
 }
 
 /* Albedo a channel by the same weights, and the residual beside the fit. power NULL: distant. */
@@ -104,11 +73,12 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     const pst_observations *o = &d->seen;
     pst_surface *out = job->out;
     float w[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS];
-    pst_lobe_weigh(d, job->field->lobe, q, w, model);
+    const pst_lobe *kind = lobe_of(job->field, q);
+    pst_lobe_weigh(d, kind, q, w, model);
     vec3 n = pst_facing(q->normal);
     float albedo[3] = {0}, energy = 0, fit = 0, residual = 0;
     for (int k = 0; k < c->count; k++) {
-        float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - job->field->lobe->terminator, 0);
+        float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - kind->terminator, 0);
         const uint16_t *code = c->picture[k] + at * (size_t)c->channels;
         float wc = w[k] * cosine, r = o->value[k] - model[k], lobe = model[k] - q->albedo * cosine;
         energy += wc * cosine;
@@ -133,7 +103,6 @@ static bool alike(const pst_shading *a, const pst_shading *b)
 /* Neighbours that differ from the pixel and from each other and cost less; returns how many. */
 static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
 {
-    static const float cheaper = 0.3f; /* of an outlier */
     static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const pst_field *f = job->field;
     const pst_shading *own = &f->shading[i];
@@ -145,7 +114,7 @@ static int better_neighbours(const fit_job *job, size_t i, const pst_shading *fo
         int32_t other = job->slot[(size_t)ny * (size_t)width + (size_t)nx];
         if (other < 0 || (job->news && !job->news[other])) continue;
         const pst_shading *from = &f->shading[other];
-        bool known = alike(from, own) || from->cost >= own->cost - cheaper;
+        bool known = alike(from, own) || from->cost >= own->cost - PST_FAR_LESS;
         for (int m = 0; m < count; m++)
             known |= alike(from, found[m]);
         if (!known) found[count++] = from;
@@ -161,66 +130,110 @@ static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *
     const pst_field *f = job->field;
     if (begun->valid && f->problem->capture->count >= PST_MANY_LIGHTS) {
         pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1]);
-        if (next.cost < begun->cost + 0.3f) return next;
+        if (next.cost < begun->cost + PST_FAR_LESS) return next;
     }
     pst_shading found = pst_lobe_fit(d, f->lobe);
     *begun = (run_start){true, found.cost};
     return found;
 }
 
+static void try_second(const pst_field *f, size_t i, const pst_lobe_data *d)
+{
+    pst_shading start = pst_lobe_translate(f->lobe, f->second, &f->shading[i]);
+    start.second = true;
+    pst_shading found = pst_lobe_refine(d, f->second, &start);
+    if (found.cost < pst_far_below(f->shading[i].cost)) f->shading[i] = found;
+}
+
+static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
+{
+    const pst_field *f = job->field;
+    const pst_shading *start[4];
+    int starts = better_neighbours(job, i, start);
+    for (int k = 0; k < starts; k++) {
+        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k]);
+        if (trial.cost < job->next[i].cost) job->next[i] = trial;
+    }
+}
+
+/* power NULL: distant. */
+static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
+{
+    const pst_field *f = job->field;
+    size_t at = i * (size_t)d->seen.padded;
+    pst_shading *own = &f->shading[i];
+    switch (job->task) {
+    case FIT:
+        *own = fit_after(job, i, d, begun);
+        break;
+    case REFINE:
+        *own = pst_lobe_refine(d, lobe_of(f, own), own);
+        break;
+    case SEARCH:
+        *own = pst_lobe_search(d, f->lobe, own);
+        break;
+    case SECOND:
+        try_second(f, i, d);
+        break;
+    case SPREAD:
+        try_neighbours(job, i, d);
+        break;
+    case MODEL:
+        pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
+        break;
+    default:
+        store_pixel(job, f->pixel[i], d, own, power);
+    }
+    job->cost[i] = own->cost;
+}
+
+/* Under near lights or from a near camera: where the pixel sees them. Returns the direction to the camera. */
+static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
+{
+    const pst_capture *c = f->problem->capture;
+    int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width), padded = pst_padded(c->count);
+    if (f->depth) {
+        vec3 ray = pst_ray(&c->camera, x, y);
+        pst_near_lights_at(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), lights);
+        pst_near_lights_divide(lights, padded, value, usable);
+        return vec3_normalize(vec3_scale(ray, -1));
+    }
+    if (!f->lobe || f->lobe->focal <= 0) return vec3_make(0, 0, 1);
+    return vec3_normalize(vec3_make((0.5f * (float)c->width - 0.5f - (float)x) / f->lobe->focal,
+                                    ((float)y + 0.5f - 0.5f * (float)c->height) / f->lobe->focal, 1));
+}
+
+/* Whether the task has anything to do there. */
+static bool concerns(const fit_job *job, size_t i)
+{
+    const pst_shading *start[4];
+    if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
+    return job->task != SPREAD || better_neighbours(job, i, start) > 0;
+}
+
 static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
 {
     const pst_field *f = job->field;
-    const pst_capture *c = f->problem->capture;
-    size_t at = f->pixel[i];
-    int padded = pst_padded(c->count);
-    near_lights lights;
-    pst_observations o = {padded, job->x, job->y, job->z, value, usable, 0};
-    vec3 view = {0, 0, 1};
-    const pst_shading *start[4];
-    int starts = 0;
-    if (job->task == SPREAD) {
-        starts = better_neighbours(job, i, start);
-        job->next[i] = f->shading[i];
-        if (starts == 0) return;
-    }
+    pst_near_lights lights;
+    vec3 view = look_from(f, f->pixel[i], &lights, value, usable);
+    pst_observations o = {pst_padded(f->problem->capture->count), job->x, job->y, job->z, value, usable, 0};
     if (f->depth) {
-        int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width);
-        vec3 ray = pst_ray(&c->camera, x, y);
-        view = vec3_normalize(vec3_scale(ray, -1));
-        point_lights(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), padded, &lights);
-        divide_by_power(&lights, padded, value, usable);
         o.x = lights.x;
         o.y = lights.y;
         o.z = lights.z;
-    } else if (f->lobe && f->lobe->focal > 0) {
-        int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width);
-        view = vec3_normalize(vec3_make((0.5f * (float)c->width - 0.5f - (float)x) / f->lobe->focal,
-                                        ((float)y + 0.5f - 0.5f * (float)c->height) / f->lobe->focal, 1));
     }
     if (!f->lobe) {
         float weight[PST_MAX_LIGHTS];
         pst_pixel p = pst_pixel_fit(&o, weight);
         job->cost[i] = p.cost;
         if (f->b) f->b[i] = p.b;
-        return;
-    }
-    if (job->task == FORETELL) {
+    } else if (job->task == FORETELL) {
         job->cost[i] = pst_lobe_foretell(&o, view, f->lobe);
-        return;
+    } else {
+        pst_lobe_data d;
+        pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
+        fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
     }
-    pst_lobe_data d;
-    pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
-    if (job->task == FIT) f->shading[i] = fit_after(job, i, &d, begun);
-    if (job->task == REFINE) f->shading[i] = pst_lobe_refine(&d, f->lobe, &f->shading[i]);
-    for (int k = 0; k < starts; k++) {
-        pst_shading trial = pst_lobe_refine(&d, f->lobe, start[k]);
-        if (trial.cost < job->next[i].cost) job->next[i] = trial;
-    }
-    if (job->task == MODEL)
-        pst_lobe_weigh(&d, f->lobe, &f->shading[i], job->weight + i * (size_t)padded, job->model + i * (size_t)padded);
-    if (job->task == STORE) store_pixel(job, at, &d, &f->shading[i], f->depth ? lights.power : NULL);
-    job->cost[i] = f->shading[i].cost;
 }
 
 static void fit_block(void *context, size_t block)
@@ -232,11 +245,14 @@ static void fit_block(void *context, size_t block)
     size_t stride = (size_t)pst_padded(f->problem->capture->count);
     gathered g;
     run_start begun = {false, 0};
-    memset(g.value, 0, (size_t)count * stride * sizeof *g.value);
-    memset(g.usable, 0, (size_t)count * stride * sizeof *g.usable);
+    bool wanted[BLOCK], any = false;
+    for (int j = 0; j < count; j++)
+        any |= wanted[j] = concerns(job, first + (size_t)j);
+    if (!any) return;
     pst_gather(f->problem, f->pixel + first, (size_t)count, g.value, g.usable, stride);
     for (int j = 0; j < count; j++)
-        fit_pixel(job, first + (size_t)j, g.value + (size_t)j * stride, g.usable + (size_t)j * stride, &begun);
+        if (wanted[j])
+            fit_pixel(job, first + (size_t)j, g.value + (size_t)j * stride, g.usable + (size_t)j * stride, &begun);
 }
 
 static status run(fit_job *job)
@@ -279,6 +295,16 @@ status pst_field_refine(const pst_field *f, double *cost)
     status s = run(&job);
     *cost = job.total;
     return s;
+}
+
+status pst_field_search(const pst_field *f, float limit)
+{
+    return run(&(fit_job){.field = f, .task = SEARCH, .limit = limit});
+}
+
+status pst_field_try_second(const pst_field *f)
+{
+    return f->second ? run(&(fit_job){.field = f, .task = SECOND}) : OK;
 }
 
 status pst_field_foretell(const pst_field *f, double *cost)
@@ -324,6 +350,7 @@ status pst_field_spread(const pst_field *f, int sweeps)
             slot[f->pixel[i]] = (int32_t)i;
     }
     for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
+        memcpy(next, f->shading, f->count * sizeof *next);
         s = run(&(fit_job){.field = f, .task = SPREAD, .slot = slot, .news = k > 0 ? news : NULL, .next = next});
         if (s == OK) moved = take(f, next, news);
     }

@@ -14,18 +14,33 @@ typedef struct pst_field {
     const pst_problem *problem;
     const uint32_t *pixel; /* indices into the pictures */
     size_t count;
-    const img *depth;     /* NULL: distant lights */
-    float scale;          /* of depth */
-    const pst_lobe *lobe; /* NULL: Lambert's law alone */
-    vec3 *b;              /* count, albedo times normal, whichever way it faces; NULL: not asked for */
-    pst_shading *shading; /* count; with a lobe */
+    const img *depth;       /* NULL: distant lights */
+    float scale;            /* of depth */
+    const pst_lobe *lobe;   /* NULL: Lambert's law alone */
+    const pst_lobe *second; /* what pixels of another material have instead; NULL: none */
+    vec3 *b;                /* count, albedo times normal, whichever way it faces; NULL: not asked for */
+    pst_shading *shading;   /* count; with a lobe */
 } pst_field;
+
+/* What a shading must cost less than, beside another's cost, to be taken for the better one by far: by a third of an
+ * outlier, or by half. */
+#define PST_FAR_LESS 0.3f
+static inline float pst_far_below(float cost)
+{
+    return cost > 2 * PST_FAR_LESS ? cost - PST_FAR_LESS : 0.5f * cost;
+}
 
 /* cost: the pixels' robust losses, summed in their order whatever the number of threads. */
 status pst_field_fit(const pst_field *f, double *cost);
 
 /* The same, started from the field's shading. */
 status pst_field_refine(const pst_field *f, double *cost);
+
+/* Searches on (pst_lobe_search) where the shading costs more than the limit. */
+status pst_field_search(const pst_field *f, float limit);
+
+/* Fits the second lobe, too, near the shading, and keeps what costs less by far. */
+status pst_field_try_second(const pst_field *f);
 
 /* cost: what pst_lobe_foretell says, summed; the field's shading is neither read nor written. */
 status pst_field_foretell(const pst_field *f, double *cost);

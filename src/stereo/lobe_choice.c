@@ -10,6 +10,9 @@ static const double worth_kind = 0.02, worth_view = 0.05, worth_terminator = 0.1
 /* What is tried first: nearer than 0 to all that occur. */
 static const float likely_terminator = 0.07f;
 
+/* Of the loss: a second kind that saves less is not taken along. */
+static const double worth_second = 0.1;
+
 /* Of what is foretold: a lobe, or another width, that gains less is taken for a chance. */
 static const double worth_freedom = 0.03, worth_width = 0.015;
 
@@ -46,7 +49,8 @@ static void attempt(choice *c, double worth, bool anew)
     size_t bytes = c->field.count * sizeof *c->kept;
     double cost = HUGE_VAL;
     if (c->status != OK) return;
-    memcpy(c->field.shading, c->kept, bytes);
+    for (size_t i = 0; i < c->field.count; i++)
+        c->field.shading[i] = pst_lobe_translate(&c->best, &c->trial, &c->kept[i]);
     c->status = anew ? pst_field_fit(&c->field, &cost) : pst_field_refine(&c->field, &cost);
     if (c->status != OK || cost >= c->cost * (1 - worth)) return;
     c->cost = cost;
@@ -184,4 +188,51 @@ status pst_lobe_choose(const pst_field *sample, pst_lobe *lobe)
     choose(&c);
     free(c.kept);
     return c.status == OK ? confirm(sample, &c.best, lobe) : c.status;
+}
+
+/* What the trial saves where it costs far less. */
+static double saved(const pst_shading *with, const pst_shading *without, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        if (with[i].cost < pst_far_below(without[i].cost)) sum += (double)(without[i].cost - with[i].cost);
+    return sum;
+}
+
+/* first: room for the shading by either lobe. */
+static status save_most(const pst_field *sample, const pst_lobe *lobe, pst_shading *first, pst_lobe *second,
+                        bool *worth)
+{
+    double all, cost, most = 0;
+    pst_field without = *sample;
+    without.lobe = lobe;
+    without.shading = first;
+    status s = pst_field_fit(&without, &all);
+    for (int k = 0; s == OK && k < UNLIKE; k++) {
+        pst_lobe trial = *lobe;
+        pst_field with = without;
+        trial.tail = kinds[k].tail;
+        trial.masking = kinds[k].masking;
+        with.lobe = &trial;
+        with.shading = first + sample->count;
+        if (trial.tail == lobe->tail) continue;
+        s = pst_field_fit(&with, &cost);
+        double gain = s == OK ? saved(with.shading, first, sample->count) : 0;
+        if (gain <= fmax(most, worth_second * all)) continue;
+        most = gain;
+        *second = trial;
+        *worth = true;
+    }
+    return s;
+}
+
+status pst_lobe_choose_second(const pst_field *sample, const pst_lobe *lobe, pst_lobe *second, bool *worth)
+{
+    *worth = false;
+    if (sample->problem->capture->count < PST_MANY_LIGHTS || lobe->tail == 0) return OK;
+    pst_shading *shading = calloc(2 * sample->count, sizeof *shading);
+    if (!shading) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", sample->count);
+    status s = save_most(sample, lobe, shading, second, worth);
+    free(shading);
+    return s;
 }

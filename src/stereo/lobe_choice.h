@@ -25,4 +25,8 @@ status pst_lobe_admit(const pst_field *sample, pst_lobe *lobe);
 /* sample: problem, pixel, count, depth and scale are read. */
 status pst_lobe_choose(const pst_field *sample, pst_lobe *lobe);
 
+/* The kind of lobe that a part of the sample has instead, as objects of several materials do; *worth: whether it saves
+ * enough. With few lights never. */
+status pst_lobe_choose_second(const pst_field *sample, const pst_lobe *lobe, pst_lobe *second, bool *worth);
+
 #endif

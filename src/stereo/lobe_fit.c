@@ -206,7 +206,7 @@ static void linearize(const pst_lobe_data *d, const pst_lobe *lobe, const pst_sh
 static void solve5(const equations *e, float damping, float x[UNKNOWNS])
 {
     static const int row[UNKNOWNS] = {0, 4, 7, 9, 10}; /* m[row[i] + j] is entry (i, j), j >= i */
-    float l[UNKNOWNS][UNKNOWNS] = {{0}}, inverse[UNKNOWNS];
+    float l[UNKNOWNS][UNKNOWNS] = {{0}}, inverse[UNKNOWNS] = {0};
 #pragma GCC unroll 5
     for (int i = 0; i < UNKNOWNS; i++) {
         float diagonal = e->m[row[i] + i], sum = diagonal * (1 + damping), right = e->right[i];
@@ -290,6 +290,16 @@ static pst_shading narrow_down(const pst_lobe_data *d, const pst_lobe *lobe, pst
     }
     at.cost = e.loss;
     return at;
+}
+
+/* (1 + u x)^−γ falls by γ u at the lobe's top. */
+pst_shading pst_lobe_translate(const pst_lobe *from, const pst_lobe *to, const pst_shading *at)
+{
+    pst_shading start = *at;
+    if (from->tail > 0 && to->tail > 0)
+        start.sharpness =
+            clamp(at->sharpness + logf((float)from->tail / (float)to->tail), least_sharpness, most_sharpness);
+    return start;
 }
 
 pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start)
@@ -385,6 +395,18 @@ pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe)
     start.albedo = 0;
     pst_shading other = descend(d, lobe, &start);
     return other.cost < best.cost ? other : best;
+}
+
+pst_shading pst_lobe_search(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *so_far)
+{
+    static const vec3 tilted[] = {{0.64f, 0, 0.768f},  {0.32f, 0.554f, 0.768f},   {-0.32f, 0.554f, 0.768f},
+                                  {-0.64f, 0, 0.768f}, {-0.32f, -0.554f, 0.768f}, {0.32f, -0.554f, 0.768f}};
+    pst_shading best = *so_far;
+    for (size_t k = 0; k < sizeof tilted / sizeof *tilted; k++) {
+        pst_shading found = descend(d, lobe, &(pst_shading){.normal = tilted[k]});
+        if (found.cost < best.cost) best = found;
+    }
+    return best;
 }
 
 void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model)

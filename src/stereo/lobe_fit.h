@@ -12,6 +12,8 @@
 #ifndef MERLIN_STEREO_LOBE_FIT_H
 #define MERLIN_STEREO_LOBE_FIT_H
 
+#include <stdbool.h>
+
 #include "stereo/pixel_fit.h"
 
 /* What all pixels share. */
@@ -30,6 +32,7 @@ typedef struct pst_shading {
     float gloss;     /* s */
     float sharpness; /* log u */
     float cost;      /* sum of the robust loss over the usable observations, each in [0, 1] */
+    bool second;     /* of the two lobes that a field of pixels may have (field_fit.h) */
 } pst_shading;
 
 typedef struct pst_lobe_data {
@@ -48,6 +51,12 @@ void pst_lobe_prepare(const pst_observations *o, vec3 view, float shadow, pst_lo
 
 /* The best of several starts: Lambert's fit, and the normal that the brightest observations mirror. */
 pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe);
+
+/* The best of what was found and of starts all around, for a pixel that they did not serve. */
+pst_shading pst_lobe_search(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *so_far);
+
+/* The start of another lobe that looks most like a shading of the one. */
+pst_shading pst_lobe_translate(const pst_lobe *from, const pst_lobe *to, const pst_shading *at);
 
 /* The best near a start. */
 pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start);

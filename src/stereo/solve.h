@@ -14,7 +14,7 @@ typedef enum pst_method {
     PST_ROBUST,      /* a specular lobe a pixel; cast shadows as outliers */
     PST_NEAR_LIGHTS, /* near point lights, perspective camera, alternating depth and normals */
     PST_SEMI,        /* directions known, intensities not */
-    PST_UNCALIBRATED /* lights unknown; bas-relief ambiguity resolved by a stated prior */
+    PST_UNCALIBRATED /* lights unknown, near or distant, of one strength */
 } pst_method;
 
 typedef struct pst_options {
@@ -31,6 +31,7 @@ typedef struct pst_surface {
     img residual;      /* 1, root mean square over the images used, relative to the fit */
     pst_method method; /* the one used */
     pst_light *light;  /* semi, uncalibrated: what was found (count entries); else NULL */
+    bool lights_near;  /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
 } pst_surface;
 
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);

@@ -4,7 +4,8 @@
  *     pst_capture c;
  *     rendered_capture(&how, &object, &c);
  *
- * Distant lights shine with radiance 1 a steradian; near lights are LEDs about the camera. */
+ * Distant lights shine with radiance 1 a steradian; near lights are LEDs about the camera, or bare bulbs on the frontal
+ * hemisphere. */
 #ifndef MERLIN_TESTS_STEREO_RENDERED_H
 #define MERLIN_TESTS_STEREO_RENDERED_H
 
@@ -20,7 +21,7 @@ typedef struct rendered {
     float paleness;                  /* factor on the material's albedo; 0: 1 */
     float phong, exponent;           /* a lobe phong · (n·h)^exponent instead of the microfacets', if above 0 */
     float exposure;
-    bool grey, leds, eight_bit;
+    bool grey, leds, bulbs, eight_bit;
 } rendered;
 
 typedef struct rendering {
@@ -51,6 +52,13 @@ static inline void rendered_led(int i, int count, pst_light *led)
     led->lobe = 1.5f;
 }
 
+/* On a spiral over the half of the sphere of radius 1 about (0, 0, -1) that faces the camera. */
+static inline vec3 rendered_bulb(int i, int count)
+{
+    float z = ((float)i + 0.5f) / (float)count, across = sqrtf(1 - z * z), phi = 2.3999632f * (float)i;
+    return vec3_make(across * cosf(phi), across * sinf(phi), z - 1);
+}
+
 static inline vec3 rendered_shade(const rendering *r, const scn_surface *at, vec3 view, vec3 l)
 {
     const rendered *how = r->how;
@@ -67,7 +75,7 @@ static inline vec3 rendered_shade(const rendering *r, const scn_surface *at, vec
 /* Radiance by one light, straight and by way of other surfaces. */
 static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 view, const pst_light *from)
 {
-    bool led = r->how->leds;
+    bool led = r->how->leds || r->how->bulbs;
     static const float far = 500;
     vec3 position = led ? from->position : vec3_scale(from->direction, far), sum = {0, 0, 0};
     vec3 to = vec3_sub(position, at->position), l = led ? vec3_normalize(to) : from->direction;
@@ -85,7 +93,7 @@ static inline vec3 rendered_radiance(rendering *r, const scn_surface *at, vec3 v
         sum = vec3_add(sum, vec3_add(bounce[0][0], bounce[0][1]));
     }
     /* the lobe is applied to all that the LED sends, as seen from the surface */
-    return led ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe)) : sum;
+    return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe)) : sum;
 }
 
 static inline uint16_t rendered_code(const rendered *how, float radiance)
@@ -151,10 +159,12 @@ static inline void rendered_capture(const rendered *how, const scn_object *objec
     for (int k = 0; k < how->lights; k++) {
         if (how->leds)
             rendered_led(k, how->lights, &c->light[k]);
+        else if (how->bulbs)
+            c->light[k].position = rendered_bulb(k, how->lights);
         else
             c->light[k].direction = rendered_light(k, how->lights);
     }
-    if (how->leds) {
+    if (how->leds || how->bulbs) {
         c->lighting = PST_NEAR;
         c->camera = (pst_camera){.perspective = true,
                                  .focal = 0.5f * (float)how->size / tanf(how->fov * 0.00872664626f),

@@ -1,0 +1,385 @@
+/* Distant lights of unknown direction.
+ *
+ * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors
+ *    are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3 matrix
+ *    is left between the factors.
+ * 2. Prior: all lights are equally strong. It leaves a rotation or reflection (H. Hayakawa, Photometric stereo under a
+ *    light source with arbitrary motion, JOSA A 11(11), 1994).
+ * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
+ * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
+ * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
+ * outward.
+ * 4. With the lights found, their strengths among them, the robust solver does the rest. */
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/field_fit.h"
+#include "stereo/pixel_fit.h"
+#include "stereo/samples.h"
+#include "stereo/uncalibrated_parts.h"
+
+enum { SAMPLE = 1500, REFITS = 8, PASSES = 5, GRID = 24 };
+
+/* Of the strengths' quadric: its smallest axis' share of its largest. */
+#define FLATTEST 0.02
+/* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
+#define FRONTAL 0.8
+
+typedef struct lights3 {
+    int count;
+    float *x, *y, *z; /* padded */
+} lights3;
+
+/* A surface up to a 3×3 matrix, and where its pixels are. */
+typedef struct pseudo {
+    const pst_problem *problem;
+    vec3 *b;       /* a pixel of the problem */
+    int32_t *slot; /* picture position to that, -1 outside the mask */
+} pseudo;
+
+/* row-major m times v */
+static vec3 transform(const double m[9], vec3 v)
+{
+    return vec3_make((float)(m[0] * v.x + m[1] * v.y + m[2] * v.z), (float)(m[3] * v.x + m[4] * v.y + m[5] * v.z),
+                     (float)(m[6] * v.x + m[7] * v.y + m[8] * v.z));
+}
+
+/* Each light from the surface, by the surface's weights. */
+static void refit_lights(const pst_samples *m, lights3 *l)
+{
+    for (int k = 0; k < l->count; k++) {
+        float a[6] = {0};
+        vec3 right = {0, 0, 0};
+        for (size_t i = 0; i < m->count; i++) {
+            /* of equal weight whatever the albedo */
+            vec3 b = m->b[i];
+            float w = m->weight[i * m->padded + (size_t)k] / fmaxf(vec3_dot(b, b), 1e-12f);
+            a[0] += w * b.x * b.x;
+            a[1] += w * b.x * b.y;
+            a[2] += w * b.x * b.z;
+            a[3] += w * b.y * b.y;
+            a[4] += w * b.y * b.z;
+            a[5] += w * b.z * b.z;
+            right = vec3_fma(right, w * m->value[i * m->padded + (size_t)k], b);
+        }
+        vec3 found = pst_solve3(a, right);
+        l->x[k] = found.x;
+        l->y[k] = found.y;
+        l->z[k] = found.z;
+    }
+}
+
+static status factor(const pst_problem *p, lights3 *l)
+{
+    pst_samples m;
+    status s = pst_samples_new(p, SAMPLE, &m);
+    if (s != OK) return s;
+    double *basis = calloc((size_t)l->count * 3, sizeof *basis), mean[3] = {0};
+    size_t lit = 0;
+    s = basis ? pst_samples_basis(&m, basis, &lit) : fail(ERROR_MEMORY, "no memory for %d lights", l->count);
+    for (int k = 0; s == OK && k < 3 * l->count; k++)
+        mean[k % 3] += basis[k] * basis[k] / l->count;
+    for (int k = 0; s == OK && k < l->count; k++) {
+        /* white: the robust fit's widths are shares of |b|, which must mean the same in all directions */
+        l->x[k] = (float)(basis[3 * k] / sqrt(3 * mean[0]));
+        l->y[k] = (float)(basis[3 * k + 1] / sqrt(3 * mean[1]));
+        l->z[k] = (float)(basis[3 * k + 2] / sqrt(3 * mean[2]));
+    }
+    for (int k = 0; s == OK && k < REFITS; k++) {
+        pst_samples_fit(&m, l->x, l->y, l->z);
+        refit_lights(&m, l);
+    }
+    free(basis);
+    pst_samples_free(&m);
+    return s;
+}
+
+/* One pixel's equation: b3 ∂y b1 − b1 ∂y b3 = b3 ∂x b2 − b2 ∂x b3 for b = A b', linear in the six minors of A. */
+static bool integrability_row(const pseudo *f, size_t at, double row[6])
+{
+    int width = f->problem->capture->width, height = f->problem->capture->height;
+    int x = (int)(at % (size_t)width), y = (int)(at / (size_t)width);
+    if (x < 1 || y < 1 || x + 1 >= width || y + 1 >= height) return false;
+    const int32_t *slot = f->slot + at;
+    if (slot[-1] < 0 || slot[1] < 0 || slot[-width] < 0 || slot[width] < 0) return false;
+    vec3 b = f->b[slot[0]], dx = vec3_sub(f->b[slot[1]], f->b[slot[-1]]);
+    vec3 dy = vec3_sub(f->b[slot[-width]], f->b[slot[width]]);
+    float scale = vec3_dot(b, b);
+    if (!(scale > 0)) return false;
+    vec3 by_y = vec3_scale(vec3_cross(b, dy), 1 / scale), by_x = vec3_scale(vec3_cross(b, dx), -1 / scale);
+    memcpy(row, &(double[6]){by_y.x, by_y.y, by_y.z, by_x.x, by_x.y, by_x.z}, 6 * sizeof *row);
+    return true;
+}
+
+static double row_length(const double row[6])
+{
+    double square = 0;
+    for (int j = 0; j < 6; j++)
+        square += row[j] * row[j];
+    return sqrt(square);
+}
+
+/* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
+ * depth jumps, and where the surface turns most), for the minors (A3 × A1, A3 × A2) of the last pass. */
+static status integrability_form(const pseudo *f, const double minor[6], double *scale, double form[36])
+{
+    const pst_problem *p = f->problem;
+    double row[6], absolute = 0, lengths = 0, length;
+    size_t count = 0;
+    memset(form, 0, 36 * sizeof *form);
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        if (!integrability_row(f, p->pixel[i], row)) continue;
+        lengths += row_length(row);
+        count++;
+    }
+    if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+    length = fmax(lengths / (double)count, 1e-12);
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        if (!integrability_row(f, p->pixel[i], row)) continue;
+        double r = 0;
+        for (int j = 0; j < 6; j++)
+            r += row[j] * minor[j];
+        double steep = row_length(row) / length, w = 1 / ((1 + r * r / (*scale * *scale)) * (1 + steep * steep));
+        for (int j = 0; j < 36; j++)
+            form[j] += w * row[j / 6] * row[j % 6];
+        absolute += fabs(r);
+    }
+    *scale = fmax(absolute / (double)count, 1e-12);
+    return OK;
+}
+
+/* Rotation matrix of a rotation vector times a, row-major. */
+static void turned(const double turn[3], const double a[9], double out[9])
+{
+    double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
+    double u[3] = {1, 0, 0}, r[9];
+    for (int j = 0; angle > 1e-12 && j < 3; j++)
+        u[j] = turn[j] / angle;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            r[3 * i + j] = u[i] * u[j] * (1 - c) + (i == j ? c : 0);
+    r[1] -= s * u[2];
+    r[3] += s * u[2];
+    r[2] += s * u[1];
+    r[6] -= s * u[1];
+    r[5] -= s * u[0];
+    r[7] += s * u[0];
+    for (int i = 0; i < 9; i++)
+        out[i] = r[i / 3 * 3] * a[i % 3] + r[i / 3 * 3 + 1] * a[3 + i % 3] + r[i / 3 * 3 + 2] * a[6 + i % 3];
+}
+
+/* A rotation's minors: A3 × A1 = A2, A3 × A2 = −A1. */
+static void minors_of(const double a[9], double minor[6])
+{
+    for (int j = 0; j < 3; j++) {
+        minor[j] = a[3 + j];
+        minor[3 + j] = -a[j];
+    }
+}
+
+static double form_at(const double form[36], const double a[9])
+{
+    double minor[6], sum = 0;
+    minors_of(a, minor);
+    for (int j = 0; j < 36; j++)
+        sum += form[j] * minor[j / 6] * minor[j % 6];
+    return sum;
+}
+
+/* Downhill from a by turns about the axes that are halved when none helps. */
+static void descend(const double form[36], double reach, double a[9])
+{
+    double best = form_at(form, a), trial[9];
+    while (reach > 1e-4) {
+        bool better = false;
+        for (int k = 0; k < 6; k++) {
+            double turn[3] = {0};
+            turn[k / 2] = k % 2 ? reach : -reach;
+            turned(turn, a, trial);
+            double value = form_at(form, trial);
+            if (value >= best) continue;
+            best = value;
+            better = true;
+            memcpy(a, trial, sizeof trial);
+        }
+        if (!better) reach /= 2;
+    }
+}
+
+static vec3 mean_light(const lights3 *l)
+{
+    vec3 sum = {0, 0, 0};
+    for (int k = 0; k < l->count; k++)
+        sum = vec3_add(sum, vec3_make(l->x[k], l->y[k], l->z[k]));
+    return vec3_normalize(sum);
+}
+
+/* Of the rotations that leave the lights' mean on the camera's side, the one that makes the surface most integrable. */
+static status rotate(const pseudo *f, const lights3 *l, double a[9])
+{
+    vec3 mean = mean_light(l);
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double form[36], minor[6] = {0}, scale = HUGE_VAL, best = HUGE_VAL;
+    status s = integrability_form(f, minor, &scale, form);
+    for (int k = 0; s == OK && k < GRID * GRID * GRID; k++) {
+        const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
+        double trial[9], tilted[9], step = 6.283185307 / GRID;
+        double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
+        double last[3] = {0, 0, step * index[2]};
+        turned(about_z, identity, trial);
+        turned(about_x, trial, tilted);
+        turned(last, tilted, trial);
+        double value = form_at(form, trial);
+        if (value >= best || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
+        best = value;
+        memcpy(a, trial, sizeof trial);
+    }
+    for (int pass = 0; s == OK && pass < PASSES; pass++) {
+        descend(form, pass == 0 ? 0.3 : 0.05, a);
+        minors_of(a, minor);
+        s = integrability_form(f, minor, &scale, form);
+    }
+    return s;
+}
+
+/* lᵀ Q l = 1 for all lights, linear in the six numbers of Q; whiten then makes them unit vectors: l = whiten l',
+ * b = unwhiten b'. */
+static status equal_strengths(const lights3 *l, double whiten[9], double unwhiten[9])
+{
+    int n = l->count;
+    double *a = calloc((size_t)n * 7, sizeof *a), eigenvalue[3];
+    if (!a) return fail(ERROR_MEMORY, "no memory for %d lights", n);
+    double *q = a + 6 * n; /* the right-hand side first, xx xy xz yy yz zz then */
+    for (int k = 0; k < n; k++) {
+        double x = l->x[k], y = l->y[k], z = l->z[k];
+        memcpy(a + 6 * k, &(double[6]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z}, 6 * sizeof *a);
+        q[k] = 1;
+    }
+    lapack_int info = LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n, 6, 1, a, 6, q, 1);
+    double m[9] = {q[0], q[1], q[2], q[1], q[3], q[4], q[2], q[4], q[5]};
+    free(a);
+    if (info == 0) info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, m, 3, eigenvalue);
+    if (info != 0 || !(eigenvalue[2] > 0))
+        return fail(ERROR_INPUT, "the lights found are not of a kind: are they equally strong?");
+    for (int j = 0; j < 9; j++) {
+        /* not positive: highlights have bent the factors */
+        double root = sqrt(fmax(eigenvalue[j / 3], FLATTEST * eigenvalue[2]));
+        whiten[j] = root * m[j % 3 * 3 + j / 3];
+        unwhiten[j] = m[j % 3 * 3 + j / 3] / root;
+    }
+    return OK;
+}
+
+static void transform_lights(const double m[9], lights3 *l)
+{
+    for (int k = 0; k < l->count; k++) {
+        vec3 v = transform(m, vec3_make(l->x[k], l->y[k], l->z[k]));
+        l->x[k] = v.x;
+        l->y[k] = v.y;
+        l->z[k] = v.z;
+    }
+}
+
+/* Positive if the surface faces outward on the whole, seen from the mask's middle. */
+static double outwardness(const pseudo *f, const double surface[9], double *toward)
+{
+    const pst_problem *p = f->problem;
+    size_t width = (size_t)p->capture->width;
+    double cx = 0, cy = 0, sum = 0;
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        cx += (double)column / (double)p->pixel_count;
+        cy += (double)row / (double)p->pixel_count;
+    }
+    *toward = 0;
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        vec3 n = vec3_normalize(transform(surface, f->b[i]));
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        sum += n.x * ((double)column - cx) - n.y * ((double)row - cy);
+        *toward += n.z;
+    }
+    return sum;
+}
+
+/* The pseudo lights become directions. */
+static status resolve(pseudo *f, lights3 *l)
+{
+    double whiten[9], unwhiten[9], a[9], toward;
+    status s = equal_strengths(l, whiten, unwhiten);
+    if (s != OK) return s;
+    transform_lights(whiten, l);
+    for (size_t i = 0; i < f->problem->pixel_count; i++)
+        f->b[i] = transform(unwhiten, f->b[i]);
+    s = rotate(f, l, a);
+    if (s != OK) return s;
+    double outward = outwardness(f, a, &toward);
+    for (int j = 0; j < 6; j++)
+        a[j] *= outward < 0 ? -1 : 1;
+    for (int j = 6; j < 9; j++)
+        a[j] *= toward < 0 ? -1 : 1;
+    transform_lights(a, l);
+    return OK;
+}
+
+/* The surface under the pseudo lights, at every pixel. */
+static status pseudo_surface(const pst_problem *p, const lights3 *l, pseudo *f)
+{
+    size_t size = (size_t)p->capture->width * (size_t)p->capture->height;
+    f->problem = p;
+    f->b = malloc(p->pixel_count * sizeof *f->b);
+    f->slot = malloc(size * sizeof *f->slot);
+    pst_light *light = malloc((size_t)l->count * sizeof *light);
+    status s = f->b && f->slot && light ? OK : fail(ERROR_MEMORY, "no memory for %zu pixels", p->pixel_count);
+    if (s == OK) {
+        memset(f->slot, 0xff, size * sizeof *f->slot);
+        for (size_t i = 0; i < p->pixel_count; i++)
+            f->slot[p->pixel[i]] = (int32_t)i;
+        for (int k = 0; k < l->count; k++) {
+            light[k] = p->light[k];
+            light[k].direction = vec3_make(l->x[k], l->y[k], l->z[k]);
+        }
+        pst_problem under = *p;
+        under.light = light;
+        double cost;
+        s = pst_field_fit(&(pst_field){.problem = &under, .pixel = p->pixel, .count = p->pixel_count, .b = f->b},
+                          &cost);
+    }
+    free(light);
+    return s;
+}
+
+static status name_lights(const pst_problem *p, const lights3 *l, pst_light *light)
+{
+    double mean = 0;
+    for (int k = 0; k < l->count; k++)
+        mean += vec3_length(vec3_make(l->x[k], l->y[k], l->z[k])) / l->count;
+    for (int k = 0; k < l->count; k++) {
+        vec3 v = vec3_make(l->x[k], l->y[k], l->z[k]);
+        light[k] = p->light[k];
+        light[k].direction = vec3_normalize(v);
+        for (int ch = 0; ch < 3; ch++)
+            light[k].intensity[ch] *= fmaxf(vec3_length(v) / (float)mean, 1e-6f);
+    }
+    return pst_check_directions(light, l->count);
+}
+
+status pst_find_distant_lights(const pst_problem *p, pst_light *light)
+{
+    int count = p->capture->count;
+    size_t padded = (size_t)pst_padded(count);
+    pseudo f = {0};
+    lights3 l = {.count = count, .x = calloc(3 * padded, sizeof(float))};
+    if (!l.x) return fail(ERROR_MEMORY, "no memory for %d lights", count);
+    l.y = l.x + padded;
+    l.z = l.y + padded;
+    status s = factor(p, &l);
+    if (s == OK) s = pseudo_surface(p, &l, &f);
+    if (s == OK) s = resolve(&f, &l);
+    if (s == OK) s = name_lights(p, &l, light);
+    free(l.x);
+    free(f.b);
+    free(f.slot);
+    return s;
+}

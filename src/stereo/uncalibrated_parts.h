@@ -1,0 +1,14 @@
+/* What method uncalibrated is made of: two ways to find the lights, and what they found. */
+#ifndef MERLIN_STEREO_UNCALIBRATED_PARTS_H
+#define MERLIN_STEREO_UNCALIBRATED_PARTS_H
+
+#include "stereo/solve_parts.h"
+
+/* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's. */
+status pst_find_distant_lights(const pst_problem *p, pst_light *light);
+
+/* Positions of near lights of one power, and a depth map that goes with them (uncalibrated_near.c). camera: with a
+ * perspective. depth is made here. */
+status pst_find_near_lights(const pst_problem *p, const pst_camera *camera, pst_light *light, img *depth);
+
+#endif
