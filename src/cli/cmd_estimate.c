@@ -10,6 +10,7 @@
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
+#include "image/canvas.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -61,8 +62,9 @@ static status parse(int *argc, char ***argv, request *r)
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
 typedef struct lap_times {
-    double start, model; /* of the program: loading it, and its weights; the first photograph's alone */
-    double read, write, total;
+    double start, model, compile; /* of the program: loading it, its weights, its network; the first photograph alone */
+    double read, mask;            /* the first photograph's: the wait for both after all this, and 0 */
+    double write, total;
 } lap_times;
 
 static void print_json(const photo_job *job, const merlin_maps *maps, const lap_times *laps)
@@ -103,20 +105,19 @@ static double lap(double *clock)
     return passed;
 }
 
-/* From the photograph in memory to files; both images are freed. */
-static status take_apart(const request *r, const photo_job *job, merlin_image *photo, merlin_image *mask,
+/* From the photograph in memory to files; photograph and object are freed. */
+static status take_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
                          lap_times *laps)
 {
     double began = clock_seconds(), clock = began;
     merlin_maps maps = {0};
-    status s = (status)merlin_estimate(r->model, photo, mask, &r->params, &maps);
+    status s = estimate_object(r->model, photo, object, &r->params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
     merlin_image_free(photo);
-    merlin_image_free(mask);
     lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
     laps->write = lap(&clock);
-    laps->total = laps->start + laps->model + laps->read + clock - began;
+    laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) announce(r, job, &maps, laps);
     merlin_maps_free(&maps);
     return s;
@@ -124,33 +125,53 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
 
 static status estimate_one(const request *r, const photo_job *job)
 {
-    merlin_image photo = {0}, mask = {0};
+    merlin_image photo;
+    photo_object object;
     lap_times laps = {0};
-    double clock = clock_seconds();
-    status s = photo_read(job, &photo, &mask);
-    laps.read = lap(&clock);
-    return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
+    status s = photo_read_object(job, &photo, &object, &laps.read);
+    laps.mask = object.seconds;
+    return s == OK ? take_apart(r, job, &photo, &object, &laps) : s;
 }
 
-/* The first photograph is read while the weights are, and the network made ready. */
+static void *find_font(void *unused)
+{
+    canvas_find_font();
+    return unused;
+}
+
+/* The overview's font is looked for while the network runs. */
+static status take_first_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
+                               lap_times *laps)
+{
+    pthread_t font;
+    bool looking = pthread_create(&font, NULL, find_font, NULL) == 0;
+    status s = take_apart(r, job, photo, object, laps);
+    if (looking) pthread_join(font, NULL);
+    return s;
+}
+
+/* The first photograph is read and its object found while the weights are read and the network made ready. */
 static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready)
 {
-    merlin_image photo, mask;
+    merlin_image photo;
+    photo_object object;
     lap_times laps = {.start = (double)clock() / CLOCKS_PER_SEC};
     double now = clock_seconds();
     photo_ahead first;
     photo_begin(&first, job);
     status opened = (status)merlin_model_open(weights, &r->model), s = OK;
+    laps.model = lap(&now);
     if (opened == OK) opened = network_prepare(r->model->network, r->params.size);
     *ready = opened == OK;
-    laps.model = lap(&now);
+    laps.compile = lap(&now);
     char words[1024];
     if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
-    s = photo_finish(&first, &photo, &mask);
+    s = photo_finish(&first, &photo, &object);
     laps.read = lap(&now);
-    if (opened == OK) return s == OK ? take_apart(r, job, &photo, &mask, &laps) : s;
+    object.seconds = 0; /* they passed beside the others */
+    if (opened == OK) return s == OK ? take_first_apart(r, job, &photo, &object, &laps) : s;
     merlin_image_free(&photo);
-    merlin_image_free(&mask);
+    photo_object_free(&object);
     return fail(opened, "%s", words);
 }
 

@@ -23,6 +23,7 @@ static const char help[] =
     "under 50 lights. calibrate finds light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, or .lp (default: found in DIR)\n"
     "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
+    "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
     "      --method NAME    ls, robust, near, semi, uncalibrated or auto (default)\n"
     "      --mask FILE      white on the object (default: mask.png in DIR, else what is not black)\n"
     "      --ambient FILE   a picture without the lights, to subtract (default: ambient.png in DIR)\n"
@@ -82,8 +83,9 @@ static status check(request *r)
     const pst_read_options *o = &r->folder.read;
     if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
     if (o->lights && o->unknown_lights) return fail(ERROR_USAGE, "--method uncalibrated takes no --lights");
-    if (file_exists(r->input) && !file_is_folder(r->input) && (o->lights || o->near || o->ambient || o->linear))
-        return fail(ERROR_USAGE, "--lights, --near, --ambient and --linear are for a folder of pictures");
+    if (file_exists(r->input) && !file_is_folder(r->input) &&
+        (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))
+        return fail(ERROR_USAGE, "--lights, --near, --fov, --ambient and --linear are for a folder of pictures");
     return OK;
 }
 
@@ -92,6 +94,7 @@ static status parse(int *argc, char ***argv, request *r)
     const cli_option options[] = {
         {"lights", .text = &r->folder.read.lights},
         {"near", .flag = &r->folder.read.near},
+        {"fov", .real = &r->folder.read.field_of_view, .low = 1, .high = 170},
         {"method", .take = take_method, .into = &r->folder.method},
         {"mask", .text = &r->folder.read.mask},
         {"ambient", .text = &r->folder.read.ambient},

@@ -1,9 +1,9 @@
-/* A photograph read by a thread of its own while something else is done.
+/* A photograph read, and its object found, by a thread of its own while something else is done.
  *
  *     photo_ahead first;
  *     photo_begin(&first, &job);
  *     ... open the model ...
- *     status s = photo_finish(&first, &photo, &mask);
+ *     status s = photo_finish(&first, &photo, &object);
  */
 #ifndef MERLIN_CLI_PHOTO_AHEAD_H
 #define MERLIN_CLI_PHOTO_AHEAD_H
@@ -12,19 +12,24 @@
 #include <stdbool.h>
 
 #include "cli/photos.h"
+#include "estimate/api.h"
 
 typedef struct photo_ahead {
     const photo_job *job; /* borrowed */
     bool running;
     pthread_t thread;
-    merlin_image photo, mask;
+    merlin_image photo;
+    photo_object object;
     status result;
     char message[1024]; /* words are kept per thread, and this one goes away */
 } photo_ahead;
 
 /* Every begin needs its finish. */
 void photo_begin(photo_ahead *ahead, const photo_job *job);
-/* Waits; then as photo_read. */
-status photo_finish(photo_ahead *ahead, merlin_image *photo, merlin_image *mask);
+/* Waits. Both are the caller's then, empty after a failure. */
+status photo_finish(photo_ahead *ahead, merlin_image *photo, photo_object *object);
+
+/* photo_read and photo_object_choose without a thread. */
+status photo_read_object(const photo_job *job, merlin_image *photo, photo_object *object, double *read_seconds);
 
 #endif

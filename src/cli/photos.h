@@ -31,7 +31,8 @@ char *photo_default_output(const char *photo);
 status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask);
 
 /* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models
- * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed. */
+ * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed.
+ */
 status photo_find_model(const char *asked, char **path);
 
 /* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */

@@ -4,6 +4,7 @@
 
 #include "estimate/crop.h"
 #include "estimate/env_map.h"
+#include "estimate/mask.h"
 #include "estimate/network.h"
 #include "estimate/shadow.h"
 #include "estimate/surface.h"
@@ -41,6 +42,21 @@ static inline crop_square crop_of(const merlin_maps *maps)
 
 /* ERROR_USAGE if the maps are not what merlin_estimate or merlin_maps_read gave. */
 status maps_check(const merlin_maps *maps);
+
+/* Which part of a photograph is the object. */
+typedef struct photo_object {
+    img mask;
+    mask_choice choice;
+    crop_square crop;
+    double seconds; /* that finding it took */
+} photo_object;
+
+/* merlin_estimate in two steps, so that the object can be searched for while the model is still being read. given may
+ * be NULL or empty; estimate_object takes the mask over, whatever it returns. */
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out);
+void photo_object_free(photo_object *object);
+status estimate_object(merlin_model *model, const merlin_image *photo, photo_object *object,
+                       const merlin_params *params, merlin_maps *maps);
 
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {

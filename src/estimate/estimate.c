@@ -1,5 +1,4 @@
 /* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +7,6 @@
 #include "base/progress.h"
 #include "estimate/api.h"
 #include "estimate/exposure.h"
-#include "estimate/mask.h"
 #include "estimate/relight_env.h"
 #include "image/resize.h"
 
@@ -61,29 +59,37 @@ static status check_photo(const img *photo)
     return OK;
 }
 
-static status choose_mask(work *w, const merlin_image *given, merlin_maps *maps)
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out)
 {
-    mask_choice choice;
-    img mask = {0};
+    double began = clock_seconds();
+    img picture = img_of(photo), mask = {0};
+    *out = (photo_object){0};
     if (given) mask = img_of(given);
-    status s = mask_choose(&w->photo, &mask, &w->mask, &choice);
-    if (s == OK) s = crop_around(&w->mask, &w->crop);
-    if (s != OK) return s;
-    maps->mask_source = choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
-    maps->mask_confidence = choice.confidence;
+    status s = check_photo(&picture);
+    if (s == OK) s = mask_choose(&picture, &mask, &out->mask, &out->choice);
+    if (s == OK) s = crop_around(&out->mask, &out->crop);
+    if (s != OK) photo_object_free(out);
+    out->seconds = clock_seconds() - began;
+    return s;
+}
+
+void photo_object_free(photo_object *object)
+{
+    img_free(&object->mask);
+}
+
+/* The object's mask becomes the run's. */
+static void take_object(work *w, photo_object *object, merlin_maps *maps)
+{
+    w->mask = object->mask;
+    w->crop = object->crop;
+    object->mask = (img){0};
+    maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
+    maps->mask_confidence = object->choice.confidence;
     maps->crop.x = w->crop.x;
     maps->crop.y = w->crop.y;
     maps->crop.side = w->crop.side;
-    return OK;
-}
-
-static void multiply_mask(img *image, const img *mask)
-{
-    size_t count = (size_t)image->width * (size_t)image->height;
-    assert(mask->data);
-    for (size_t i = 0; i < count; i++)
-        for (int c = 0; c < image->channels; c++)
-            image->data[(size_t)image->channels * i + (size_t)c] *= mask->data[i];
+    maps->timing.mask = object->seconds;
 }
 
 /* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
@@ -91,16 +97,11 @@ static void multiply_mask(img *image, const img *mask)
 static status make_input(work *w, float *gain)
 {
     int size = w->params->size;
-    img masked = {0};
     status s = crop_take(&w->photo, w->crop, &w->crop_photo);
     if (s == OK) s = crop_take(&w->mask, w->crop, &w->crop_mask);
-    if (s == OK) s = img_copy(&masked, &w->crop_photo);
-    if (s == OK) {
-        multiply_mask(&masked, &w->crop_mask);
-        s = img_resize(&masked, size, size, &w->low_photo);
-    }
+    img_free(&w->mask);
+    if (s == OK) s = img_resize_masked(&w->crop_photo, &w->crop_mask, size, size, &w->low_photo);
     if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
-    img_free(&masked);
     if (s != OK) return s;
     harden_mask(&w->low_photo, &w->low_mask);
     *gain =
@@ -114,23 +115,23 @@ static status make_input(work *w, float *gain)
 /* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
 static status refine(work *w, float gain, bool in_environment)
 {
+    surface_encode_guide(&w->crop_photo);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
-    if (s == OK) s = surface_shade(&w->full, vec3_make(0, 0, 0), &w->reconstruction);
-    img indirect = {0};
-    if (s == OK)
-        s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, &indirect);
+    img_free(&w->crop_photo);
+    img *picture = &w->reconstruction;
+    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, picture);
     if (s != OK) return s;
+    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
+    for (size_t i = 0; i < count; i++)
+        picture->data[i] *= w->crop_mask.data[i / 3];
+    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
     if (in_environment) {
         const float(*sh)[3] = (const float(*)[3])w->low.environment;
-        surface_add_ambient(&w->full, sh, &w->reconstruction);
-        surface_add_ambient_highlights(&w->full, sh, &w->reconstruction);
+        surface_add_ambient(&w->full, sh, picture);
+        surface_add_ambient_highlights(&w->full, sh, picture);
     }
-    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
-    for (size_t i = 0; i < count; i++) {
-        float radiance = w->reconstruction.data[i] + indirect.data[i] * w->crop_mask.data[i / 3];
-        w->reconstruction.data[i] = fminf(fmaxf(radiance / gain, 0), 1);
-    }
-    img_free(&indirect);
+    for (size_t i = 0; i < count; i++)
+        picture->data[i] = fminf(fmaxf(picture->data[i] / gain, 0), 1);
     return OK;
 }
 
@@ -146,6 +147,25 @@ static status place(const work *w, img *from, merlin_image *to)
     return OK;
 }
 
+/* The object alone. */
+static status place_photo(const work *w, merlin_image *to)
+{
+    img whole = {0};
+    crop_square c = w->crop;
+    status s = img_new(&whole, w->photo.width, w->photo.height, 3);
+    for (int y = 0; s == OK && y < c.side; y++)
+        for (int x = 0; x < c.side; x++) {
+            float cover = *img_at(&w->crop_mask, x, y);
+            if (!(cover > 0)) continue; /* what hangs over the frame is not covered */
+            const float *from = img_at(&w->photo, c.x + x, c.y + y);
+            float *out = img_at(&whole, c.x + x, c.y + y);
+            for (int k = 0; k < 3; k++)
+                out[k] = cover * from[k];
+        }
+    *to = image_of(&whole);
+    return s;
+}
+
 static status place_all(work *w, merlin_maps *maps)
 {
     status s = place(w, &w->full.albedo, &maps->albedo);
@@ -154,20 +174,15 @@ static status place_all(work *w, merlin_maps *maps)
     if (s == OK) s = place(w, &w->full.depth, &maps->depth);
     if (s == OK) s = place(w, &w->full.mask, &maps->mask);
     if (s == OK) s = place(w, &w->reconstruction, &maps->reconstruction);
-    if (s != OK) return s;
-    multiply_mask(&w->crop_photo, &w->crop_mask);
-    return place(w, &w->crop_photo, &maps->photo);
+    return s == OK ? place_photo(w, &maps->photo) : s;
 }
 
-static status estimate(merlin_model *model, work *w, const merlin_image *mask, merlin_maps *maps)
+static status estimate(merlin_model *model, work *w, merlin_maps *maps)
 {
     network *n = model->network;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
-    status s = check_photo(&w->photo);
-    if (s == OK) s = choose_mask(w, mask, maps);
-    if (s == OK) s = lap(w, &t->mask);
-    if (s == OK) s = network_prepare(n, w->params->size);
+    status s = network_prepare(n, w->params->size);
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);
@@ -183,16 +198,29 @@ static status estimate(merlin_model *model, work *w, const merlin_image *mask, m
     return s;
 }
 
-merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
-                              const merlin_params *params, merlin_maps *maps)
+status estimate_object(merlin_model *model, const merlin_image *photo, photo_object *object,
+                       const merlin_params *params, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
     work w = {.params = params ? params : &defaults, .photo = img_of(photo)};
     maps->size = w.params->size;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
-    status s = estimate(model, &w, mask, maps);
+    take_object(&w, object, maps);
+    status s = estimate(model, &w, maps);
     work_free(&w);
     if (s != OK) merlin_maps_free(maps);
+    return s;
+}
+
+merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
+                              const merlin_params *params, merlin_maps *maps)
+{
+    photo_object object;
+    *maps = (merlin_maps){0};
+    status s = photo_object_choose(photo, mask, &object);
+    if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK) s = estimate_object(model, photo, &object, params, maps);
+    photo_object_free(&object);
     return result_of(s);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "image/resize.h"
 
 /* The search runs on a small copy: what cannot be reached from the border without crossing an edge starts a two-sided
@@ -72,43 +73,92 @@ static status search_new(const img *photo, search *s)
 
 /* ---- how far from the border ---- */
 
-static float distance2(const float a[3], const float b[3])
-{
-    float r = a[0] - b[0], g = a[1] - b[1], c = a[2] - b[2];
-    return r * r + g * g + c * c;
-}
+enum { SIDES = 4 };
+
+/* The ring's pixels, side after side, the colours of neighbours in a row of numbers. */
+typedef struct border {
+    size_t first[SIDES + 1];
+    size_t *pixel; /* borrowed */
+    float *r, *g, *b;
+    uint8_t *seed; /* borrowed: the search's object */
+} border;
 
 /* Of the picture's four sides, the nearest. */
 static int side_of(const search *s, size_t i)
 {
     int x = (int)(i % (size_t)s->width), y = (int)(i / (size_t)s->width);
-    const int away[4] = {x, s->width - 1 - x, y, s->height - 1 - y};
+    const int away[SIDES] = {x, s->width - 1 - x, y, s->height - 1 - y};
     int best = 0;
-    for (int k = 1; k < 4; k++)
+    for (int k = 1; k < SIDES; k++)
         if (away[k] < away[best]) best = k;
     return best;
 }
 
+static status list_border(search *s, border *out)
+{
+    size_t ring = 0;
+    for (size_t i = 0; i < s->count; i++)
+        ring += s->ring[i];
+    float *colors = malloc(3 * (ring + 1) * sizeof *colors);
+    if (!colors) return fail(ERROR_MEMORY, "no memory to look for the object");
+    *out = (border){.pixel = s->stack, .r = colors, .g = colors + ring, .b = colors + 2 * ring, .seed = s->object};
+    size_t n = 0;
+    for (int side = 0; side < SIDES; side++) {
+        for (size_t i = 0; i < s->count; i++) {
+            if (!s->ring[i] || side_of(s, i) != side) continue;
+            out->pixel[n] = i;
+            out->r[n] = s->color.data[3 * i];
+            out->g[n] = s->color.data[3 * i + 1];
+            out->b[n++] = s->color.data[3 * i + 2];
+        }
+        out->first[side + 1] = n;
+    }
+    return OK;
+}
+
+/* The least squared distance of entry i's colour to one of begin .. end - 1. */
+static float nearest_color(const border *b, size_t i, size_t begin, size_t end)
+{
+    const float *red = b->r, *green = b->g, *blue = b->b;
+    float nearest = FLT_MAX, r = red[i], g = green[i], c = blue[i];
+#pragma omp simd reduction(min : nearest)
+    for (size_t j = begin; j < end; j++) {
+        float dr = red[j] - r, dg = green[j] - g, db = blue[j] - c;
+        float distance = dr * dr + dg * dg + db * db;
+        nearest = distance < nearest ? distance : nearest;
+    }
+    return nearest;
+}
+
+/* Whether border pixels have a like colour on another side. */
+static void find_likes(void *context, size_t begin, size_t end)
+{
+    const border *b = context;
+    int side = 0;
+    for (size_t i = begin; i < end; i++) {
+        while (i >= b->first[side + 1])
+            side++;
+        float before = nearest_color(b, i, 0, b->first[side]);
+        float behind = nearest_color(b, i, b->first[side + 1], b->first[SIDES]);
+        b->seed[b->pixel[i]] = (before < behind ? before : behind) < LIKE_COLOR * LIKE_COLOR;
+    }
+}
+
 /* Which border pixels are background: those with a like colour on another side. An object that the picture cuts off at
  * one side has none. */
-static void choose_seeds(search *s)
+static status choose_seeds(search *s)
 {
-    size_t ring = 0, seeds = 0;
-    for (size_t i = 0; i < s->count; i++) {
-        if (!s->ring[i]) continue;
-        s->stack[ring++] = i;
-    }
-    for (size_t i = 0; i < ring; i++) {
-        float nearest = FLT_MAX;
-        for (size_t j = 0; j < ring; j++) {
-            if (side_of(s, s->stack[j]) == side_of(s, s->stack[i])) continue;
-            nearest = fminf(nearest, distance2(s->color.data + 3 * s->stack[i], s->color.data + 3 * s->stack[j]));
-        }
-        s->object[s->stack[i]] = nearest < LIKE_COLOR * LIKE_COLOR;
-        seeds += s->object[s->stack[i]];
-    }
+    border b;
+    status result = list_border(s, &b);
+    if (result != OK) return result;
+    size_t ring = b.first[SIDES], seeds = 0;
+    parallel_blocks(ring, find_likes, &b);
+    for (size_t i = 0; i < ring; i++)
+        seeds += s->object[b.pixel[i]];
     for (size_t i = 0; i < ring && 3 * seeds < ring; i++)
-        s->object[s->stack[i]] = 1;
+        s->object[b.pixel[i]] = 1;
+    free(b.r);
+    return OK;
 }
 
 /* One channel's barrier: the least (maximum - minimum) of any path from a seed (Strand et al. 2013), found by a few
@@ -188,8 +238,8 @@ static float otsu(const float *value, size_t count)
 
 static status start_from_border(search *s)
 {
-    choose_seeds(s);
-    status result = measure_barriers(s);
+    status result = choose_seeds(s);
+    if (result == OK) result = measure_barriers(s);
     if (result != OK) return result;
     const float *away = s->probability.data;
     float threshold = fmaxf(OTSU_SHARE * otsu(away, s->count), LEAST_BARRIER);
@@ -248,26 +298,28 @@ static void keep_main_regions(search *s)
 
 /* ---- colour model of both sides ---- */
 
-typedef float histogram[BINS][BINS][BINS];
+/* A colour's eight bins and their trilinear weights. */
+typedef struct bins {
+    size_t at[8];
+    float weight[8];
+} bins;
 
-/* Trilinear weights of a colour's eight bins; visit: add to them, or read them. */
-static float visit(histogram *h, const float color[3], float add)
+static bins bins_of(const float color[3])
 {
+    bins found;
     int low[3];
-    float part[3], value = 0;
+    float part[3];
     for (int c = 0; c < 3; c++) {
         float place = color[c] * (BINS - 1);
-        low[c] = (int)fminf(place, BINS - 2);
+        low[c] = place < BINS - 2 ? (int)place : BINS - 2;
         part[c] = place - (float)low[c];
     }
     for (int i = 0; i < 8; i++) {
         int r = i & 1, g = (i >> 1) & 1, b = i >> 2;
-        float weight = (r ? part[0] : 1 - part[0]) * (g ? part[1] : 1 - part[1]) * (b ? part[2] : 1 - part[2]);
-        float *bin = &(*h)[low[0] + r][low[1] + g][low[2] + b];
-        *bin += weight * add;
-        value += weight * *bin;
+        found.at[i] = (size_t)(((low[0] + r) * BINS + low[1] + g) * BINS + low[2] + b);
+        found.weight[i] = (r ? part[0] : 1 - part[0]) * (g ? part[1] : 1 - part[1]) * (b ? part[2] : 1 - part[2]);
     }
-    return value;
+    return found;
 }
 
 static float logistic(float x)
@@ -275,48 +327,76 @@ static float logistic(float x)
     return 1 / (1 + expf(-x));
 }
 
-static void classify(search *s, histogram *object, histogram *background)
+/* Histograms of both sides' colours, and what they hold in all. */
+typedef struct color_model {
+    search *s;
+    float object[BINS * BINS * BINS], background[BINS * BINS * BINS];
+    float objects, backgrounds;
+} color_model;
+
+static void learn_colors(color_model *m)
 {
-    memset(object, 0, sizeof *object);
-    memset(background, 0, sizeof *background);
-    float objects = 1, backgrounds = 1;
+    const search *s = m->s;
+    *m = (color_model){.s = m->s, .objects = 1, .backgrounds = 1};
     for (size_t i = 0; i < s->count; i++) {
-        visit(s->object[i] ? object : background, s->color.data + 3 * i, 1);
-        *(s->object[i] ? &objects : &backgrounds) += 1;
-    }
-    for (size_t i = 0; i < s->count; i++) {
-        const float *color = s->color.data + 3 * i;
-        float o = (visit(object, color, 0) + 0.05f) / objects, b = (visit(background, color, 0) + 0.05f) / backgrounds;
-        s->probability.data[i] = logistic(COLOR_WEIGHT * logf(o / b) + fminf(fmaxf(s->prior[i], -3), 3));
+        bins b = bins_of(s->color.data + 3 * i);
+        float *to = s->object[i] ? m->object : m->background;
+        for (int k = 0; k < 8; k++)
+            to[b.at[k]] += b.weight[k];
+        *(s->object[i] ? &m->objects : &m->backgrounds) += 1;
     }
 }
 
-/* Mean of the probability around (x, y). */
-static float smoothed(const search *s, int x, int y)
+static void classify(void *context, size_t begin, size_t end)
 {
-    float sum = 0, count = 0;
-    for (int v = y - SMOOTHING; v <= y + SMOOTHING; v++) {
-        for (int u = x - SMOOTHING; u <= x + SMOOTHING; u++) {
-            if (u < 0 || v < 0 || u >= s->width || v >= s->height) continue;
-            sum += *img_at(&s->probability, u, v);
-            count += 1;
+    const color_model *m = context;
+    search *s = m->s;
+    for (size_t i = begin; i < end; i++) {
+        bins b = bins_of(s->color.data + 3 * i);
+        float o = 0, c = 0;
+        for (int k = 0; k < 8; k++) {
+            o += b.weight[k] * m->object[b.at[k]];
+            c += b.weight[k] * m->background[b.at[k]];
         }
+        o = (o + 0.05f) / m->objects;
+        c = (c + 0.05f) / m->backgrounds;
+        s->probability.data[i] = logistic(COLOR_WEIGHT * logf(o / c) + fminf(fmaxf(s->prior[i], -3), 3));
     }
-    return sum / count;
+}
+
+/* Whether the mean of the probability around (x, y) is above a half. */
+static bool is_probable(const search *s, int x, int y)
+{
+    int left = x > SMOOTHING ? x - SMOOTHING : 0, top = y > SMOOTHING ? y - SMOOTHING : 0;
+    int right = x + SMOOTHING < s->width ? x + SMOOTHING : s->width - 1;
+    int bottom = y + SMOOTHING < s->height ? y + SMOOTHING : s->height - 1;
+    float sum = 0;
+    for (int v = top; v <= bottom; v++)
+        for (int u = left; u <= right; u++)
+            sum += *img_at(&s->probability, u, v);
+    return sum / (float)((right - left + 1) * (bottom - top + 1)) > 0.5f;
+}
+
+static void choose_rows(void *context, size_t begin, size_t end)
+{
+    const search *s = context;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < s->width; x++)
+            s->object[y * s->width + x] = is_probable(s, x, y);
 }
 
 static status refine_by_color(search *s)
 {
-    histogram *both = malloc(2 * sizeof *both);
-    if (!both) return fail(ERROR_MEMORY, "no memory to look for the object");
+    color_model *m = malloc(sizeof *m);
+    if (!m) return fail(ERROR_MEMORY, "no memory to look for the object");
+    m->s = s;
     for (int round = 0; round < ROUNDS; round++) {
-        classify(s, &both[0], &both[1]);
-        for (int y = 0; y < s->height; y++)
-            for (int x = 0; x < s->width; x++)
-                s->object[y * s->width + x] = smoothed(s, x, y) > 0.5f;
+        learn_colors(m);
+        parallel_blocks(s->count, classify, m);
+        parallel_blocks((size_t)s->height, choose_rows, s);
         keep_main_regions(s);
     }
-    free(both);
+    free(m);
     return OK;
 }
 

@@ -50,37 +50,43 @@ static status write_reconstruction(const job *j, const char *path)
     return write_image(&j->maps->reconstruction, IMG_SRGB8, path);
 }
 
+static void encode_normals(const void *context, size_t first, size_t count, float *values)
+{
+    const merlin_maps *maps = context;
+    for (size_t i = 0; i < 3 * count; i++)
+        values[i] = maps->mask.data[first + i / 3] > 0 ? 0.5f * values[i] + 0.5f : 0;
+}
+
 static status write_normal(const job *j, const char *path)
 {
-    img from = img_of(&j->maps->normal), encoded = {0};
-    status s = img_new(&encoded, from.width, from.height, 3);
-    if (s != OK) return s;
-    size_t count = 3 * (size_t)from.width * (size_t)from.height;
+    img normal = img_of(&j->maps->normal);
+    return img_write_png_changed(path, &normal, IMG_LINEAR16, encode_normals, j->maps);
+}
+
+typedef struct depth_range {
+    float near, far;
+} depth_range;
+
+static void encode_depths(const void *context, size_t first, size_t count, float *values)
+{
+    const depth_range *r = context;
+    (void)first;
     for (size_t i = 0; i < count; i++)
-        encoded.data[i] = j->maps->mask.data[i / 3] > 0 ? 0.5f * from.data[i] + 0.5f : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+        values[i] = values[i] > 0 ? 1 - 0.95f * (values[i] - r->near) / (r->far - r->near + 1e-6f) : 0;
 }
 
 /* Near is bright; the object's depths (report.json: statistics.depth) span 1 down to 0.05. */
 static status write_depth(const job *j, const char *path)
 {
-    img from = img_of(&j->maps->depth), encoded = {0};
-    status s = img_new(&encoded, from.width, from.height, 1);
-    if (s != OK) return s;
-    size_t count = (size_t)from.width * (size_t)from.height;
-    float near = 1e9f, far = 0;
+    img depth = img_of(&j->maps->depth);
+    size_t count = (size_t)depth.width * (size_t)depth.height;
+    depth_range r = {.near = 1e9f};
     for (size_t i = 0; i < count; i++) {
         if (j->maps->mask.data[i] < 0.5f) continue;
-        near = from.data[i] < near ? from.data[i] : near;
-        far = from.data[i] > far ? from.data[i] : far;
+        r.near = depth.data[i] < r.near ? depth.data[i] : r.near;
+        r.far = depth.data[i] > r.far ? depth.data[i] : r.far;
     }
-    for (size_t i = 0; i < count; i++)
-        encoded.data[i] = from.data[i] > 0 ? 1 - 0.95f * (from.data[i] - near) / (far - near + 1e-6f) : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+    return img_write_png_changed(path, &depth, IMG_LINEAR16, encode_depths, &r);
 }
 
 static status write_report(const job *j, const char *path)

@@ -66,6 +66,23 @@ static status surface_at(const surface *from, int side, bool hard, surface *out)
     return s;
 }
 
+/* The crop at another size, a map after the other: those of a large photograph would fill the memory side by side. */
+static status take_surface(const merlin_maps *maps, const img *mask, int side, bool hard, surface *out)
+{
+    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth};
+    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
+    status s = img_resize(mask, side, side, &out->mask);
+    if (s == OK && hard) harden_mask(NULL, &out->mask);
+    for (int i = 0; i < 4 && s == OK; i++) {
+        img whole = img_of(from[i]), part = {0};
+        s = crop_take(&whole, crop_of(maps), &part);
+        if (s == OK) s = surface_resize_image(&part, mask, side, side, to[i]);
+        img_free(&part);
+    }
+    if (s == OK) surface_tidy(out);
+    return s;
+}
+
 /* The photograph as the network saw it. */
 static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
@@ -95,16 +112,16 @@ static status caster_of(const surface *low, shadow_caster *out)
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how, .white = maps->gain};
-    surface whole = {0};
+    img mask = {0};
     status s = maps_check(maps);
-    if (s == OK) s = crop_surface(maps, &whole);
-    if (s == OK) s = surface_at(&whole, maps->size, true, &out->low);
-    if (s == OK && side != 0 && side != maps->crop.side) {
-        s = surface_at(&whole, side, false, &out->full);
-        surface_free(&whole);
-    } else {
-        out->full = whole;
-    }
+    img whole = img_of(&maps->mask);
+    if (s == OK) s = crop_take(&whole, crop_of(maps), &mask);
+    if (s == OK) s = take_surface(maps, &mask, maps->size, true, &out->low);
+    if (s == OK && side != 0 && side != maps->crop.side)
+        s = take_surface(maps, &mask, side, false, &out->full);
+    else if (s == OK)
+        s = crop_surface(maps, &out->full);
+    img_free(&mask);
     if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
     if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
     if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
@@ -122,6 +139,7 @@ static int least(int a, int b)
 /* From twice as many points a side as the caster has, as long as the picture shows them. */
 static status cast_shadows(const stage *s, vec3 light, img *full, img *low)
 {
+    if (vec3_dot(light, light) < 1e-12f) return OK; /* the camera sees nothing that its flash does not */
     int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
     img seen = {0};
     status result = shadow_cast(&s->caster, light, side, side, &seen);

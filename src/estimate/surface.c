@@ -1,5 +1,6 @@
 #include "estimate/surface.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -84,9 +85,28 @@ void harden_mask(img *image, img *mask)
     }
 }
 
+/* The mean of what the mask covers, and where it covers nothing, of the neighbours. */
+static status shrink(const img *from, const img *mask, int width, int height, img *out)
+{
+    img cover = {0};
+    status s = img_resize(mask, width, height, &cover);
+    if (s == OK) s = img_resize_masked(from, mask, width, height, out);
+    size_t count = s == OK ? (size_t)width * (size_t)height : 0, channels = (size_t)from->channels;
+    for (size_t i = 0; i < count; i++) {
+        bool covered = cover.data[i] > 1e-3f;
+        for (size_t c = channels * i; covered && c < channels * (i + 1); c++)
+            out->data[c] /= cover.data[i];
+        cover.data[i] = covered;
+    }
+    if (s == OK) s = fill_outside(out, &cover);
+    img_free(&cover);
+    return s;
+}
+
 status surface_resize_image(const img *from, const img *mask, int width, int height, img *out)
 {
     if (from->width == width && from->height == height) return img_copy(out, from);
+    if (width < from->width && height < from->height) return shrink(from, mask, width, height, out);
     img filled = {0};
     status s = img_copy(&filled, from);
     if (s == OK) s = fill_outside(&filled, mask);
@@ -139,15 +159,16 @@ static status refine(const refinement *r, const img *from, float epsilon, img *o
     return s;
 }
 
-/* The guide's noise should be even from shadow to light: a square root does that for photon noise. */
-static status encode_guide(const img *linear, img *out)
+static void encode_values(void *context, size_t begin, size_t end)
 {
-    status s = img_copy(out, linear);
-    if (s != OK) return s;
-    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
-    for (size_t i = 0; i < count; i++)
-        out->data[i] = sqrtf(clamp(out->data[i], 0, 1));
-    return OK;
+    float *value = context;
+    for (size_t i = begin; i < end; i++)
+        value[i] = sqrtf(clamp(value[i], 0, 1));
+}
+
+void surface_encode_guide(img *photo)
+{
+    parallel_blocks((size_t)photo->width * (size_t)photo->height * (size_t)photo->channels, encode_values, photo->data);
 }
 
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out)
@@ -155,15 +176,12 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
     const float albedo_epsilon = 1e-4f, roughness_epsilon = 1e-2f;
     if (guide->width < from->mask.width) return surface_resize(from, mask, out);
     *out = (surface){0};
-    img encoded = {0};
-    refinement r = {&from->mask, &encoded, mask};
-    status s = encode_guide(guide, &encoded);
-    if (s == OK) s = img_copy(&out->mask, mask);
+    refinement r = {&from->mask, guide, mask};
+    status s = img_copy(&out->mask, mask);
     if (s == OK) s = refine(&r, &from->albedo, albedo_epsilon, &out->albedo);
     if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask->width, mask->height, &out->normal);
     if (s == OK) s = refine(&r, &from->roughness, roughness_epsilon, &out->roughness);
     if (s == OK) s = surface_resize_image(&from->depth, &from->mask, mask->width, mask->height, &out->depth);
-    img_free(&encoded);
     if (s != OK)
         surface_free(out);
     else
@@ -199,17 +217,21 @@ static void shade_rows(void *context, size_t begin, size_t end)
         };
         vec3 radiance = vec3_scale(shade_point(&in), coverage);
         float *out = job->out->data + 3 * i;
-        out[0] = radiance.x;
-        out[1] = radiance.y;
-        out[2] = radiance.z;
+        out[0] += radiance.x;
+        out[1] += radiance.y;
+        out[2] += radiance.z;
     }
+}
+
+void surface_add_light(const surface *s, vec3 light, img *out)
+{
+    shading job = {s, {s->mask.width, s->mask.height, SURFACE_FOV}, light, out};
+    parallel_blocks((size_t)s->mask.height, shade_rows, &job);
 }
 
 status surface_shade(const surface *s, vec3 light, img *out)
 {
     status result = img_new(out, s->mask.width, s->mask.height, 3);
-    if (result != OK) return result;
-    shading job = {s, {s->mask.width, s->mask.height, SURFACE_FOV}, light, out};
-    parallel_blocks((size_t)s->mask.height, shade_rows, &job);
-    return OK;
+    if (result == OK) surface_add_light(s, light, out);
+    return result;
 }

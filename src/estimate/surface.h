@@ -1,7 +1,8 @@
 /* A visible surface in a square frame: the maps of one crop, and what is done with them.
  *
  *     surface low;                         what the network said, at its size
- *     surface_refine(&low, &guide, &mask, &full);  the same at the photograph's resolution
+ *     surface_encode_guide(&guide);        the photograph
+ *     surface_refine(&low, &guide, &mask, &full);  the same at its resolution
  *     surface_shade(&full, light, &direct);        under a point light
  *     surface_free(&low);
  *
@@ -39,19 +40,25 @@ void harden_mask(img *image, img *mask);
 /* To another square size, averaging or interpolating the object's own pixels only. mask: the new size's. */
 status surface_resize(const surface *from, const img *mask, surface *out);
 
-/* The same with albedo and roughness edges that follow a guide (3 channels, linear, mask's size); shape does not, or
+/* Makes a photograph (linear, any size) a guide: its noise should be even from shadow to light, and a square root does
+ * that for photon noise. */
+void surface_encode_guide(img *photo);
+
+/* The same with albedo and roughness edges that follow a guide (3 channels, encoded, mask's size); shape does not, or
  * print on a flat side would become relief. For a guide smaller than the surface this is surface_resize. */
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out);
 
 /* Radiance under a point light of the training data's power at `light`, before clipping, times coverage; no shadows. */
 status surface_shade(const surface *s, vec3 light, img *out);
+/* The same, added to what out holds already. */
+void surface_add_light(const surface *s, vec3 light, img *out);
 
 /* Light of bounces 2 and up from the network's size to another: smooth by nature, so that the pattern of the network's
  * last layer, two pixels wide, is averaged away. */
 status surface_resize_indirect(const img *from, const img *mask, int width, int height, img *out);
 
-/* Any image that belongs to a surface, resized without letting its outside in: values where mask < 0.5 are replaced by
- * their neighbours' first. */
+/* Any image that belongs to a surface, resized without letting its outside in: shrunk, it is weighted by the mask;
+ * enlarged, values where mask < 0.5 are replaced by their neighbours' first. */
 status surface_resize_image(const img *from, const img *mask, int width, int height, img *out);
 
 #endif

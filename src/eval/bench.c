@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/rng.h"
-#include "eval/bench_estimate.h"
 #include "eval/bench_time.h"
 #include "model/model.h"
 #include "render/generate.h"
@@ -157,7 +156,7 @@ static status measure_rendering(const bench_options *o, bench_report *out)
 
 static status measure_estimate(const bench_options *o, bench_report *out)
 {
-    return bench_estimate(o->program, o->weights, o->quick ? 2 : 7, &out->estimate_seconds, &out->estimate_bytes);
+    return bench_estimate(o->program, o->weights, o->quick ? 2 : 7, &out->estimate);
 }
 
 static status read_name(const bench_options *o, bench_report *out)

@@ -14,6 +14,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "eval/bench_estimate.h"
 #include "nn/nn.h"
 
 enum { BENCH_TYPES = 2, BENCH_INFERENCE_SIZE = 256, BENCH_TRAINING_SIZE = 128 };
@@ -38,8 +39,7 @@ typedef struct bench_report {
     nn_peak peak[BENCH_TYPES];            /* by nn_type */
     bench_network inference[BENCH_TYPES]; /* one picture of 256×256 */
     bench_network training[BENCH_TYPES];  /* forward, backward and Adam, `batch` pictures of 128×128 */
-    double estimate_seconds;              /* process start to files written, a picture of 256×256 */
-    size_t estimate_bytes;                /* the most that process held */
+    bench_estimation estimate;            /* a picture of 256×256 */
     size_t samples;                       /* rendered, 128×128 */
     double render_seconds;
     uint64_t rays;

@@ -1,9 +1,11 @@
 #include "eval/bench_estimate.h"
 
+#include <cjson/cJSON.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <math.h>
 #include <spawn.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,13 +102,43 @@ static status explain(const char *errors, int code)
     return s;
 }
 
-/* Runs the program, its standard output thrown away and its errors kept in a file. */
-static status run_once(char *const *arguments, const char *errors, double *seconds, size_t *bytes)
+static const char *const part_names[BENCH_PARTS] = {"start",   "model",   "compile",  "read",  "mask",
+                                                    "prepare", "network", "upsample", "write", "end"};
+
+/* From the program's report, which is one line; what its parts leave of the whole is its end. */
+static status read_parts(const char *report, bench_estimation *run)
+{
+    char *text = NULL;
+    size_t size;
+    status s = file_read(report, 1 << 16, &text, &size);
+    if (s != OK) return s;
+    cJSON *json = cJSON_Parse(text), *seconds = cJSON_GetObjectItem(json, "seconds");
+    double rest = run->seconds;
+    for (int i = 0; i < BENCH_PARTS; i++) {
+        const cJSON *part = cJSON_GetObjectItem(seconds, part_names[i]);
+        bool last = i == BENCH_PARTS - 1;
+        if (!last && !cJSON_IsNumber(part))
+            s = fail(ERROR_INPUT, "merlin estimate did not report its \"%s\"", part_names[i]);
+        run->part[i] = (bench_part){part_names[i], last ? rest : cJSON_GetNumberValue(part)};
+        rest -= run->part[i].seconds;
+    }
+    cJSON_Delete(json);
+    free(text);
+    return s;
+}
+
+/* The files of one measurement, all in the temporary folder. */
+typedef struct bench_files {
+    char *picture, *output, *report, *errors;
+} bench_files;
+
+/* Runs the program, its report and its errors kept in files. */
+static status run_once(char *const *arguments, const bench_files *files, bench_estimation *run)
 {
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions)) return fail(ERROR_MEMORY, "no memory to start %s", arguments[0]);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, files->report, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, files->errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t child;
     double started = clock_seconds();
     int refused = posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ);
@@ -115,65 +147,62 @@ static status run_once(char *const *arguments, const char *errors, double *secon
     int code;
     struct rusage usage;
     if (wait4(child, &code, 0, &usage) != child) return fail(ERROR_INPUT, "lost sight of %s", arguments[0]);
-    *seconds = clock_seconds() - started;
-    *bytes = (size_t)usage.ru_maxrss * 1024;
-    return WIFEXITED(code) && WEXITSTATUS(code) == 0 ? OK : explain(errors, code);
+    run->seconds = clock_seconds() - started;
+    run->bytes = (size_t)usage.ru_maxrss * 1024;
+    return WIFEXITED(code) && WEXITSTATUS(code) == 0 ? read_parts(files->report, run) : explain(files->errors, code);
 }
 
-static int compare_seconds(const void *a, const void *b)
+static int compare_runs(const void *a, const void *b)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const bench_estimation *x = a, *y = b;
+    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-/* The files of one measurement, all in the temporary folder. */
-typedef struct bench_files {
-    char *picture, *output, *errors;
-} bench_files;
-
-static status run_often(const bench_files *files, const char *program, const char *weights, int runs, double *seconds,
-                        size_t *bytes)
+static status run_often(const bench_files *files, const char *program, const char *weights, int runs,
+                        bench_estimation *out)
 {
-    double times[MAX_RUNS];
-    char *const arguments[] = {(char *)program, "estimate", "--model", (char *)weights, files->picture, "-o",
-                               files->output,   "--quiet",  NULL};
+    bench_estimation all[MAX_RUNS];
+    char *const arguments[] = {(char *)program, "estimate", "--model",     (char *)weights,
+                               files->picture,  "-o",       files->output, "--quiet",
+                               "--json",        NULL};
     status s = write_picture(files->picture);
-    *bytes = 0;
+    size_t most = 0;
     if (runs > MAX_RUNS) runs = MAX_RUNS;
     for (int i = 0; s == OK && i < runs; i++) {
-        size_t held = 0;
-        s = run_once(arguments, files->errors, &times[i], &held);
-        if (held > *bytes) *bytes = held;
+        s = run_once(arguments, files, &all[i]);
+        if (s == OK && all[i].bytes > most) most = all[i].bytes;
     }
     if (s != OK) return s;
-    qsort(times, (size_t)runs, sizeof times[0], compare_seconds);
-    *seconds = times[runs / 2];
+    qsort(all, (size_t)runs, sizeof all[0], compare_runs);
+    *out = all[runs / 2];
+    out->bytes = most;
     return OK;
 }
 
-static status run_in(const char *folder, const char *program, const char *weights, int runs, double *seconds,
-                     size_t *bytes)
+static status run_in(const char *folder, const char *program, const char *weights, int runs, bench_estimation *out)
 {
-    bench_files files = {file_join(folder, "ball.png"), file_join(folder, "ball"), file_join(folder, "errors.txt")};
+    bench_files files = {file_join(folder, "ball.png"), file_join(folder, "ball"), file_join(folder, "report.json"),
+                         file_join(folder, "errors.txt")};
     status s;
-    if (files.picture && files.output && files.errors)
-        s = run_often(&files, program, weights, runs, seconds, bytes);
+    if (files.picture && files.output && files.report && files.errors)
+        s = run_often(&files, program, weights, runs, out);
     else
         s = fail(ERROR_MEMORY, "no memory for a path");
     free(files.picture);
     free(files.output);
+    free(files.report);
     free(files.errors);
     return s;
 }
 
-status bench_estimate(const char *program, const char *weights, int runs, double *seconds, size_t *bytes)
+status bench_estimate(const char *program, const char *weights, int runs, bench_estimation *out)
 {
     const char *where = getenv("TMPDIR");
     char *folder = file_join(where && *where ? where : "/tmp", "merlin-bench-XXXXXX");
     if (!folder) return fail(ERROR_MEMORY, "no memory for a path");
     status s = OK;
     if (mkdtemp(folder)) {
-        s = run_in(folder, program, weights, runs, seconds, bytes);
+        s = run_in(folder, program, weights, runs, out);
         nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
     } else {
         s = fail(ERROR_OUTPUT, "cannot make the folder %s", folder);

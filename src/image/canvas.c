@@ -101,9 +101,26 @@ status canvas_draw_end(canvas *c, canvas_drawing *d)
     return s;
 }
 
+static void copy_row(const void *context, int y, void *codes)
+{
+    const canvas *c = context;
+    size_t row = 3 * (size_t)c->width;
+    memcpy(codes, c->rgb + (size_t)y * row, row);
+}
+
 status canvas_write(const canvas *c, const char *path)
 {
-    pixel_codes p = {c->rgb, c->width, c->height, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
-    status s = vips_begin();
-    return s == OK ? codes_write_png(path, &p) : s;
+    return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, copy_row, c});
+}
+
+void canvas_find_font(void)
+{
+    canvas c;
+    canvas_drawing d = {0};
+    if (canvas_new(&c, 16, 16) != OK) return;
+    if (canvas_draw_begin(&c, &d) == OK) {
+        fputs("<text x=\"0\" y=\"12\" font-size=\"12\">x</text>\n", d.out);
+        (void)canvas_draw_end(&c, &d); /* whoever draws next will hear of it */
+    }
+    canvas_free(&c);
 }

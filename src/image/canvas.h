@@ -39,4 +39,8 @@ void canvas_print_escaped(canvas_drawing *d, const char *words);
 
 status canvas_write(const canvas *c, const char *path);
 
+/* Looks for the font now, which the first drawing would do: a few hundredths of a second, for a thread that has time.
+ */
+void canvas_find_font(void);
+
 #endif

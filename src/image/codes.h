@@ -1,19 +1,20 @@
-/* PNG from codes in memory, for whoever has encoded them already. */
+/* PNG from codes that are made row by row. */
 #ifndef MERLIN_IMAGE_CODES_H
 #define MERLIN_IMAGE_CODES_H
 
-#include <vips/vips.h>
+#include <stdbool.h>
 
 #include "base/status.h"
 
-/* 8 or 16 bits a code, beside what libvips must know of them. */
-typedef struct pixel_codes {
-    void *codes;
+/* A picture whose rows are asked for one by one, in any order and by several threads: what 8 or 16 bits (wide) a code
+ * of row y are. */
+typedef struct code_rows {
     int width, height, channels;
-    VipsBandFormat format;
-    VipsInterpretation interpretation;
-} pixel_codes;
+    bool wide;
+    void (*row)(const void *context, int y, void *codes);
+    const void *context;
+} code_rows;
 
-status codes_write_png(const char *path, const pixel_codes *p);
+status codes_write_png(const char *path, const code_rows *p);
 
 #endif

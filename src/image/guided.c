@@ -23,24 +23,16 @@ static float guide_value(const img *guide, size_t pixel, int c)
 /* The guide at the map's size, each pixel the mean of what the mask lets in. */
 static status shrink_guide(const img *guide, const img *mask, int width, int height, img *out)
 {
-    img masked = {0}, cover = {0};
+    img cover = {0};
     if (!mask) return img_resize(guide, width, height, out);
     *out = (img){0};
-    status s = img_copy(&masked, guide);
-    if (s == OK) s = img_resize(mask, width, height, &cover);
-    if (s != OK) goto done;
-    size_t pixels = (size_t)guide->width * (size_t)guide->height, n = (size_t)guide->channels;
-    for (size_t i = 0; i < pixels * n; i++)
-        masked.data[i] *= mask->data[i / n];
-    s = img_resize(&masked, width, height, out);
-    if (s != OK) goto done;
-    size_t small = (size_t)width * (size_t)height;
-    for (size_t i = 0; i < small * n; i++) {
-        float c = cover.data[i / n];
+    status s = img_resize(mask, width, height, &cover);
+    if (s == OK) s = img_resize_masked(guide, mask, width, height, out);
+    size_t count = s == OK ? (size_t)width * (size_t)height * (size_t)guide->channels : 0;
+    for (size_t i = 0; i < count; i++) {
+        float c = cover.data[i / (size_t)guide->channels];
         out->data[i] = c > 1e-6f ? out->data[i] / c : 0;
     }
-done:
-    img_free(&masked);
     img_free(&cover);
     return s;
 }

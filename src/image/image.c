@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
 status img_new(img *out, int width, int height, int channels)
 {
     *out = (img){0};
@@ -16,7 +14,6 @@ status img_new(img *out, int width, int height, int channels)
         __builtin_mul_overflow(count, sizeof(float), &bytes) || bytes > PTRDIFF_MAX)
         return fail(ERROR_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
     out->data = calloc(count, sizeof(float));
-    memory_prefer_large_pages(out->data, bytes);
     if (!out->data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
     out->width = width;
     out->height = height;

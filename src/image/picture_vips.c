@@ -30,6 +30,7 @@ static bool is_photograph(const char *loader)
 static status open_picture(const char *path, VipsImage **out)
 {
     const char *loader = vips_foreign_find_load(path);
+    if (!loader && vips_load_heif()) loader = vips_foreign_find_load(path);
     if (!loader || !is_photograph(loader)) {
         vips_error_clear();
         return fail(ERROR_INPUT,

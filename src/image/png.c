@@ -31,52 +31,68 @@ static uint8_t *put_chunk(uint8_t *to, const char *name, const uint8_t *content,
     return put_number(to, libdeflate_crc32(0, checked, 4 + size));
 }
 
-static uint8_t *put_head(uint8_t *to, const pixel_codes *p, bool wide)
+static uint8_t *put_head(uint8_t *to, const code_rows *p)
 {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     uint8_t header[13] = {0}, *h = put_number(put_number(header, (uint32_t)p->width), (uint32_t)p->height);
-    h[0] = wide ? 16 : 8;
+    h[0] = p->wide ? 16 : 8;
     h[1] = p->channels == 3 ? 2 : 0; /* RGB or grey */
     memcpy(to, signature, sizeof signature);
     return put_chunk(to + sizeof signature, "IHDR", header, sizeof header);
 }
 
 /* A row as big-endian bytes, each less the one of the pixel before. */
-static void filter_row(const pixel_codes *p, bool wide, size_t row, uint8_t *to)
+static void filter_row(const code_rows *p, const void *row, uint8_t *to)
 {
     size_t codes = (size_t)p->width * (size_t)p->channels, pixel = (size_t)p->channels;
     *to++ = SUB;
-    if (wide) {
-        const uint16_t *from = (const uint16_t *)p->codes + row * codes;
+    if (p->wide) {
+        const uint16_t *from = row;
         for (size_t i = 0; i < codes; i++) {
             unsigned before = i < pixel ? 0 : from[i - pixel];
             to[2 * i] = (uint8_t)((from[i] >> 8) - (before >> 8));
             to[2 * i + 1] = (uint8_t)(from[i] - before);
         }
     } else {
-        const uint8_t *from = (const uint8_t *)p->codes + row * codes;
+        const uint8_t *from = row;
         memcpy(to, from, pixel);
         for (size_t i = pixel; i < codes; i++)
             to[i] = (uint8_t)(from[i] - from[i - pixel]);
     }
 }
 
-/* All rows filtered, malloc'ed. */
-static uint8_t *filter(const pixel_codes *p, bool wide, size_t *size)
+/* All rows filtered, malloc'ed; NULL if memory ran out. */
+static uint8_t *filter(const code_rows *p, size_t *size)
 {
-    size_t line = 1 + (size_t)p->width * (size_t)p->channels * (wide ? 2 : 1);
+    size_t codes = (size_t)p->width * (size_t)p->channels * (p->wide ? 2 : 1), line = 1 + codes;
     *size = line * (size_t)p->height;
     uint8_t *rows = malloc(*size);
-    for (size_t y = 0; rows && y < (size_t)p->height; y++)
-        filter_row(p, wide, y, rows + y * line);
-    return rows;
+    int failed = !rows;
+#pragma omp parallel if (*size > 1 << 20)
+    {
+        void *row = malloc(codes);
+        if (!row) {
+#pragma omp atomic write
+            failed = 1;
+        }
+#pragma omp for schedule(static)
+        for (int y = 0; y < p->height; y++) {
+            if (!row || !rows) continue;
+            p->row(p->context, y, row);
+            filter_row(p, row, rows + (size_t)y * line);
+        }
+        free(row);
+    }
+    if (!failed) return rows;
+    free(rows);
+    return NULL;
 }
 
 /* Head, the rows compressed, end. */
-static status encode(const char *path, const pixel_codes *p, bool wide, uint8_t **data, size_t *size)
+static status encode(const char *path, const code_rows *p, uint8_t **data, size_t *size)
 {
     size_t filtered;
-    uint8_t *rows = filter(p, wide, &filtered);
+    uint8_t *rows = filter(p, &filtered);
     struct libdeflate_compressor *packer = libdeflate_alloc_compressor(LEVEL);
     size_t room = packer ? libdeflate_zlib_compress_bound(packer, filtered) : 0, packed = 0;
     status s = OK;
@@ -86,7 +102,7 @@ static status encode(const char *path, const pixel_codes *p, bool wide, uint8_t 
     else if (!rows || !packer || !(*data = malloc(HEAD + room + 2 * CHUNK)))
         s = fail(ERROR_MEMORY, "no memory to write %s", path);
     if (s == OK) {
-        uint8_t *to = put_head(*data, p, wide);
+        uint8_t *to = put_head(*data, p);
         packed = libdeflate_zlib_compress(packer, rows, filtered, to + CHUNK_CONTENT, room);
         to = put_chunk(to, "IDAT", NULL, packed);
         *size = (size_t)(put_chunk(to, "IEND", NULL, 0) - *data);
@@ -96,11 +112,11 @@ static status encode(const char *path, const pixel_codes *p, bool wide, uint8_t 
     return s;
 }
 
-status codes_write_png(const char *path, const pixel_codes *p)
+status codes_write_png(const char *path, const code_rows *p)
 {
     uint8_t *data;
     size_t size = 0;
-    status s = encode(path, p, p->format == VIPS_FORMAT_USHORT, &data, &size);
+    status s = encode(path, p, &data, &size);
     if (s == OK) s = file_write(path, data, size);
     free(data);
     return s;

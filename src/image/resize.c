@@ -1,12 +1,13 @@
 #include "image/resize.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* One axis of a separable resampling: output i is the sum of weights[i × taps + k] × input[first[i] + k]. */
 typedef struct kernel {
-    int taps;
+    int count, taps;
     int *first;
     float *weights;
 } kernel;
@@ -50,6 +51,7 @@ static void fill_weights(kernel *k, int from, int to)
 static status kernel_new(kernel *k, int from, int to)
 {
     int wanted = to > from ? 6 : (int)ceil((double)from / to) + 1;
+    k->count = to;
     k->taps = wanted < from ? wanted : from;
     k->first = malloc((size_t)to * sizeof *k->first);
     k->weights = calloc((size_t)to * (size_t)k->taps, sizeof *k->weights);
@@ -64,19 +66,47 @@ static void kernel_free(kernel *k)
     free(k->weights);
 }
 
-static void resize_rows(const img *from, const kernel *k, img *to)
+static void resize_row(const float *row, int channels, const kernel *k, float *out)
 {
-    int channels = from->channels;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < to->height; y++) {
-        float *out = img_at(to, 0, y);
-        for (int x = 0; x < to->width; x++, out += channels) {
-            const float *in = img_at(from, k->first[x], y), *w = k->weights + (size_t)x * (size_t)k->taps;
-            for (int t = 0; t < k->taps; t++)
-                for (int c = 0; c < channels; c++)
-                    out[c] += w[t] * in[t * channels + c];
-        }
+    for (int x = 0; x < k->count; x++, out += channels) {
+        const float *in = row + (size_t)k->first[x] * (size_t)channels, *w = k->weights + (size_t)x * (size_t)k->taps;
+        for (int t = 0; t < k->taps; t++)
+            for (int c = 0; c < channels; c++)
+                out[c] += w[t] * in[t * channels + c];
     }
+}
+
+static const float *multiply_row(const img *from, const img *mask, int y, float *product)
+{
+    const float *in = img_at(from, 0, y), *cover = img_at(mask, 0, y);
+    float *out = product;
+    for (int x = 0; x < from->width; x++)
+        for (int c = 0; c < from->channels; c++)
+            *out++ = *in++ * cover[x];
+    return product;
+}
+
+/* mask may be NULL. */
+static status resize_rows(const img *from, const img *mask, const kernel *k, img *to)
+{
+    int failed = 0;
+#pragma omp parallel
+    {
+        float *product = mask ? malloc((size_t)from->width * (size_t)from->channels * sizeof *product) : NULL;
+        bool ready = product || !mask;
+        if (!ready) {
+#pragma omp atomic write
+            failed = 1;
+        }
+#pragma omp for schedule(static)
+        for (int y = 0; y < to->height; y++) {
+            if (!ready) continue;
+            const float *row = mask ? multiply_row(from, mask, y, product) : img_at(from, 0, y);
+            resize_row(row, from->channels, k, img_at(to, 0, y));
+        }
+        free(product);
+    }
+    return failed ? fail(ERROR_MEMORY, "no memory to resize an image") : OK;
 }
 
 static void resize_columns(const img *from, const kernel *k, img *to)
@@ -94,10 +124,9 @@ static void resize_columns(const img *from, const kernel *k, img *to)
     }
 }
 
-status img_resize(const img *from, int width, int height, img *out)
+static status resize(const img *from, const img *mask, int width, int height, img *out)
 {
     *out = (img){0};
-    if (from->data && width == from->width && height == from->height) return img_copy(out, from);
     if (!from->data || width < 1 || height < 1)
         return fail(ERROR_USAGE, "an image of %d x %d pixels cannot become %d x %d", from->width, from->height, width,
                     height);
@@ -108,12 +137,31 @@ status img_resize(const img *from, int width, int height, img *out)
     if (s == OK) s = img_new(&wide, width, from->height, from->channels);
     if (s == OK) s = img_new(out, width, height, from->channels);
     if (s == OK) {
-        resize_rows(from, &across, &wide);
-        resize_columns(&wide, &down, out);
+        s = resize_rows(from, mask, &across, &wide);
+        if (s == OK) resize_columns(&wide, &down, out);
     }
+    if (s != OK) img_free(out);
     kernel_free(&across);
     kernel_free(&down);
     img_free(&wide);
+    return s;
+}
+
+status img_resize(const img *from, int width, int height, img *out)
+{
+    if (from->data && width == from->width && height == from->height) return img_copy(out, from);
+    return resize(from, NULL, width, height, out);
+}
+
+status img_resize_masked(const img *from, const img *mask, int width, int height, img *out)
+{
+    if (!mask->data || mask->channels != 1 || mask->width != from->width || mask->height != from->height)
+        return fail(ERROR_USAGE, "an image of %d x %d pixels cannot be masked by one of %d x %d", from->width,
+                    from->height, mask->width, mask->height);
+    if (width != from->width || height != from->height) return resize(from, mask, width, height, out);
+    status s = img_new(out, width, height, from->channels);
+    for (int y = 0; s == OK && y < height; y++)
+        multiply_row(from, mask, y, img_at(out, 0, y));
     return s;
 }
 

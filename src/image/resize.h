@@ -6,6 +6,8 @@
 
 /* Lanczos when enlarging, area-correct when shrinking. */
 status img_resize(const img *from, int width, int height, img *out);
+/* The same of image times mask (1 channel, the image's size), without that product as a whole. */
+status img_resize_masked(const img *from, const img *mask, int width, int height, img *out);
 /* The rectangle at (x, y), which may hang over the edges: what lies outside is zero. */
 status img_crop(const img *from, int x, int y, int width, int height, img *out);
 /* Sums over windows of (2 radius + 1)² pixels, in time that does not depend on the radius; outside the image is zero.

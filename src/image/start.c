@@ -1,6 +1,9 @@
 #include "image/start.h"
 
+#include <gmodule.h>
 #include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <vips/vips.h>
 
@@ -27,6 +30,21 @@ status vips_begin(void)
 {
     pthread_once(&once, start);
     return started ? OK : fail(ERROR_DEVICE, "the image library libvips did not start: is it installed whole?");
+}
+
+void vips_without_modules(void)
+{
+    (void)setenv("VIPSHOME", "/nonexistent", 0); /* where it looks for them; whoever set it wants others */
+}
+
+bool vips_load_heif(void)
+{
+    char path[1024];
+    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif." G_MODULE_SUFFIX, vips_version(0),
+             vips_version(1));
+    GModule *module = g_module_open(path, G_MODULE_BIND_LAZY);
+    if (module) g_module_make_resident(module); /* its types stay registered */
+    return module != NULL;
 }
 
 status vips_refusal(status s, const char *verb, const char *path)

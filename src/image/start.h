@@ -3,11 +3,19 @@
 #ifndef MERLIN_IMAGE_START_H
 #define MERLIN_IMAGE_START_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
 status vips_begin(void);
 
 /* "cannot VERB PATH: the library's first words" with status s; forgets the library's words. */
 status vips_refusal(status s, const char *verb, const char *path);
+
+/* For a program's main, before it has threads: libvips shall start without its modules, which take longer than all else
+ * that it does for a small picture. None but HEIF's is needed here, and vips_load_heif brings that. */
+void vips_without_modules(void);
+/* After vips_begin; from any thread. False if the module is not installed. */
+bool vips_load_heif(void);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <vips/vips.h>
 
 #include "base/file.h"
 #include "image/codes.h"
@@ -18,14 +19,12 @@ static float unit(float x)
     return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
-static void encode(const img *image, img_encoding encoding, void *codes)
+static void encode(const float *values, size_t count, img_encoding encoding, void *codes)
 {
-    ptrdiff_t count = (ptrdiff_t)image->width * image->height * image->channels;
     uint8_t *out8 = codes;
     uint16_t *out16 = codes;
-#pragma omp parallel for schedule(static) if (count > 1 << 18)
-    for (ptrdiff_t i = 0; i < count; i++) {
-        float x = image->data[i];
+    for (size_t i = 0; i < count; i++) {
+        float x = values[i];
         if (encoding == IMG_SRGB8)
             out8[i] = srgb_code8(x);
         else if (encoding == IMG_LINEAR8)
@@ -35,43 +34,68 @@ static void encode(const img *image, img_encoding encoding, void *codes)
     }
 }
 
-static VipsInterpretation interpretation(int channels, img_encoding encoding)
+/* ---- PNG ---- */
+
+/* An image on its way to codes. */
+typedef struct encoding_job {
+    const img *image;
+    img_encoding encoding;
+    img_change change; /* NULL: none */
+    const void *context;
+} encoding_job;
+
+static void encode_row(const void *context, int y, void *codes)
 {
-    if (encoding == IMG_LINEAR16) return channels == 3 ? VIPS_INTERPRETATION_RGB16 : VIPS_INTERPRETATION_GREY16;
-    return channels == 3 ? VIPS_INTERPRETATION_sRGB : VIPS_INTERPRETATION_B_W;
+    enum { PART = 256 };
+    const encoding_job *job = context;
+    size_t channels = (size_t)job->image->channels, width = (size_t)job->image->width;
+    size_t bytes = channels * (job->encoding == IMG_LINEAR16 ? 2 : 1);
+    for (size_t x = 0; x < width; x += PART) {
+        size_t pixels = width - x < PART ? width - x : PART;
+        const float *values = img_at(job->image, (int)x, y);
+        float changed[3 * PART];
+        if (job->change) {
+            memcpy(changed, values, pixels * channels * sizeof *changed);
+            job->change(job->context, (size_t)y * width + x, pixels, changed);
+            values = changed;
+        }
+        encode(values, pixels * channels, job->encoding, (uint8_t *)codes + x * bytes);
+    }
 }
 
-/* A libvips image over the codes, which must outlive it; NULL if that fails. */
-static VipsImage *wrap(const pixel_codes *p)
+status img_write_png_changed(const char *path, const img *image, img_encoding encoding, img_change change,
+                             const void *context)
 {
-    size_t size =
-        (size_t)p->width * (size_t)p->height * (size_t)p->channels * (p->format == VIPS_FORMAT_USHORT ? 2 : 1);
-    VipsImage *bare = vips_image_new_from_memory(p->codes, size, p->width, p->height, p->channels, p->format);
-    if (!bare) return NULL;
-    VipsImage *named = NULL;
-    int failed = vips_copy(bare, &named, "interpretation", p->interpretation, NULL);
-    g_object_unref(bare);
-    return failed ? NULL : named;
+    if (!image->data || (image->channels != 1 && image->channels != 3))
+        return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
+    encoding_job job = {image, encoding, change, context};
+    code_rows rows = {image->width, image->height, image->channels, encoding == IMG_LINEAR16, encode_row, &job};
+    return codes_write_png(path, &rows);
 }
 
 status img_write_png(const char *path, const img *image, img_encoding encoding)
 {
-    if (!image->data || (image->channels != 1 && image->channels != 3))
-        return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
-    status s = vips_begin();
-    if (s != OK) return s;
-    pixel_codes p = {.width = image->width,
-                     .height = image->height,
-                     .channels = image->channels,
-                     .format = encoding == IMG_LINEAR16 ? VIPS_FORMAT_USHORT : VIPS_FORMAT_UCHAR,
-                     .interpretation = interpretation(image->channels, encoding)};
-    size_t count = (size_t)p.width * (size_t)p.height * (size_t)p.channels;
-    p.codes = malloc(count * (encoding == IMG_LINEAR16 ? 2 : 1));
-    if (!p.codes) return fail(ERROR_MEMORY, "no memory to write %s", path);
-    encode(image, encoding, p.codes);
-    s = codes_write_png(path, &p);
-    free(p.codes);
-    return s;
+    return img_write_png_changed(path, image, encoding, NULL, NULL);
+}
+
+/* ---- animations ---- */
+
+/* Frames' codes one under the other. */
+typedef struct film {
+    uint8_t *codes;
+    int width, height, count;
+} film;
+
+/* A libvips image over the codes, which must outlive it; NULL if that fails. */
+static VipsImage *wrap(const film *f)
+{
+    size_t size = 3 * (size_t)f->width * (size_t)f->height * (size_t)f->count;
+    VipsImage *bare = vips_image_new_from_memory(f->codes, size, f->width, f->height * f->count, 3, VIPS_FORMAT_UCHAR);
+    if (!bare) return NULL;
+    VipsImage *named = NULL;
+    int failed = vips_copy(bare, &named, "interpretation", VIPS_INTERPRETATION_sRGB, NULL);
+    g_object_unref(bare);
+    return failed ? NULL : named;
 }
 
 static bool ends_in(const char *path, const char *ending)
@@ -96,20 +120,20 @@ static status check_frames(const char *path, const img *frames, int count)
     return OK;
 }
 
-/* Frames one under the other, with the page height and the delays that libvips's writers look for. */
-static int save_frames(const char *path, const pixel_codes *p, int count, int milliseconds, void **data, size_t *size)
+/* With the page height and the delays that libvips's writers look for. */
+static int save_frames(const char *path, const film *f, int milliseconds, void **data, size_t *size)
 {
-    int *delays = calloc((size_t)count, sizeof *delays);
-    VipsImage *image = delays ? wrap(p) : NULL;
+    int *delays = calloc((size_t)f->count, sizeof *delays);
+    VipsImage *image = delays ? wrap(f) : NULL;
     if (!image) {
         free(delays);
         return -1;
     }
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < f->count; i++)
         delays[i] = milliseconds;
-    vips_image_set_int(image, VIPS_META_PAGE_HEIGHT, p->height / count);
+    vips_image_set_int(image, VIPS_META_PAGE_HEIGHT, f->height);
     vips_image_set_int(image, "loop", 0);
-    vips_image_set_array_int(image, "delay", delays, count);
+    vips_image_set_array_int(image, "delay", delays, f->count);
     int failed = ends_in(path, ".gif") ? vips_gifsave_buffer(image, data, size, NULL)
                                        : vips_webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
     g_object_unref(image);
@@ -126,11 +150,11 @@ status img_write_animation(const char *path, const img *frames, int count, int m
     uint8_t *codes = malloc(each * (size_t)count);
     if (!codes) return fail(ERROR_MEMORY, "no memory for the %d frames of %s", count, path);
     for (int i = 0; i < count; i++)
-        encode(&frames[i], IMG_SRGB8, codes + each * (size_t)i);
-    pixel_codes p = {codes, frames[0].width, frames[0].height * count, 3, VIPS_FORMAT_UCHAR, VIPS_INTERPRETATION_sRGB};
+        encode(frames[i].data, each, IMG_SRGB8, codes + each * (size_t)i);
+    film f = {codes, frames[0].width, frames[0].height, count};
     void *data = NULL;
     size_t size = 0;
-    if (save_frames(path, &p, count, milliseconds, &data, &size))
+    if (save_frames(path, &f, milliseconds, &data, &size))
         s = vips_refusal(ERROR_OUTPUT, "write", path);
     else
         s = file_write(path, data, size);

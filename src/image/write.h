@@ -12,6 +12,11 @@ typedef enum img_encoding {
 
 /* 1 or 3 channels; values outside [0, 1] are clamped. */
 status img_write_png(const char *path, const img *image, img_encoding encoding);
+/* The same of values that are changed on their way, without a copy of the image: `count` pixels from pixel `first` on.
+ */
+typedef void (*img_change)(const void *context, size_t first, size_t count, float *values);
+status img_write_png_changed(const char *path, const img *image, img_encoding encoding, img_change change,
+                             const void *context);
 /* Equal-sized 3-channel linear frames as animated WebP or GIF by the path's ending, looping for ever. */
 status img_write_animation(const char *path, const img *frames, int count, int milliseconds);
 /* 3 channels, half float. */

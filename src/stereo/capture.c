@@ -1,5 +1,6 @@
 #include "stereo/capture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,12 +108,14 @@ static void forget_lights(pst_capture *c)
 /* What the user says of the camera wins; a near capture that says nothing has the project's 60 degrees. */
 static void settle_camera(const pst_read_options *options, pst_capture *c)
 {
-    static const float HALF_WIDTH_TO_FOCAL = 1.7320508f; /* 1 / tan 30° */
+    static const float NEAR_FIELD_OF_VIEW = 60, HALF_DEGREE = 0.00872664626f;
+    bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
+    float field_of_view = options->field_of_view > 0 ? options->field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
     if (options->camera.focal > 0)
         c->camera = options->camera;
-    else if (c->lighting == PST_NEAR && !(c->camera.focal > 0))
+    else if (field_of_view > 0)
         c->camera = (pst_camera){.perspective = true,
-                                 .focal = 0.5f * (float)c->width * HALF_WIDTH_TO_FOCAL,
+                                 .focal = 0.5f * (float)c->width / tanf(field_of_view * HALF_DEGREE),
                                  .center_x = 0.5f * (float)c->width,
                                  .center_y = 0.5f * (float)c->height,
                                  .mean_distance = options->camera.mean_distance};

@@ -57,7 +57,8 @@ typedef struct pst_read_options {
     bool near;           /* lights.txt holds positions */
     bool unknown_lights; /* ignore lights: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
-    pst_camera camera;   /* focal 0: from the layout, else 60 degrees when near */
+    pst_camera camera;   /* focal 0: by the field of view, else from the layout, else 60 degrees when near */
+    float field_of_view; /* horizontal, degrees; 0: not known */
 } pst_read_options;
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);

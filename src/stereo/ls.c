@@ -23,23 +23,17 @@ typedef struct answers {
     float normal[3][LS_BLOCK], albedo[3][LS_BLOCK], residual[LS_BLOCK];
 } answers;
 
-/* fmaxf and fminf promise something about NaN, which costs a call. */
+/* fmaxf promises something about NaN, which costs a call. */
 static inline float larger(float a, float b)
 {
     return a > b ? a : b;
 }
 
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-/* pst_facing without a branch. */
+/* pst_facing without a branch, and of any length. */
 static inline vec3 facing(vec3 n)
 {
-    float scale = 1 / sqrtf(smaller(larger(vec3_dot(n, n), 1e-37f), 1e37f));
-    n = vec3_make(scale * n.x, scale * n.y, larger(scale * n.z, 1e-3f));
-    return vec3_scale(n, 1 / sqrtf(vec3_dot(n, n)));
+    float length = sqrtf(vec3_dot(n, n));
+    return vec3_make(n.x, n.y, larger(n.z, larger(1e-3f * length, 1e-18f)));
 }
 
 typedef struct symmetric {
@@ -88,6 +82,7 @@ static void answer(const ls_sums *restrict s, int count, answers *restrict out)
         weighted = vec3_fma(weighted, larger(vec3_dot(g, n), 0), g);
         weighted = vec3_fma(weighted, larger(vec3_dot(b, n), 0), b);
         n = facing(times(solve, weighted));
+        n = vec3_scale(n, 1 / sqrtf(vec3_dot(n, n)));
         float share = 1 / larger(vec3_dot(n, times(m, n)), 1e-12f);
         float red = larger(vec3_dot(r, n), 0), green = larger(vec3_dot(g, n), 0), blue = larger(vec3_dot(b, n), 0);
         float explained = share * (red * red + green * green + blue * blue);
@@ -107,41 +102,41 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-static void store(const answers *restrict a, int count, const float *restrict mask, const pst_surface *out,
-                  size_t first)
+/* Three components side by side. */
+static void store_triples(const float from[3][LS_BLOCK], int count, const float *restrict mask, float *restrict to)
 {
-    float *restrict normal = out->normal.data + 3 * first, *restrict residual = out->residual.data + first;
+    const float *restrict x = from[0], *restrict y = from[1], *restrict z = from[2];
 #pragma omp simd
     for (int i = 0; i < count; i++) {
-        normal[3 * i] = inside(mask[i], a->normal[0][i]);
-        normal[3 * i + 1] = inside(mask[i], a->normal[1][i]);
-        normal[3 * i + 2] = inside(mask[i], a->normal[2][i]);
-        residual[i] = inside(mask[i], a->residual[i]);
+        to[3 * i] = inside(mask[i], x[i]);
+        to[3 * i + 1] = inside(mask[i], y[i]);
+        to[3 * i + 2] = inside(mask[i], z[i]);
     }
 }
 
-static void store_albedo(const answers *restrict a, int count, const float *restrict mask, const pst_surface *out,
-                         size_t first)
+static void store_values(const float *restrict from, int count, const float *restrict mask, float *restrict to)
 {
-    float *restrict albedo = out->albedo.data + (size_t)out->albedo.channels * first;
-    if (out->albedo.channels == 1) {
 #pragma omp simd
-        for (int i = 0; i < count; i++)
-            albedo[i] = inside(mask[i], a->albedo[0][i]);
-        return;
-    }
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        albedo[3 * i] = inside(mask[i], a->albedo[0][i]);
-        albedo[3 * i + 1] = inside(mask[i], a->albedo[1][i]);
-        albedo[3 * i + 2] = inside(mask[i], a->albedo[2][i]);
-    }
+    for (int i = 0; i < count; i++)
+        to[i] = inside(mask[i], from[i]);
+}
+
+static void store(const answers *a, int count, const float *mask, const pst_surface *out, size_t first)
+{
+    float *albedo = out->albedo.data + (size_t)out->albedo.channels * first;
+    store_triples(a->normal, count, mask, out->normal.data + 3 * first);
+    if (out->albedo.channels == 3)
+        store_triples(a->albedo, count, mask, albedo);
+    else
+        store_values(a->albedo[0], count, mask, albedo);
+    store_values(a->residual, count, mask, out->residual.data + first);
 }
 
 static void solve_block(const ls_job *job, size_t first, int count)
 {
     const float *mask = job->capture->mask.data + first;
-    bool any = false;
+    int any = 0;
+#pragma omp simd reduction(| : any)
     for (int i = 0; i < count; i++)
         any |= mask[i] > 0.5f;
     if (!any) return;
@@ -150,7 +145,6 @@ static void solve_block(const ls_job *job, size_t first, int count)
     ls_sums_add(job->lights, first, count, &sums);
     answer(&sums, count, &found);
     store(&found, count, mask, job->out, first);
-    store_albedo(&found, count, mask, job->out, first);
 }
 
 static void solve_blocks(void *context, size_t begin, size_t end)

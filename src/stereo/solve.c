@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "stereo/solve_parts.h"
 
 static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
@@ -105,11 +106,19 @@ static status list_lights(const pst_capture *c, pst_light *light)
     return OK;
 }
 
+static status allocate_map(const pst_capture *c, int channels, img *out)
+{
+    status s = img_new(out, c->width, c->height, channels);
+    size_t count = (size_t)c->width * (size_t)c->height * (size_t)channels;
+    if (s == OK) memory_prefer_large_pages(out->data, count * sizeof(float));
+    return s;
+}
+
 static status allocate(const pst_capture *c, pst_surface *out)
 {
-    status s = img_new(&out->normal, c->width, c->height, 3);
-    if (s == OK) s = img_new(&out->albedo, c->width, c->height, c->channels);
-    if (s == OK) s = img_new(&out->residual, c->width, c->height, 1);
+    status s = allocate_map(c, 3, &out->normal);
+    if (s == OK) s = allocate_map(c, c->channels, &out->albedo);
+    if (s == OK) s = allocate_map(c, 1, &out->residual);
     return s;
 }
 

@@ -135,6 +135,23 @@ static void near_lights_have_positions_and_a_camera(void **state)
     pst_capture_free(&c);
 }
 
+static void a_field_of_view_makes_a_camera_without_lights(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    pst_capture c;
+    pst_read_options options = {.unknown_lights = true};
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_false(c.camera.perspective);
+    pst_capture_free(&c);
+    options.field_of_view = 90;
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_int_equal(c.lighting, PST_UNKNOWN_LIGHT);
+    assert_true(c.camera.perspective);
+    assert_float_equal(c.camera.focal, 3, 1e-5); /* half of 6 pixels */
+    pst_capture_free(&c);
+}
+
 static void unknown_lights_need_no_list(void **state)
 {
     (void)state;
@@ -215,6 +232,7 @@ int main(void)
         in_scratch(floats_share_one_scale_below_saturation),
         in_scratch(an_lp_file_says_which_picture_has_which_light),
         in_scratch(near_lights_have_positions_and_a_camera),
+        in_scratch(a_field_of_view_makes_a_camera_without_lights),
         in_scratch(unknown_lights_need_no_list),
         in_scratch(given_intensities_are_kept),
         in_scratch(a_mask_is_read_and_must_fit),
