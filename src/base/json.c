@@ -102,6 +102,17 @@ status json_number(json_object *o, const char *key, double low, double high, dou
     return s == OK ? read_number(o, item, key, low, high, out) : s;
 }
 
+status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, o->root)
+    {
+        if (strcmp(item->string, key) == 0) return json_number(o, key, low, high, out);
+    }
+    *out = fallback;
+    return OK;
+}
+
 status json_bool(json_object *o, const char *key, bool *out)
 {
     const cJSON *item;

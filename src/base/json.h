@@ -29,6 +29,8 @@ status json_bool(json_object *o, const char *key, bool *out);
 status json_text(json_object *o, const char *key, char *out, size_t capacity);
 /* One of count words; *out is its place. */
 status json_choice(json_object *o, const char *key, const char *const *words, int count, int *out);
+/* A number that may be missing: then fallback. */
+status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out);
 /* An array of exactly count integers. */
 status json_ints(json_object *o, const char *key, int low, int high, int count, int *out);
 /* The text of an object inside this one, malloc'ed. */

@@ -5,7 +5,8 @@
  * diag(1/e) U = L Q for some 3×3 Q: linear in 1/e and Q together, and solved by their one null vector. Shadows and
  * highlights bend U; so that and equal intensities are two starts, from which intensities and a sample's surface, its
  * highlights included (lobe_fit.h), alternate. The start that ends with the lower loss counts. The mean intensity is 1.
- */
+ * On a surface whose normals hardly differ, intensities and albedo explain each other: equal ones are kept unless
+ * others explain the pictures much better. */
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +19,9 @@ enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
 
 /* Intensities further apart than this are a failure of the rank constraint, not lamps. */
 static const double most_apart = 100;
+/* Of the loss before: what a terminator, and what intensities must bring it down to. */
+static const double worth_terminator = 0.9, worth_intensities = 0.8;
+static const float likely_terminator = 0.1f;
 /* Of the albedo: a pixel less bright says little of its light. */
 static const float well_lit = 0.25f;
 
@@ -31,6 +35,7 @@ typedef struct semi_job {
     float *ratio;                           /* count */
     size_t padded;
     double cost;
+    bool equal; /* what was found */
 } semi_job;
 
 static void normalize(double *e, int count)
@@ -146,26 +151,58 @@ static status improve(semi_job *job, bool choose, double *e)
 }
 
 /* The lobe is chosen anew as the intensities come right. */
-static status improve_often(semi_job *job, int rounds, double *e)
+static status improve_often(semi_job *job, int from, int to, double *e)
 {
     status s = OK;
-    for (int k = 0; s == OK && k < rounds; k++)
+    for (int k = from; s == OK && k < to; k++)
         s = improve(job, k % 3 == 0, e);
     return s;
 }
 
-/* From both starts; e becomes the better's. */
-static status start(semi_job *job, double *e)
+/* From both starts; e becomes the better's. *equal: the loss of equal intensities as they are. */
+static status start(semi_job *job, double *e, double *other, double *equal)
+{
+    size_t bytes = (size_t)job->problem.capture->count * sizeof *e;
+    status s = improve_often(job, 0, TRIAL_ROUNDS, e);
+    double cost = job->cost;
+    if (s == OK) s = improve(job, true, other);
+    *equal = job->cost;
+    if (s == OK) s = improve_often(job, 1, TRIAL_ROUNDS, other);
+    if (s != OK || job->cost >= cost) return s;
+    memcpy(e, other, bytes);
+    return OK;
+}
+
+/* A terminator that is left out goes into the intensities, and no longer shows: it is tried together with them. */
+static status try_terminator(semi_job *job, double *e, double *other)
+{
+    size_t bytes = (size_t)job->problem.capture->count * sizeof *e;
+    memcpy(other, e, bytes);
+    status s = improve(job, true, other);
+    double cost = job->cost;
+    if (s != OK || job->lobe.terminator > 0 || job->problem.capture->count < PST_MANY_LIGHTS) return s;
+    memcpy(other, e, bytes);
+    job->lobe.terminator = likely_terminator;
+    for (int k = 0; s == OK && k < TRIAL_ROUNDS; k++)
+        s = improve(job, false, other);
+    if (s == OK && job->cost < worth_terminator * cost) memcpy(e, other, bytes);
+    return s;
+}
+
+/* Equal intensities are what most captures have: they are given up only for what costs much less. */
+static status settle(semi_job *job, int rounds, double *e)
 {
     int count = job->problem.capture->count;
-    double *other = malloc((size_t)count * sizeof *other);
+    double *other = malloc((size_t)count * sizeof *other), equal = 0;
     if (!other) return fail(ERROR_MEMORY, "no memory for %d lights", count);
     for (int k = 0; k < count; k++)
         other[k] = 1;
-    status s = improve_often(job, TRIAL_ROUNDS, e);
-    double cost = job->cost;
-    if (s == OK) s = improve_often(job, TRIAL_ROUNDS, other);
-    if (s == OK && job->cost < cost) memcpy(e, other, (size_t)count * sizeof *e);
+    status s = start(job, e, other, &equal);
+    if (s == OK) s = try_terminator(job, e, other);
+    if (s == OK) s = improve_often(job, 0, rounds, e);
+    job->equal = s == OK && job->cost >= worth_intensities * equal;
+    for (int k = 0; k < count && job->equal; k++)
+        e[k] = 1;
     free(other);
     return s;
 }
@@ -202,8 +239,7 @@ static status find_intensities(const pst_problem *p, semi_job *job, double *e)
     status s = pst_samples_new(p, SAMPLE, &m);
     if (s == OK) s = from_rank(p, &m, e);
     pst_samples_free(&m);
-    if (s == OK) s = start(job, e);
-    return s == OK ? improve_often(job, p->iterations > 0 ? p->iterations : ITERATIONS, e) : s;
+    return s == OK ? settle(job, p->iterations > 0 ? p->iterations : ITERATIONS, e) : s;
 }
 
 status pst_solve_semi(const pst_problem *p, pst_surface *out)
@@ -219,7 +255,7 @@ status pst_solve_semi(const pst_problem *p, pst_surface *out)
     }
     if (s == OK) s = find_intensities(p, &job, e);
     if (s == OK) set_intensities(&job, e);
-    for (int ch = 0; s == OK && p->capture->channels == 3 && ch < 3; ch++) {
+    for (int ch = 0; s == OK && !job.equal && p->capture->channels == 3 && ch < 3; ch++) {
         from_surface(&job, ch, e);
         for (int k = 0; k < count; k++)
             out->light[k].intensity[ch] = (float)e[k];

@@ -107,7 +107,7 @@ static bool integrability_row(const pseudo *f, size_t at, double row[6])
     vec3 b = f->b[slot[0]], dx = vec3_sub(f->b[slot[1]], f->b[slot[-1]]);
     vec3 dy = vec3_sub(f->b[slot[-width]], f->b[slot[width]]);
     float scale = vec3_dot(b, b);
-    if (!(scale > 0)) return false;
+    if (!(scale > 0) || !isfinite(scale)) return false;
     vec3 by_y = vec3_scale(vec3_cross(b, dy), 1 / scale), by_x = vec3_scale(vec3_cross(b, dx), -1 / scale);
     memcpy(row, &(double[6]){by_y.x, by_y.y, by_y.z, by_x.x, by_x.y, by_x.z}, 6 * sizeof *row);
     return true;
@@ -199,7 +199,7 @@ static void descend(const double form[36], double reach, double a[9])
             turn[k / 2] = k % 2 ? reach : -reach;
             turned(turn, a, trial);
             double value = form_at(form, trial);
-            if (value >= best) continue;
+            if (!(value < best)) continue;
             best = value;
             better = true;
             memcpy(a, trial, sizeof trial);
@@ -232,10 +232,11 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9])
         turned(about_x, trial, tilted);
         turned(last, tilted, trial);
         double value = form_at(form, trial);
-        if (value >= best || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
+        if (!(value < best) || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
         best = value;
         memcpy(a, trial, sizeof trial);
     }
+    if (s == OK && !(best < HUGE_VAL)) s = fail(ERROR_INPUT, "the pictures do not tell where the lights are");
     for (int pass = 0; s == OK && pass < PASSES; pass++) {
         descend(form, pass == 0 ? 0.3 : 0.05, a);
         minors_of(a, minor);

@@ -1,6 +1,7 @@
 #include "train/config.h"
 
 #include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,45 @@ static status read_rates(json_object *o, train_config *c)
     return s;
 }
 
+/* The keys that may be left out. */
+typedef struct optional {
+    const char *key;
+    double high;
+    size_t offset; /* in train_config */
+} optional;
+
+static const optional faults[] = {
+    {"camera_turn", 20, offsetof(train_config, camera_turn)},
+    {"distance_jitter", 0.7, offsetof(train_config, distance_jitter)},
+    {"background_leak", 1, offsetof(train_config, background_leak)},
+    {"outline_error", 1, offsetof(train_config, outline_error)},
+    {"jpeg", 1, offsetof(train_config, jpeg)},
+};
+enum { FAULTS = sizeof faults / sizeof *faults };
+
+static status read_faults(json_object *o, train_config *c)
+{
+    status s = OK;
+    for (int i = 0; i < FAULTS && s == OK; i++) {
+        double value = 0;
+        s = json_number_or(o, faults[i].key, 0, faults[i].high, 0, &value);
+        memcpy((char *)c + faults[i].offset, &value, sizeof value);
+    }
+    return s;
+}
+
+/* Those that are not 0, each behind a comma and a space. */
+static void write_faults(const train_config *c, char *out, size_t size)
+{
+    size_t length = 0;
+    out[0] = 0;
+    for (int i = 0; i < FAULTS; i++) {
+        double value;
+        memcpy(&value, (const char *)c + faults[i].offset, sizeof value);
+        if (value != 0) length += (size_t)snprintf(out + length, size - length, ", \"%s\": %.9g", faults[i].key, value);
+    }
+}
+
 static status read_intervals(json_object *o, train_config *c)
 {
     status s = json_int(o, "validation_count", 0, INT_MAX, &c->validation_count);
@@ -47,6 +87,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_int(o, "seed", 0, INT_MAX, &c->seed);
     if (s == OK) s = json_number(o, "exposure_jitter", 0, 2, &c->exposure_jitter);
     if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
+    if (s == OK) s = read_faults(o, c);
     if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)
@@ -96,17 +137,18 @@ status train_config_read(const char *path, model_config *model, train_config *tr
 
 char *train_config_write(const train_config *c)
 {
-    char *text = NULL;
+    char *text = NULL, more[FAULTS * 40];
+    write_faults(c, more, sizeof more);
     int length = asprintf(
         &text,
         "{\"size\": %d, \"batch\": %d, \"presentations\": %d, \"learning_rate\": %.9g, \"encoder_rate_scale\": %.9g, "
         "\"halve_every_epochs\": %.9g, \"warmup_steps\": %d, \"beta1\": %.9g, \"beta2\": %.9g, \"clip_norm\": %.9g, "
         "\"depth_weight\": %.9g, \"type\": \"%s\", \"seed\": %d, \"exposure_jitter\": %.9g, \"colour_jitter\": %.9g, "
         "\"memory_gib\": %.9g, "
-        "\"validation_count\": %d, \"validation_steps\": %d, \"curve_steps\": %d, \"checkpoint_minutes\": %.9g}",
+        "\"validation_count\": %d, \"validation_steps\": %d, \"curve_steps\": %d, \"checkpoint_minutes\": %.9g%s}",
         c->size, c->batch, c->presentations, c->learning_rate, c->encoder_rate_scale, c->halve_every_epochs,
         c->warmup_steps, c->beta1, c->beta2, c->clip_norm, c->depth_weight, type_words[c->type == NN_BFLOAT16], c->seed,
         c->exposure_jitter, c->colour_jitter, c->memory_gib, c->validation_count, c->validation_steps, c->curve_steps,
-        c->checkpoint_minutes);
+        c->checkpoint_minutes, more);
     return length < 0 ? NULL : text;
 }

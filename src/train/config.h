@@ -18,6 +18,12 @@ typedef struct train_config {
     int seed;
     double exposure_jitter; /* half-width of the uniform exposure error, natural logarithm */
     double colour_jitter;   /* the same, each channel on its own */
+    /* More faults of photographs; each may be left out of the file and is 0 then, none: */
+    double camera_turn;     /* pan, tilt and roll of the camera, at most so many degrees each */
+    double distance_jitter; /* half-width of the uniform logarithm of distance and size (train/motion.h) */
+    double background_leak; /* share of photographs with a background, which shows at the outline */
+    double outline_error;   /* share whose mask is a pixel too large or too small */
+    double jpeg;            /* share compressed as JPEG */
     double memory_gib;      /* samples beyond this are read from disk each time */
     int validation_count;   /* the folder's last samples are held back; a multiple of batch */
     int validation_steps;   /* between validations; 0: never */
@@ -25,11 +31,12 @@ typedef struct train_config {
     double checkpoint_minutes;
 } train_config;
 
-/* Every key is required, unknown ones are refused; messages name the key. */
+/* Every key is required but those said to be optional, unknown ones are refused; messages name the key. */
 status train_config_parse(const char *json, size_t size, const char *where, model_config *model,
                           train_config *training);
 status train_config_read(const char *path, model_config *model, train_config *training);
-/* The "training" object as JSON, malloc'ed: equal text means equal training. NULL if memory ran out. */
+/* The "training" object as JSON, malloc'ed: equal text means equal training; optional keys are in it unless they are 0.
+ * NULL if memory ran out. */
 char *train_config_write(const train_config *c);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "optics/orientation.h"
+#include "train/motion.h"
 #include "train/prepare.h"
 
 enum { MESSAGE = 512, POINT_BUFFERS = 12, BUFFERS = 15 };
@@ -118,6 +119,17 @@ static status draw_environments(const trn_feed *f, const item *it, trn_lighting 
     return s;
 }
 
+/* What configurations may ask for beside: draws of streams of their own, so that the others stay what they are. */
+static status add_faults(const trn_feed *f, const item *it, trn_camera *lens)
+{
+    const train_config *c = f->source.config;
+    rng faults = rng_at((uint64_t)c->seed, it->presentation, TRN_STREAM_FAULTS);
+    rng moving = rng_at((uint64_t)c->seed, it->presentation, TRN_STREAM_MOTION);
+    trn_camera_spoil(c, &faults, lens);
+    trn_motion motion = trn_motion_draw(c, &moving);
+    return trn_motion_moves(&motion) ? trn_move(&it->view, &motion) : OK;
+}
+
 static void fill_item(void *context, size_t i)
 {
     trn_feed *f = context;
@@ -130,10 +142,9 @@ static void fill_item(void *context, size_t i)
     trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
     it->result = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
     if (it->result == OK && f->source.environment) it->result = draw_environments(f, it, &lighting);
-    if (it->result == OK)
-        trn_prepare(&it->view, f->source.input_global, &lens, &lighting, &r);
-    else
-        snprintf(it->message, MESSAGE, "%s", status_message());
+    if (it->result == OK && !f->validation) it->result = add_faults(f, it, &lens);
+    if (it->result == OK) it->result = trn_prepare(&it->view, f->source.input_global, &lens, &lighting, &r);
+    if (it->result != OK) snprintf(it->message, MESSAGE, "%s", status_message());
 }
 
 static status fill(trn_feed *f)

@@ -5,6 +5,7 @@
 
 #include "base/rng.h"
 #include "base/vec.h"
+#include "image/jpeg.h"
 #include "train/config.h"
 #include "train/dataset.h"
 
@@ -13,7 +14,9 @@ enum {
     TRN_STREAM_ORDER = 101,
     TRN_STREAM_PRESENTATION = 102,
     TRN_STREAM_VALIDATION = 103,
-    TRN_STREAM_ENVIRONMENT = 104
+    TRN_STREAM_ENVIRONMENT = 104,
+    TRN_STREAM_MOTION = 105,
+    TRN_STREAM_FAULTS = 106
 };
 
 /* What spoils a photograph; trn_camera_perfect for none. */
@@ -22,6 +25,13 @@ typedef struct trn_camera {
     float white;      /* radiance at which the sensor saturates, at least 1 */
     float shot, read; /* noise of standard deviation sqrt(shot I + read²), I in [0, 1] of white */
     bool eight_bit;   /* rounded to 8 bits of sRGB */
+    /* trn_camera_spoil: */
+    bool background;        /* something lies behind the object, which shows at its outline */
+    float behind[2][3];     /* its radiance, even between two ends of the frame ... */
+    float across[2];        /* ... which lie so far apart, in frames to the right and downwards */
+    int outline;            /* the mask is a pixel too large (1) or too small (-1) */
+    bool jpeg;              /* compressed ... */
+    img_jpeg jpeg_settings; /* ... like this */
 } trn_camera;
 
 trn_camera trn_camera_perfect(void);
@@ -29,6 +39,8 @@ trn_camera trn_camera_perfect(void);
  * sensor's white lies between radiance 1, the published data's, at which two pixels in five of bright objects burn out,
  * and 2.5, where a white object keeps its shading as in a photograph exposed for it. */
 trn_camera trn_camera_draw(const train_config *c, rng *r);
+/* Adds background, errors of the outline and JPEG to the shares of photographs that the configuration says. */
+void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens);
 
 /* What a presentation is lit by beside the flash. */
 typedef struct trn_lighting {
@@ -39,15 +51,16 @@ typedef struct trn_lighting {
 } trn_lighting;
 
 /* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered;
- * loss_mask: covered wholly), image encoded for the network, direct clipped as the rendering layer does, reconstruction
- * = clipped direct + indirect, relit = the BRDF under light, maps to the network's ranges. The targets keep the maps'
- * own exposure: only the input image goes through the camera. global: the input has indirect light.
+ * loss_mask: covered wholly and not lost to an error of the outline), image encoded for the network, direct clipped as
+ * the rendering layer does, reconstruction = clipped direct + indirect, relit = the BRDF under light, maps to the
+ * network's ranges. The targets keep the maps' own exposure: only the input image goes through the camera. global: the
+ * input has indirect light.
  *
  * With an environment (setting B) the input is the sum of both images; direct is what the rendering layer makes of
  * flash and coefficients, and indirect takes up what that lacks of the truth: bounces, and the environment's shadows.
  * The environment's highlights, as far as its coefficients know them (optics/ambient.h), are in the input alone, so
- * that they are not counted twice where the relighter samples a map. */
-void trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise);
+ * that they are not counted twice where the relighter samples a map. ERROR_MEMORY. */
+status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise);
 
 /* A target light on the frontal hemisphere (Sang & Chandraker 2020). */
 vec3 trn_draw_light(rng *r);

@@ -137,6 +137,23 @@ static void lights_of_unknown_strength_are_found_despite_highlights(void **state
     capture_drop(&c);
 }
 
+/* As exactly as if it were known. */
+static void equal_strengths_are_recognized(void **state)
+{
+    (void)state;
+    pst_capture c;
+    pst_surface s;
+    relief_capture(&glossy, &c);
+    double known = solve_angle(&c, PST_ROBUST);
+    c.intensities_known = false;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
+    for (int k = 0; k < c.count; k++)
+        assert_true(s.light[k].intensity[0] == 1 && s.light[k].intensity[2] == 1);
+    assert_true(mean_angle(&c, &s.normal) == known);
+    pst_surface_free(&s);
+    capture_drop(&c);
+}
+
 static void unknown_lights_of_equal_strength_are_found(void **state)
 {
     (void)state;
@@ -233,6 +250,7 @@ int main(void)
         cmocka_unit_test(robust_on_few_poor_lights_is_no_worse_than_least_squares),
         cmocka_unit_test(a_raised_black_level_is_found),
         cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
+        cmocka_unit_test(equal_strengths_are_recognized),
         cmocka_unit_test(unknown_lights_of_equal_strength_are_found),
         cmocka_unit_test(darkness_and_saturation_leave_numbers),
         cmocka_unit_test(impossible_captures_are_refused_in_one_line),

@@ -14,60 +14,9 @@
 
 #include <cmocka.h>
 
-#include "scratch.h"
-#include "synthetic.h"
+#include "prepared.h"
 
-enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 28 * PIXELS + 3 + 2 * MODEL_SH };
-
-static const trn_dataset_options usual = {.size = SIZE, .memory_gib = 1};
 static const trn_lighting at_the_camera = {.target = {0, 0, 0}};
-
-typedef struct fixture {
-    char *folder;
-    trn_dataset *data;
-    float *memory;
-    trn_view view;
-} fixture;
-
-static void place(fixture *f)
-{
-    float *at = f->memory;
-    trn_view *v = &f->view;
-    v->size = SIZE;
-    float **const three[] = {&v->albedo, &v->normal,         &v->direct, &v->indirect,
-                             &v->image,  &v->reconstruction, &v->relit};
-    float **const one[] = {&v->roughness, &v->depth, &v->mask, &v->loss_mask};
-    for (int i = 0; i < 7; i++, at += 3 * PIXELS)
-        *three[i] = at;
-    for (int i = 0; i < 4; i++, at += PIXELS)
-        *one[i] = at;
-    v->light = at;
-}
-
-static int set_up(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    assert_non_null(f);
-    f->folder = scratch_new();
-    for (int i = 0; i < 3; i++)
-        sphere_write(f->folder, SIZE, i);
-    f->memory = malloc(FLOATS * sizeof(float));
-    assert_non_null(f->memory);
-    place(f);
-    if (trn_dataset_open(f->folder, &usual, &f->data) != OK) fail_msg("%s", status_message());
-    *state = f;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    trn_dataset_close(f->data);
-    scratch_remove(f->folder);
-    free(f->memory);
-    free(f);
-    return 0;
-}
 
 /* The flash and the frame look the same in all eight orientations, so the turned maps must render to the turned image.
  */
@@ -212,6 +161,108 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
         assert_memory_equal(f->memory, clean, FLOATS * sizeof(float));
     }
     free(clean);
+}
+
+/* Sample 0 photographed without noise under these faults. */
+static void photograph(fixture *f, const trn_camera *lens)
+{
+    rng r = rng_at(1, 2, 3);
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    for (int x = 0; x < SIZE; x++) /* a row of the frame where the object covers three quarters of each pixel */
+        if (f->view.mask[32 * SIZE + x] > 0) f->view.mask[32 * SIZE + x] = 0.75f;
+    assert_int_equal(trn_prepare(&f->view, true, lens, &at_the_camera, &r), OK);
+}
+
+static void background_shows_where_the_object_does_not_cover_the_pixel(void **state)
+{
+    fixture *f = *state;
+    float clean[3 * PIXELS];
+    trn_camera lens = trn_camera_perfect();
+    photograph(f, &lens);
+    memcpy(clean, f->view.image, sizeof clean);
+    lens.background = true;
+    for (int c = 0; c < 3; c++)
+        lens.behind[0][c] = lens.behind[1][c] = 0.2f;
+    photograph(f, &lens);
+    int leaks = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        if (i / 3 / SIZE != 32 || f->view.mask[i / 3] == 0) {
+            assert_true(f->view.image[i] == clean[i]);
+            continue;
+        }
+        /* the input is the square root of the radiance */
+        float brighter = f->view.image[i] * f->view.image[i] - clean[i] * clean[i];
+        if (clean[i] < 0.9f) assert_true(fabsf(brighter - 0.25f * 0.2f) < 1e-4f);
+        leaks++;
+    }
+    assert_true(leaks > 30);
+}
+
+static int count_ones(const float *mask)
+{
+    int ones = 0;
+    for (int i = 0; i < PIXELS; i++)
+        ones += mask[i] == 1;
+    return ones;
+}
+
+/* Nothing is asked of the network where the outline took the object from it. */
+static void outline_errors_are_one_pixel_wide(void **state)
+{
+    fixture *f = *state;
+    trn_camera lens = trn_camera_perfect();
+    float exact[PIXELS], loss[PIXELS];
+    photograph(f, &lens);
+    memcpy(exact, f->view.mask, sizeof exact);
+    memcpy(loss, f->view.loss_mask, sizeof loss);
+    for (lens.outline = -1; lens.outline <= 1; lens.outline += 2) {
+        photograph(f, &lens);
+        int changed = abs(count_ones(f->view.mask) - count_ones(exact));
+        /* a disc's outline of 4-neighbours has 4√2 r pixels; its radius is (area/π)^½ */
+        float outline = 5.657f * sqrtf((float)count_ones(exact) / 3.1416f);
+        assert_true(fabsf((float)changed - outline) < 0.15f * outline);
+        for (int i = 0; i < PIXELS; i++) {
+            assert_true(lens.outline > 0 ? f->view.mask[i] >= exact[i] : f->view.mask[i] <= exact[i]);
+            assert_true(f->view.loss_mask[i] == fminf(loss[i], f->view.mask[i]));
+            if (f->view.mask[i] == 0) assert_true(f->view.image[3 * i] == 0);
+        }
+    }
+}
+
+static void jpeg_spoils_the_input_and_not_the_targets(void **state)
+{
+    fixture *f = *state;
+    float clean[FLOATS], error[2] = {0, 0};
+    trn_camera lens = trn_camera_perfect();
+    photograph(f, &lens);
+    memcpy(clean, f->memory, sizeof clean);
+    const float *image = clean + (f->view.image - f->memory);
+    lens.jpeg = true;
+    for (int k = 0; k < 2; k++) {
+        lens.jpeg_settings = (img_jpeg){.quality = k ? 95 : 50, .halved = !k};
+        photograph(f, &lens);
+        for (int i = 0; i < 3 * PIXELS; i++)
+            error[k] += fabsf(f->view.image[i] - image[i]) / (3 * PIXELS);
+        memcpy(f->view.image, image, 3 * PIXELS * sizeof(float));
+        assert_memory_equal(f->memory, clean, 28 * PIXELS * sizeof(float));
+    }
+    /* quality 95 quantizes by a step or two of 255, quality 50 by ten and more, and mixes the stripes' colours */
+    assert_true(error[1] > 0 && error[1] < 0.01f && error[0] > 2 * error[1] && error[0] < 0.1f);
+}
+
+/* What earlier runs were trained with does not change. */
+static void photographs_have_no_faults_unless_asked_for(void **unused)
+{
+    (void)unused;
+    train_config none = {0}, all = {.background_leak = 1, .outline_error = 1, .jpeg = 1};
+    for (uint64_t i = 0; i < 100; i++) {
+        trn_camera lens = trn_camera_perfect();
+        rng r = rng_at(1, i, 3);
+        trn_camera_spoil(&none, &r, &lens);
+        assert_false(lens.background || lens.outline || lens.jpeg);
+        trn_camera_spoil(&all, &r, &lens);
+        assert_true(lens.background && abs(lens.outline) == 1 && lens.jpeg);
+    }
 }
 
 static void target_lights_lie_on_the_frontal_hemisphere(void **unused)
@@ -390,6 +441,10 @@ int main(void)
         cmocka_unit_test_setup_teardown(target_is_lit_by_its_own_environment, set_up, tear_down),
         cmocka_unit_test(strengths_span_a_decade),
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
+        cmocka_unit_test_setup_teardown(background_shows_where_the_object_does_not_cover_the_pixel, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(outline_errors_are_one_pixel_wide, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(jpeg_spoils_the_input_and_not_the_targets, set_up, tear_down),
+        cmocka_unit_test(photographs_have_no_faults_unless_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

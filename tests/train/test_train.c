@@ -128,9 +128,9 @@ static void same_run(const fixture *f, const char *a, const char *b)
         same_file(f, a, b, files[i]);
 }
 
-static void resume_and_compare(const fixture *f, const char *lighting)
+static void resume_and_compare(const fixture *f, const char *lighting, const char *more)
 {
-    write_experiment(f, &(experiment){12, 2, 2, lighting, jitter});
+    write_experiment(f, &(experiment){12, 2, 2, lighting, more});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
     assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
@@ -139,12 +139,19 @@ static void resume_and_compare(const fixture *f, const char *lighting)
 
 static void resumed_training_is_bit_identical(void **state)
 {
-    resume_and_compare(*state, "point");
+    resume_and_compare(*state, "point", jitter);
 }
 
 static void resumed_training_of_both_lights_is_bit_identical(void **state)
 {
-    resume_and_compare(*state, "both");
+    resume_and_compare(*state, "both", jitter);
+}
+
+static void resumed_training_on_faulty_photographs_is_bit_identical(void **state)
+{
+    resume_and_compare(*state, "both",
+                       "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05, \"camera_turn\": 10, "
+                       "\"distance_jitter\": 0.3, \"background_leak\": 0.5, \"outline_error\": 0.5, \"jpeg\": 0.5");
 }
 
 /* A run killed outright leaves rows behind its last checkpoint. */
@@ -268,6 +275,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
         cmocka_unit_test_setup_teardown(both_lights_can_be_learned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_of_both_lights_is_bit_identical, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(resumed_training_on_faulty_photographs_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),

@@ -105,6 +105,36 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("\"training\":", "\"trianing\":", "training");
     refuses("\"model\":", "\"extra\": {}, \"model\":", "extra");
     refuses("\"seed\": 1,", "", "seed");
+    refuses("\"seed\": 1,", "\"seed\": 1, \"jpeg\": 1.5,", "jpeg");
+    refuses("\"seed\": 1,", "\"seed\": 1, \"camera_turn\": true,", "camera_turn");
+    refuses("\"seed\": 1,", "\"seed\": 1, \"jpeg\": 0.5, \"jpeg\": 0.5,", "jpeg");
+}
+
+/* Checkpoints name the configuration they belong to: those of before these keys were known must go on fitting. */
+static void faults_left_out_are_none_and_stay_left_out(void **unused)
+{
+    (void)unused;
+    static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error", "jpeg"};
+    model_config m;
+    train_config t, again;
+    char *good = shipped();
+    assert_int_equal(train_config_parse(good, strlen(good), "test.json", &m, &t), OK);
+    char *training = train_config_write(&t), *model = model_config_write(&m), text[8192];
+    for (int i = 0; i < 5; i++)
+        assert_null(strstr(training, keys[i]));
+    free(training);
+    t.camera_turn = 5;
+    t.distance_jitter = 0.25;
+    t.background_leak = 0.5;
+    t.outline_error = 0.125;
+    t.jpeg = 0.75;
+    training = train_config_write(&t);
+    snprintf(text, sizeof text, "{\"training\": %s, \"model\": %s}", training, model);
+    assert_int_equal(train_config_parse(text, strlen(text), "again.json", &m, &again), OK);
+    assert_memory_equal(&t, &again, sizeof t);
+    free(training);
+    free(model);
+    free(good);
 }
 
 int main(void)
@@ -114,6 +144,7 @@ int main(void)
         cmocka_unit_test(every_shipped_configuration_can_be_trained),
         cmocka_unit_test(configurations_of_both_lights_differ_from_the_point_settings_in_that),
         cmocka_unit_test(wrong_configurations_are_refused_by_key),
+        cmocka_unit_test(faults_left_out_are_none_and_stay_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
