@@ -1,8 +1,8 @@
+#include "stereo/inflate.h"
 #include "eval/metrics.h"
 #include "eval/trivial.h"
 #include "optics/camera.h"
 #include "optics/light.h"
-#include "stereo/inflate.h"
 
 static float mean_inside(const img *image, const img *mask)
 {
