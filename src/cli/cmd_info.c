@@ -6,12 +6,14 @@
 
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/photos.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
 
 static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json]\n\n"
-                           "Says what is in a weights file: the model's configuration, where the weights come from,\n"
-                           "their number, and what one picture of 256x256 costs.\n\n"
+                           "Says what is in a weights file, or in the shipped merlin-point or merlin-env: the model's\n"
+                           "configuration, where the weights come from, their number, and what one picture of 256x256\n"
+                           "costs.\n\n"
                            "      --tensors  every tensor with its type and shape\n"
                            "      --json     as JSON\n"
                            "  -h, --help     this text\n";
@@ -153,7 +155,10 @@ int cmd_info(int argc, char **argv)
     if (wants_help) return fputs(help, stdout) < 0;
     if (argc != 1) return cli_usage("info", "one weights file wanted");
     weights_info info = {0};
-    status s = read_info(argv[0], &info);
+    char *path;
+    status s = photo_find_model(argv[0], &path);
+    if (s == OK) s = read_info(path, &info);
+    free(path);
     if (s == OK && json) s = print_json(&info, tensors);
     if (s == OK && !json && !quiet) print_text(&info, tensors);
     st_close(info.file);
