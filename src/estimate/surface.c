@@ -105,11 +105,14 @@ static status shrink(const img *from, const img *mask, int width, int height, im
 
 status surface_resize_image(const img *from, const img *mask, int width, int height, img *out)
 {
-    if (from->width == width && from->height == height) return img_copy(out, from);
     if (width < from->width && height < from->height) return shrink(from, mask, width, height, out);
     img filled = {0};
     status s = img_copy(&filled, from);
     if (s == OK) s = fill_outside(&filled, mask);
+    if (s == OK && from->width == width && from->height == height) {
+        *out = filled;
+        return OK;
+    }
     if (s == OK) s = img_resize(&filled, width, height, out);
     img_free(&filled);
     return s;

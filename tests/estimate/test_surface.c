@@ -252,6 +252,43 @@ static void usual_exposures_are_left_alone_and_others_brought_near(void **state)
     img_free(&mask);
 }
 
+/* Pixels that the object half covers lie outside of what the network saw, and take the shape from beside them. */
+static void half_covered_pixels_continue_the_shape(void **state)
+{
+    (void)state;
+    enum { LOW = 32 };
+    const int sizes[] = {LOW / 2, LOW, 2 * LOW};
+    surface low;
+    assert_int_equal(surface_new(LOW, LOW, &low), OK);
+    box(&low.mask, 8, 8, 16, 16);
+    for (int i = 0; i < LOW * LOW; i++) {
+        if (!(low.mask.data[i] > 0)) continue;
+        const float values[] = {0.4f, 0.6f, 0, 0.8f, 0.3f, 1.25f};
+        low.albedo.data[3 * i] = values[0];
+        memcpy(low.normal.data + 3 * i, values + 1, 3 * sizeof(float));
+        low.roughness.data[i] = values[4];
+        low.depth.data[i] = values[5];
+    }
+    for (int k = 0; k < 3; k++) {
+        int size = sizes[k], edge = size / 4 - 1;
+        img mask, guide;
+        surface full;
+        assert_int_equal(img_new(&mask, size, size, 1), OK);
+        assert_int_equal(img_new(&guide, size, size, 3), OK);
+        box(&mask, edge, edge, size / 2 + 2, size / 2 + 2);
+        for (int i = 0; i < size; i++)
+            *img_at(&mask, edge, i) *= 0.3f;
+        assert_int_equal(surface_refine(&low, &guide, &mask, &full), OK);
+        assert_float_equal(img_at(&full.normal, edge, size / 2)[0], 0.6f, 0.01);
+        assert_float_equal(*img_at(&full.depth, edge, size / 2), 1.25f, 0.01);
+        assert_float_equal(*img_at(&full.roughness, edge, size / 2), 0.3f, 0.01);
+        surface_free(&full);
+        img_free(&mask);
+        img_free(&guide);
+    }
+    surface_free(&low);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +298,7 @@ int main(void)
         cmocka_unit_test(filling_keeps_the_inside_and_continues_it),
         cmocka_unit_test(filling_without_any_inside_gives_zeros),
         cmocka_unit_test(smoothing_removes_a_pattern_of_two_pixels_and_keeps_a_slope),
+        cmocka_unit_test(half_covered_pixels_continue_the_shape),
         cmocka_unit_test(tidy_surfaces_keep_their_promises_whatever_came_in),
         cmocka_unit_test(the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance),
         cmocka_unit_test(a_light_on_the_left_brightens_the_left),
