@@ -307,16 +307,16 @@ typedef struct bins {
 static bins bins_of(const float color[3])
 {
     bins found;
-    int low[3];
+    size_t low[3];
     float part[3];
     for (int c = 0; c < 3; c++) {
         float place = color[c] * (BINS - 1);
-        low[c] = place < BINS - 2 ? (int)place : BINS - 2;
+        low[c] = place < BINS - 2 ? (size_t)place : BINS - 2;
         part[c] = place - (float)low[c];
     }
-    for (int i = 0; i < 8; i++) {
-        int r = i & 1, g = (i >> 1) & 1, b = i >> 2;
-        found.at[i] = (size_t)(((low[0] + r) * BINS + low[1] + g) * BINS + low[2] + b);
+    for (size_t i = 0; i < 8; i++) {
+        size_t r = i & 1, g = (i >> 1) & 1, b = i >> 2;
+        found.at[i] = ((low[0] + r) * BINS + low[1] + g) * BINS + low[2] + b;
         found.weight[i] = (r ? part[0] : 1 - part[0]) * (g ? part[1] : 1 - part[1]) * (b ? part[2] : 1 - part[2]);
     }
     return found;
