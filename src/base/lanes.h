@@ -12,12 +12,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/inline.h"
 #include "base/vec.h"
 
 enum { LANES = 16 };
-
-/* A loop with a call in it does not become vectors: what a lane does must be inlined, whatever its size. */
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 /* Vectors, one a lane. */
 typedef struct lanes {

@@ -25,6 +25,14 @@ static inline vec3 vec3_of(const real *p)
     return (vec3){p[0], p[1], p[2]};
 }
 
+/* Back into such a row. */
+static inline void vec3_put(vec3 v, real *p)
+{
+    p[0] = v.x;
+    p[1] = v.y;
+    p[2] = v.z;
+}
+
 static inline vec3 vec3_add(vec3 a, vec3 b)
 {
     return (vec3){a.x + b.x, a.y + b.y, a.z + b.z};

@@ -34,8 +34,10 @@ static const cli_option *find(const cli_option *options, int value)
     return options;
 }
 
-static status take_number(const cli_option *o, const char *spelled, const char *value)
+static status take_number(const cli_option *o, const char *value)
 {
+    char spelled[64];
+    snprintf(spelled, sizeof spelled, "--%s", o->name);
     double real = 0;
     long whole = 0;
     if (o->real) {
@@ -51,15 +53,13 @@ static status take_number(const cli_option *o, const char *spelled, const char *
 
 static status take(const cli_option *o, const char *value)
 {
-    char spelled[64];
-    snprintf(spelled, sizeof spelled, "--%s", o->name);
     if (o->take) return o->take(value, o->into);
     if (o->flag)
         *o->flag = true;
     else if (o->text)
         *o->text = value;
     else
-        return take_number(o, spelled, value);
+        return take_number(o, value);
     return OK;
 }
 

@@ -80,9 +80,7 @@ static float average(const work *w, size_t pixel, float *mean)
     for (int d = 0; d < DRAW_MOST; d++)
         sum = vec3_add(sum, normal_at(&w->normals[d], pixel));
     sum = vec3_normalize(sum);
-    mean[0] = sum.x;
-    mean[1] = sum.y;
-    mean[2] = sum.z;
+    vec3_put(sum, mean);
     float square = 0;
     for (int d = 0; d < DRAW_MOST; d++) {
         float a = angle(normal_at(&w->normals[d], pixel), sum);

@@ -45,9 +45,7 @@ static void tidy_normal(float n[3])
     vec3 v =
         vec3_make(clamp(n[0], -1, 1), clamp(n[1], -1, 1), n[2] > LEAST_NORMAL_Z ? clamp(n[2], 0, 1) : LEAST_NORMAL_Z);
     v = vec3_normalize(v);
-    n[0] = v.x;
-    n[1] = v.y;
-    n[2] = v.z;
+    vec3_put(v, n);
 }
 
 static void tidy_pixels(void *context, size_t begin, size_t end)

@@ -1,7 +1,5 @@
 #include "eval/maps.h"
 
-#include <string.h>
-
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "eval/metrics.h"
@@ -58,6 +56,12 @@ status eval_maps_of_sample(const sample *s, eval_maps *out)
     return OK;
 }
 
+void eval_make_unit(img *normal)
+{
+    for (size_t i = 0, n = (size_t)normal->width * (size_t)normal->height; i < n; i++)
+        vec3_put(vec3_normalize(vec3_of(normal->data + 3 * i)), normal->data + 3 * i);
+}
+
 typedef struct render_work {
     const eval_maps *maps;
     const img *mask;
@@ -95,7 +99,7 @@ static void render_row(void *context, size_t row)
             radiance = clip(vec3_add(radiance, vec3_mul(in.albedo, white)));
         }
         radiance = vec3_scale(radiance, inside);
-        memcpy(img_at(w->out, x, y), (float[]){radiance.x, radiance.y, radiance.z}, 3 * sizeof(float));
+        vec3_put(radiance, img_at(w->out, x, y));
     }
 }
 

@@ -23,6 +23,8 @@ typedef struct eval_maps {
 status eval_maps_new(eval_maps *out, int width, int height);
 void eval_maps_free(eval_maps *maps);
 status eval_maps_of_sample(const sample *s, eval_maps *out);
+/* Means of normals (3 channels) are shorter than 1. */
+void eval_make_unit(img *normal);
 
 typedef struct eval_lighting {
     vec3 light;           /* a point light, in camera space */

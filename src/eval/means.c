@@ -199,13 +199,7 @@ static status resize_maps(eval_maps *maps, int width, int height)
     if (s == OK) s = resize_in_place(&maps->roughness, width, height);
     if (s == OK) s = resize_in_place(&maps->depth, width, height);
     if (s != OK) return s;
-    for (size_t i = 0, n = (size_t)width * (size_t)height; i < n; i++) {
-        float *p = maps->normal.data + 3 * i;
-        vec3 normal = vec3_normalize(vec3_of(p));
-        p[0] = normal.x;
-        p[1] = normal.y;
-        p[2] = normal.z;
-    }
+    eval_make_unit(&maps->normal);
     return OK;
 }
 

@@ -24,9 +24,7 @@ void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *
         for (int x = 0; x < normal->width; x++) {
             float *n = img_at(normal, x, y);
             vec3 turned = turn(vec3_of(n), sight(from, x, y), sight(to, x, y));
-            n[0] = turned.x;
-            n[1] = turned.y;
-            n[2] = turned.z;
+            vec3_put(turned, n);
         }
 }
 

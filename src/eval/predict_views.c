@@ -58,14 +58,6 @@ static void clear_maps(eval_prediction *out)
     memset(out->sh, 0, sizeof out->sh);
 }
 
-static void normalize(img *normal)
-{
-    for (size_t i = 0, n = (size_t)normal->width * (size_t)normal->height; i < n; i++) {
-        vec3 unit = vec3_normalize(vec3_of(normal->data + 3 * i));
-        memcpy(normal->data + 3 * i, (float[]){unit.x, unit.y, unit.z}, 3 * sizeof(float));
-    }
-}
-
 static status mean_of_views(eval_model *m, const img *image, const img *mask, eval_prediction *out)
 {
     eval_maps spare;
@@ -80,7 +72,7 @@ static status mean_of_views(eval_model *m, const img *image, const img *mask, ev
         for (int i = 0; s == OK && i < EVAL_LIGHTS && first + i < m->views; i++)
             add_view(m, first + i, (size_t)i, &spare, &spare_indirect, out);
     }
-    normalize(&out->maps.normal);
+    eval_make_unit(&out->maps.normal);
     eval_maps_free(&spare);
     img_free(&spare_indirect);
     return s;

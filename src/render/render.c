@@ -66,11 +66,8 @@ static void see_strip(renderer *r, int first, int y)
     for (int x = first; x < first + STRIP && x < r->settings->size; x++)
         see_pixel(r, x, y);
     trace_surfaces_at(r->scene, s->hit, s->view, s->points, s->at);
-    for (int i = 0; i < s->points; i++) {
-        vec3 *n = &s->at[i].normal;
-        /* the stored normal must face the camera plane too; off the axis, facing the eye does not imply it */
-        if (n->z < 0.01f) *n = vec3_normalize(vec3_make(n->x, n->y, 0.01f));
-    }
+    for (int i = 0; i < s->points; i++)
+        s->at[i].normal = sample_normal(s->at[i].normal);
 }
 
 /* ---- layers ---------------------------------------------------------------------------------------------------- */

@@ -42,6 +42,12 @@ typedef struct sample {
     char shape[32]; /* class of object: "union", "blend", "revolution", "superquadric", "relief", "mesh" */
 } sample;
 
+/* A unit normal as samples hold it: it faces the camera plane too; off the axis, facing the eye does not imply that. */
+static inline vec3 sample_normal(vec3 n)
+{
+    return n.z < 0.01f ? vec3_normalize(vec3_make(n.x, n.y, 0.01f)) : n;
+}
+
 void sample_free(sample *s);
 /* Channels albedo.R/.G/.B, normal.X/.Y/.Z, roughness.Y, depth.Z, mask.A, direct.*, indirect.*, bounce2.*, bounce3.*,
  * env.*, target00.direct.* …; the rest as attributes. Written to a temporary name, then renamed. */

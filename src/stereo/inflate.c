@@ -70,9 +70,7 @@ static void write_surface(const field *f, img *normal, img *height)
             vec3 n = {(f->u[i - 1] - f->u[i + 1]) / 2, (f->u[i + stride] - f->u[i - stride]) / 2, 2 * h + 1e-6f};
             n = vec3_normalize(n);
             float *o = img_at(normal, x, y);
-            o[0] = n.x;
-            o[1] = n.y;
-            o[2] = n.z;
+            vec3_put(n, o);
             *img_at(height, x, y) = h;
         }
     }

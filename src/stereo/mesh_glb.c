@@ -60,9 +60,7 @@ static status add_tangents(glb *g, const surface_mesh *m)
     for (size_t v = 0; v < m->vertices; v++) {
         vec3 t = tangent_of(vertex_normal(m, v));
         float *to = g->tangent + 4 * v;
-        to[0] = t.x;
-        to[1] = t.y;
-        to[2] = t.z;
+        vec3_put(t, to);
         to[3] = 1;
     }
     g->tangent_part = add_part(g, (part){.data = g->tangent,

@@ -6,6 +6,7 @@
 
 #include "optics/camera.h"
 #include "optics/sh.h"
+#include "render/sample.h"
 
 /* about the axis x, y or z */
 static void rotation_about(int axis, float angle, float out[3][3])
@@ -142,11 +143,7 @@ static void turn_pixel(const trn_view *v, const picture *p, const camera *eye, c
     if (t.coverage <= 0) return;
     v->depth[to] /= -from.z;
     float *normal = v->normal + 3 * to;
-    vec3 n = vec3_normalize(turned(turn, vec3_make(normal[0], normal[1], normal[2])));
-    if (n.z < 0.01f) n = vec3_normalize(vec3_make(n.x, n.y, 0.01f)); /* as the renderer stores them */
-    normal[0] = n.x;
-    normal[1] = n.y;
-    normal[2] = n.z;
+    vec3_put(sample_normal(vec3_normalize(turned(turn, vec3_of(normal)))), normal);
 }
 
 static bool is_cut_off(const trn_view *v)

@@ -287,8 +287,6 @@ status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const
         add_target_environment(v, lighting->target_sh);
     }
     convert(v);
-    v->light[0] = light.x;
-    v->light[1] = light.y;
-    v->light[2] = light.z;
+    vec3_put(light, v->light);
     return OK;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/half.h"
+#include "base/inline.h"
 
 enum { CHUNKS = 64, WIDEST = 64 };
 
@@ -12,12 +13,12 @@ size_t norm_partial_floats(int channels)
 }
 
 /* Loops are written once for both types; `bf16` is a constant in every caller, so that they compile to vector code. */
-static inline __attribute__((always_inline)) float load(const void *data, size_t i, bool bf16)
+ALWAYS_INLINE float load(const void *data, size_t i, bool bf16)
 {
     return bf16 ? bf16_to_float(((const uint16_t *)data)[i]) : ((const float *)data)[i];
 }
 
-static inline __attribute__((always_inline)) void store(void *data, size_t i, float x, bool bf16)
+ALWAYS_INLINE void store(void *data, size_t i, float x, bool bf16)
 {
     if (!bf16) {
         ((float *)data)[i] = x;
@@ -38,8 +39,7 @@ static rows chunk_rows(const nn_tensor *x, int chunk)
 }
 
 /* Sums of (x - origin) and its square over a chunk; origin, the first row, keeps a large mean from cancelling. */
-static inline __attribute__((always_inline)) void sum_rows(const nn_tensor *x, rows r, float *restrict sum,
-                                                           float *restrict square, bool bf16)
+ALWAYS_INLINE void sum_rows(const nn_tensor *x, rows r, float *restrict sum, float *restrict square, bool bf16)
 {
     const int c = x->c;
     const void *restrict data = x->data;
@@ -79,9 +79,8 @@ void norm_statistics(const nn_tensor *x, float *partial, float *mean, float *var
     }
 }
 
-static inline __attribute__((always_inline)) void apply_rows(const nn_tensor *x, rows r, const float *restrict scale,
-                                                             const float *restrict shift, bool relu, nn_tensor *y,
-                                                             bool bf16)
+ALWAYS_INLINE void apply_rows(const nn_tensor *x, rows r, const float *restrict scale, const float *restrict shift,
+                              bool relu, nn_tensor *y, bool bf16)
 {
     const size_t c = (size_t)x->c;
     const void *restrict from = x->data;
@@ -113,9 +112,8 @@ typedef struct affine {
 } affine;
 
 /* Sums of dy and dy·x̂ over a chunk, where ReLU passed. */
-static inline __attribute__((always_inline)) void sum_gradients(const nn_tensor *x, const nn_tensor *dy, rows r,
-                                                                const affine *f, bool relu, float *restrict sum,
-                                                                float *restrict product, bool bf16)
+ALWAYS_INLINE void sum_gradients(const nn_tensor *x, const nn_tensor *dy, rows r, const affine *f, bool relu,
+                                 float *restrict sum, float *restrict product, bool bf16)
 {
     const size_t c = (size_t)x->c;
     const void *restrict xs = x->data, *restrict gs = dy->data;
@@ -137,9 +135,8 @@ typedef struct input_gradient {
     const float *restrict factor, *restrict offset, *restrict slope;
 } input_gradient;
 
-static inline __attribute__((always_inline)) void write_gradients(const nn_tensor *x, const nn_tensor *dy, rows r,
-                                                                  const affine *f, bool relu, const input_gradient *w,
-                                                                  nn_tensor *dx, bool add, bool bf16)
+ALWAYS_INLINE void write_gradients(const nn_tensor *x, const nn_tensor *dy, rows r, const affine *f, bool relu,
+                                   const input_gradient *w, nn_tensor *dx, bool add, bool bf16)
 {
     const size_t c = (size_t)x->c;
     const void *restrict xs = x->data, *restrict gs = dy->data;

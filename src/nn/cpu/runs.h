@@ -2,6 +2,7 @@
 #ifndef MERLIN_NN_CPU_RUNS_H
 #define MERLIN_NN_CPU_RUNS_H
 
+#include "base/inline.h"
 #include "nn/cpu/chunk.h"
 
 typedef struct run_copy { /* in elements */
@@ -17,8 +18,7 @@ static inline void copy_bytes(const char *from, size_t from_stride, char *to, si
 }
 
 /* The same, adding; inlined so that a constant run becomes a few additions. */
-static inline __attribute__((always_inline)) void add_floats(const float *from, float *to, const run_copy *copy,
-                                                             size_t run)
+ALWAYS_INLINE void add_floats(const float *from, float *to, const run_copy *copy, size_t run)
 {
     for (size_t i = 0; i < copy->count; i++)
         for (size_t c = 0; c < run; c++)
