@@ -1,14 +1,16 @@
 #include "image/start.h"
 
-#include <gmodule.h>
+#include <dlfcn.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <vips/vips.h>
+
+#include "image/vips_library.h"
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
-static int started;
+static vips_functions functions;
+static bool started;
 
 static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *message, gpointer user)
 {
@@ -18,18 +20,46 @@ static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *mess
     (void)user;
 }
 
+/* dlsym gives functions as objects, which C does not turn into each other. */
+static bool find(void *library, const char *name, void *function)
+{
+    void *found = dlsym(library, name);
+    memcpy(function, &found, sizeof found);
+    return found != NULL;
+}
+
+static bool find_all(void *library)
+{
+    bool found = true;
+#define FIND_VIPS(name) found &= find(library, "vips_" #name, &functions.name);
+#define FIND_GLIB(name) found &= find(library, "g_" #name, &functions.g_##name);
+    VIPS_FUNCTIONS(FIND_VIPS)
+    GLIB_FUNCTIONS(FIND_GLIB)
+#undef FIND_VIPS
+#undef FIND_GLIB
+    return found;
+}
+
 static void start(void)
 {
-    g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
-    started = VIPS_INIT("merlin") == 0;
-    vips_concurrency_set(1);
-    vips_cache_set_max(0);
+    void *library = dlopen(MERLIN_VIPS_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
+    if (!library || !find_all(library)) return;
+    functions.g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
+    started = functions.init("merlin") == 0;
+    functions.concurrency_set(1);
+    functions.cache_set_max(0);
 }
 
 status vips_begin(void)
 {
     pthread_once(&once, start);
-    return started ? OK : fail(ERROR_DEVICE, "the image library libvips did not start: is it installed whole?");
+    return started ? OK
+                   : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS_LIBRARY " did not start: is it installed?");
+}
+
+const vips_functions *vips(void)
+{
+    return &functions;
 }
 
 void vips_without_modules(void)
@@ -40,18 +70,16 @@ void vips_without_modules(void)
 bool vips_load_heif(void)
 {
     char path[1024];
-    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif." G_MODULE_SUFFIX, vips_version(0),
-             vips_version(1));
-    GModule *module = g_module_open(path, G_MODULE_BIND_LAZY);
-    if (module) g_module_make_resident(module); /* its types stay registered */
-    return module != NULL;
+    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", functions.version(0),
+             functions.version(1));
+    return dlopen(path, RTLD_LAZY | RTLD_LOCAL) != NULL; /* for good: its types stay registered */
 }
 
 status vips_refusal(status s, const char *verb, const char *path)
 {
     char words[256];
-    g_strlcpy(words, vips_error_buffer(), sizeof words);
-    vips_error_clear();
+    snprintf(words, sizeof words, "%s", functions.error_buffer());
+    functions.error_clear();
     words[strcspn(words, "\r\n")] = 0;
     return fail(s, "cannot %s %s: %s", verb, path, words[0] ? words : "the image library does not say why");
 }
