@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/library.h"
 #include "image/vips_library.h"
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -20,30 +21,12 @@ static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *mess
     (void)user;
 }
 
-/* dlsym gives functions as objects, which C does not turn into each other. */
-static bool find(void *library, const char *name, void *function)
-{
-    void *found = dlsym(library, name);
-    memcpy(function, &found, sizeof found);
-    return found != NULL;
-}
-
-static bool find_all(void *library)
-{
-    bool found = true;
-#define FIND_VIPS(name) found &= find(library, "vips_" #name, &functions.name);
-#define FIND_GLIB(name) found &= find(library, "g_" #name, &functions.g_##name);
-    VIPS_FUNCTIONS(FIND_VIPS)
-    GLIB_FUNCTIONS(FIND_GLIB)
-#undef FIND_VIPS
-#undef FIND_GLIB
-    return found;
-}
-
 static void start(void)
 {
-    void *library = dlopen(MERLIN_VIPS_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
-    if (!library || !find_all(library)) return;
+#define WANT_VIPS(name) {"vips_" #name, &functions.name},
+#define WANT_GLIB(name) {"g_" #name, &functions.g_##name},
+    static const library_function wanted[] = {VIPS_FUNCTIONS(WANT_VIPS) GLIB_FUNCTIONS(WANT_GLIB)};
+    if (!library_load(MERLIN_VIPS, wanted, sizeof wanted / sizeof *wanted)) return;
     functions.g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
     started = functions.init("merlin") == 0;
     functions.concurrency_set(1);
@@ -53,8 +36,7 @@ static void start(void)
 status vips_begin(void)
 {
     pthread_once(&once, start);
-    return started ? OK
-                   : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS_LIBRARY " did not start: is it installed?");
+    return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start: is it installed?");
 }
 
 const vips_functions *vips(void)

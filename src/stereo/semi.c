@@ -7,11 +7,11 @@
  * highlights included (lobe_fit.h), alternate. The start that ends with the lower loss counts. The mean intensity is 1.
  * On a surface whose normals hardly differ, intensities and albedo explain each other: equal ones are kept unless
  * others explain the pictures much better. */
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "stereo/lapack.h"
 #include "stereo/lobe_choice.h"
 #include "stereo/samples.h"
 
@@ -69,7 +69,7 @@ static status from_rank(const pst_problem *p, const pst_samples *m, double *e)
                     normal[at[a] * columns + at[b]] += row[a] * row[b];
         }
     }
-    if (s == OK && LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', columns, normal, columns, eigenvalue) == 0) {
+    if (s == OK && lapack_eigen(normal, columns, true, eigenvalue)) {
         double low = HUGE_VAL, high = 0, sign = normal[0] < 0 ? -1 : 1;
         for (int k = 0; k < n; k++) {
             double inverse = sign * normal[k * columns];
