@@ -29,12 +29,13 @@ static void sum_strip(const strip *s, const running *r)
 {
     size_t n = s->values, reach = (size_t)s->radius * s->step;
     memset(r->sums, 0, n * sizeof *r->sums);
+    memset(r->replaced, 0, n * (size_t)(s->radius + 1) * sizeof *r->replaced);
     for (int i = 0; i < s->radius && i < s->count; i++)
         add(r->sums, s->first + (size_t)i * s->step, n);
     for (int i = 0; i < s->count; i++) {
         float *line = s->first + (size_t)i * s->step, *before = r->replaced + (size_t)(i % (s->radius + 1)) * n;
         if (i + s->radius < s->count) add(r->sums, line + reach, n);
-        for (size_t k = 0; i > s->radius && k < n; k++)
+        for (size_t k = 0; k < n; k++)
             r->sums[k] -= before[k];
         memcpy(before, line, n * sizeof *line);
         for (size_t k = 0; k < n; k++)
