@@ -89,13 +89,15 @@ status pst_list_pixels(const pst_capture *c, pst_problem *p)
     return OK;
 }
 
-/* Intensities that are not known count as 1; a light of no intensity tells nothing and would divide by zero. */
-static status list_lights(const pst_capture *c, pst_light *light)
+/* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
+ * divide by zero. */
+static status list_lights(const pst_capture *c, pst_method method, pst_light *light)
 {
     for (int i = 0; i < c->count; i++) {
         light[i] = c->light ? c->light[i] : (pst_light){0};
         float *e = light[i].intensity;
-        bool unknown = !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
+        bool unknown =
+            method == PST_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
         for (int k = 0; k < 3; k++) {
             if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
             if (!(e[k] > 0) || !isfinite(e[k]))
@@ -152,7 +154,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .shadow = options->shadow,
                      .saturation = options->saturation > 0 ? options->saturation : 0.98f,
                      .iterations = options->iterations};
-    s = list_lights(c, light);
+    s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
     if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
