@@ -5,11 +5,11 @@
  * smallest eigenvector. Weights come from the robust fit under the intensities so far. */
 #include "stereo/intensities.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "stereo/lapack.h"
 #include "stereo/lobe_fit.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
@@ -132,7 +132,8 @@ static double from_surface(intensities_job *job, int k)
     return pst_intensities_typical(job->ratio, count);
 }
 
-/* The form of unit diagonal; own becomes the root of what it was divided by, 0 for forgotten lights, which it leaves.
+/* The form of unit diagonal, its upper half; own becomes the root of what it was divided by, 0 for forgotten lights,
+ * which it leaves.
  */
 static void scale_form(intensities_job *job)
 {
@@ -147,7 +148,7 @@ static void scale_form(intensities_job *job)
     for (int k = 0; k < n; k++)
         for (int j = 0; j <= k; j++) {
             double scale = job->own[k] * job->own[j];
-            job->form[k * n + j] = scale > 0 ? job->form[k * n + j] / scale : k == j;
+            job->form[j * n + k] = scale > 0 ? job->form[k * n + j] / scale : k == j;
         }
 }
 
@@ -157,7 +158,7 @@ static status solve_form(intensities_job *job)
 {
     int n = job->sample.lights;
     scale_form(job);
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'L', n, job->form, n, job->eigenvalue) != 0)
+    if (!lapack_eigen(job->form, n, true, job->eigenvalue))
         return fail(ERROR_INPUT, "the lights' intensities cannot be told from these pictures");
     double least = fmax(job->eigenvalue[0], 1e-12);
     memset(job->next, 0, (size_t)n * sizeof *job->next);

@@ -1,11 +1,11 @@
 #include "stereo/solve.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "stereo/lapack.h"
 #include "stereo/solve_parts.h"
 
 static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
@@ -36,8 +36,7 @@ status pst_check_directions(const pst_light *light, int count)
         for (int j = 0; j < 9; j++)
             m[j] += d[j / 3] * d[j % 3];
     }
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, m, 3, eigenvalue) != 0)
-        return fail(ERROR_INPUT, "the light directions are not numbers");
+    if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
     return OK;
@@ -145,7 +144,8 @@ static status run(const pst_problem *p, pst_surface *out)
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
 {
     *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
-    status s = check_method(c, out->method);
+    status s = lapack_begin();
+    if (s == OK) s = check_method(c, out->method);
     if (s != OK) return s;
     pst_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
