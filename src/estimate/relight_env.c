@@ -173,11 +173,10 @@ static vec3 shade_seen(const job *j, const pixel *p)
 /* Mean radiance of the lit surfaces around every pixel, and how many of these there are. */
 static status lit_nearby(const surface *s, const img *seen, const float sh[9][3], img *out)
 {
-    img lit = {0}, scratch = {0};
+    img lit = {0};
     int width = s->mask.width, height = s->mask.height;
     status result = img_new(&lit, width, height, 3);
     if (result == OK) result = img_new(out, width, height, 4);
-    if (result == OK) result = img_new(&scratch, width, height, 4);
     if (result == OK) {
         surface_add_ambient(s, sh, &lit);
         for (size_t i = 0; i < (size_t)width * (size_t)height; i++) {
@@ -185,10 +184,9 @@ static status lit_nearby(const surface *s, const img *seen, const float sh[9][3]
                 out->data[4 * i + c] = lit.data[3 * i + c] * seen->data[3 * i + c];
             out->data[4 * i + 3] = s->mask.data[i];
         }
-        result = img_box_sums(out, &scratch, width / FRAME_BY_RADIUS);
+        result = img_box_sums(out, width / FRAME_BY_RADIUS);
     }
     img_free(&lit);
-    img_free(&scratch);
     return result;
 }
 
