@@ -16,6 +16,19 @@ function(merlin_module name)
   endif()
 endfunction()
 
+# merlin_loads(NAME MACRO library headers...): merlin_NAME loads the library when it needs it (base/library.h), by the
+# name in MERLIN_MACRO, under which programs that were linked with it would know it.
+function(merlin_loads name macro library)
+  find_library(${macro}_FILE ${library} REQUIRED)
+  file(REAL_PATH ${${macro}_FILE} file)
+  string(REGEX MATCH "lib[^/]*\\.so\\.[0-9]+" soname ${file})
+  if(NOT soname)
+    message(FATAL_ERROR "${file} is no shared library with a version in its name")
+  endif()
+  target_compile_definitions(merlin_${name} PRIVATE MERLIN_${macro}="${soname}")
+  target_include_directories(merlin_${name} SYSTEM PRIVATE ${ARGN})
+endfunction()
+
 function(merlin_program name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/cli/*.c)

@@ -7,22 +7,45 @@
 /* A large page, and the least block that is likely to hold two whole ones. */
 static const size_t LARGE_PAGE = (size_t)2 << 20, LEAST_BLOCK = (size_t)6 << 20;
 
+/* What stands before a block. */
+typedef struct origin {
+    void *whole;   /* what the system gave */
+    size_t mapped; /* bytes of it; 0: by calloc */
+} origin;
+
+static origin *origin_of(void *block)
+{
+    return (origin *)block - 1;
+}
+
+/* Large ones straight from the system: calloc would clear what it has, though nobody may ever look at it. */
+static origin take(size_t bytes)
+{
+    if (bytes < LEAST_BLOCK) return (origin){calloc(1, bytes), 0};
+    void *whole = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return (origin){whole == MAP_FAILED ? NULL : whole, bytes};
+}
+
 void *memory_new(size_t bytes)
 {
     if (bytes > SIZE_MAX - 2 * MEMORY_ALIGNMENT) return NULL;
-    /* calloc knows which pages are fresh; what it gave is kept just before the block */
-    char *whole = calloc(1, bytes + 2 * MEMORY_ALIGNMENT);
-    if (!whole) return NULL;
-    size_t before = MEMORY_ALIGNMENT + (-(uintptr_t)whole & (MEMORY_ALIGNMENT - 1));
-    char *block = whole + before;
+    origin from = take(bytes + 2 * MEMORY_ALIGNMENT);
+    if (!from.whole) return NULL;
+    size_t before = MEMORY_ALIGNMENT + (-(uintptr_t)from.whole & (MEMORY_ALIGNMENT - 1));
+    char *block = (char *)from.whole + before;
+    *origin_of(block) = from;
     memory_prefer_large_pages(block, bytes);
-    ((char **)(void *)block)[-1] = whole;
     return block;
 }
 
 void memory_free(void *block)
 {
-    if (block) free(((char **)block)[-1]);
+    if (!block) return;
+    origin from = *origin_of(block);
+    if (from.mapped)
+        munmap(from.whole, from.mapped);
+    else
+        free(from.whole);
 }
 
 void memory_prefer_large_pages(void *block, size_t bytes)

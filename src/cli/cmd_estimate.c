@@ -10,7 +10,6 @@
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
-#include "image/canvas.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -133,23 +132,6 @@ static status estimate_one(const request *r, const photo_job *job)
     return s == OK ? take_apart(r, job, &photo, &object, &laps) : s;
 }
 
-static void *find_font(void *unused)
-{
-    canvas_find_font();
-    return unused;
-}
-
-/* The overview's font is looked for while the network runs. */
-static status take_first_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
-                               lap_times *laps)
-{
-    pthread_t font;
-    bool looking = pthread_create(&font, NULL, find_font, NULL) == 0;
-    status s = take_apart(r, job, photo, object, laps);
-    if (looking) pthread_join(font, NULL);
-    return s;
-}
-
 /* The first photograph is read and its object found while the weights are read and the network made ready. */
 static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready)
 {
@@ -169,7 +151,7 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     s = photo_finish(&first, &photo, &object);
     laps.read = lap(&now);
     object.seconds = 0; /* they passed beside the others */
-    if (opened == OK) return s == OK ? take_first_apart(r, job, &photo, &object, &laps) : s;
+    if (opened == OK) return s == OK ? take_apart(r, job, &photo, &object, &laps) : s;
     merlin_image_free(&photo);
     photo_object_free(&object);
     return fail(opened, "%s", words);

@@ -1,8 +1,10 @@
 /* merlin: finds the subcommand and runs it. */
 #include <malloc.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "image/start.h"
 
@@ -44,13 +46,20 @@ static int finish(int code)
     return code ? code : 1;
 }
 
-/* Images up to some megapixels come from memory that was used before: a fresh page costs more than most of what is done
- * with it. Larger ones go back to the system when they are freed. */
+/* Images up to some megapixels come from memory that was used before, by whatever thread: a fresh page costs more than
+ * most of what is done with it. The first of that memory comes in large pages. Larger images go back to the system when
+ * they are freed. */
 static void reuse_memory(void)
 {
-    mallopt(M_MMAP_THRESHOLD, 8 << 20);
-    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    enum { FIRST = 64 << 20 };
+    mallopt(M_ARENA_MAX, 1);
     mallopt(M_TOP_PAD, 4 << 20);
+    mallopt(M_TRIM_THRESHOLD, 2 * FIRST);
+    mallopt(M_MMAP_THRESHOLD, 2 * FIRST);
+    void *first = malloc(FIRST);
+    memory_prefer_large_pages(first, FIRST);
+    free(first);
+    mallopt(M_MMAP_THRESHOLD, 8 << 20);
 }
 
 int main(int argc, char **argv)

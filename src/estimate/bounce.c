@@ -22,10 +22,9 @@ static status brightness(const img *direct_by_flash, const img *direct, const im
 
 status bounce_follow(const img *direct_by_flash, const img *direct, const img *ambient, img *indirect)
 {
-    img sums = {0}, scratch = {0};
+    img sums = {0};
     status s = brightness(direct_by_flash, direct, ambient, &sums);
-    if (s == OK) s = img_new(&scratch, sums.width, sums.height, PLANES);
-    if (s == OK) s = img_box_sums(&sums, &scratch, sums.width / FRAME_BY_RADIUS);
+    if (s == OK) s = img_box_sums(&sums, sums.width / FRAME_BY_RADIUS);
     size_t count = s == OK ? (size_t)indirect->width * (size_t)indirect->height : 0;
     for (size_t i = 0; i < count; i++) {
         float flash = sums.data[PLANES * i + FLASH], light = sums.data[PLANES * i + LIGHT];
@@ -34,6 +33,5 @@ status bounce_follow(const img *direct_by_flash, const img *direct, const img *a
             indirect->data[c] *= share;
     }
     img_free(&sums);
-    img_free(&scratch);
     return s;
 }

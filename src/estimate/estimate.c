@@ -135,10 +135,20 @@ static status refine(work *w, float gain, bool in_environment)
     return OK;
 }
 
+static bool is_whole(const work *w)
+{
+    return w->crop.x == 0 && w->crop.y == 0 && w->crop.side == w->photo.width && w->crop.side == w->photo.height;
+}
+
 /* From the crop to the photograph's frame; frees the crop's. */
 static status place(const work *w, img *from, merlin_image *to)
 {
     img whole = {0};
+    if (is_whole(w)) {
+        *to = image_of(from);
+        *from = whole;
+        return OK;
+    }
     status s = img_new(&whole, w->photo.width, w->photo.height, from->channels);
     if (s != OK) return s;
     crop_put(from, w->crop, &whole);

@@ -170,8 +170,6 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const char *fold
     b->stop = stop;
     /* before the files are written side by side, because the network uses every processor itself */
     status s = overview_new(model->network, maps, &b->job.overview);
-    if (s == OK && !maps->reconstruction.data)
-        s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to write");
     if (s == OK) s = write_through(b, folder);
     overview_free(&b->job.overview);
     free(b);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "estimate/exposure.h"
+#include "image/resize.h"
 #include "image/write.h"
 
 static const vec3 from_left = {-0.67f, 0.47f, -0.43f}, from_right = {0.77f, 0.28f, -0.43f};
@@ -26,9 +27,24 @@ static status show_values(const img *values, img *out)
     return OK;
 }
 
+/* In the photograph's size and exposure beside it. */
+static status show_reconstruction(const merlin_maps *maps, img *out)
+{
+    img whole = img_of(&maps->reconstruction), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &part);
+    if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
+    img_free(&part);
+    size_t count = s == OK ? 3 * (size_t)maps->size * (size_t)maps->size : 0;
+    for (size_t i = 0; i < count; i++)
+        out->data[i] *= maps->gain / EXPOSURE_WHITE;
+    return s;
+}
+
 static status make(network *n, const merlin_maps *maps, overview *o)
 {
     status s = stage_new(maps, maps->size, MERLIN_BY_BRDF, &o->stage);
+    if (s == OK && !maps->reconstruction.data)
+        s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;
     /* an underexposed photograph is shown as it should have been exposed */
     o->stage.white = EXPOSURE_WHITE;
@@ -39,7 +55,7 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     s = figure_normals(&full->normal, &full->mask, &o->normal);
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
-    if (s == OK) s = stage_relight(n, &o->stage, vec3_make(0, 0, 0), &o->reconstruction);
+    if (s == OK) s = show_reconstruction(maps, &o->reconstruction);
     if (s == OK) s = stage_relight(n, &o->stage, from_left, &o->left);
     if (s == OK) s = stage_relight(n, &o->stage, from_right, &o->right);
     return s;

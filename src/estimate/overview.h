@@ -21,6 +21,7 @@ typedef struct overview {
     img normal, roughness, depth, reconstruction, left, right;
 } overview;
 
+/* Of maps as merlin_estimate gives them. */
 status overview_new(network *n, const merlin_maps *maps, overview *out);
 void overview_free(overview *o);
 /* Borrowed from o. */

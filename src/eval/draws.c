@@ -34,14 +34,6 @@ static void choose(const pst_capture *all, int draw, pst_capture *some)
     }
 }
 
-static void forget_lights(pst_capture *c)
-{
-    for (int i = 0; i < c->count; i++)
-        c->light[i] = (pst_light){.intensity = {1, 1, 1}};
-    c->lighting = PST_UNKNOWN_LIGHT;
-    c->intensities_known = false;
-}
-
 status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surface *out)
 {
     *out = (pst_surface){0};
@@ -56,7 +48,7 @@ status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surfa
     } else {
         if (some.count > DRAW_PICTURES) some.count = DRAW_PICTURES;
         choose(all, draw, &some);
-        if (method == PST_UNCALIBRATED) forget_lights(&some);
+        if (method == PST_UNCALIBRATED) pst_capture_forget_lights(&some);
         s = pst_solve(&some, &(pst_options){.method = method}, out);
     }
     free(some.picture);

@@ -1,10 +1,11 @@
-/* A model as the evaluation runs it: one picture, four lights at a time.
+/* A model as the evaluation runs it: a picture's maps once, then relit under four lights at a time, as often as wanted.
  *
  *     eval_model *m;
  *     status s = eval_model_open("weights.safetensors", 256, NN_FLOAT32, 1, &m);
  *     eval_prediction p;
  *     if (s == OK) s = eval_prediction_new(m, &p);
- *     if (s == OK) s = eval_predict(m, &image, &mask, lights, &p);
+ *     if (s == OK) s = eval_estimate(m, &image, &mask, &p);
+ *     if (s == OK) s = eval_relight(m, &image, &mask, lights, &p);
  *     ...
  *     eval_prediction_free(&p);
  *     eval_model_close(m);
@@ -36,19 +37,23 @@ typedef struct eval_prediction {
     img by_brdf[EVAL_LIGHTS];         /* the rendering layer */
     img full_by_network[EVAL_LIGHTS]; /* the same, with the light that the global-illumination network adds */
     img full_by_brdf[EVAL_LIGHTS];
-    img shadowed[EVAL_LIGHTS]; /* full_by_brdf with cast shadows, by eval_predict_shadows */
+    img shadowed[EVAL_LIGHTS]; /* full_by_brdf with cast shadows, by eval_relight_shadows */
 } eval_prediction;
 
 status eval_prediction_new(const eval_model *m, eval_prediction *out);
 void eval_prediction_free(eval_prediction *p);
 
-/* image: linear, lit by the flash (setting B: in surroundings), zero outside the mask. Only models of setting B relight
- * under surroundings. */
-status eval_predict(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
+/* Maps, flash, indirect, reconstruction, sh. image: linear, lit by the flash (setting B: in surroundings), zero outside
+ * the mask. */
+status eval_estimate(eval_model *m, const img *image, const img *mask, eval_prediction *out);
+
+/* After eval_estimate of the same picture: by_network, by_brdf, both in full. Only models of setting B relight under
+ * surroundings. */
+status eval_relight(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
                     eval_prediction *out);
 
-/* After eval_predict with the same lights: the cast shadows that merlin relight makes of such maps. fov in degrees. */
-status eval_predict_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
+/* After eval_relight with the same lights: the cast shadows that merlin relight makes of such maps. fov in degrees. */
+status eval_relight_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
                             eval_prediction *p);
 
 /* Whether the variant has a relighting decoder. */

@@ -4,20 +4,26 @@
 
 #include "eval/predict.h"
 
+typedef struct eval_program {
+    nn_graph *graph;
+    nn_program *program;
+} eval_program;
+
 struct eval_model {
     model_config config;
     nn_params *params;
-    nn_graph *graph, *indirect_graph;
-    nn_program *program;  /* of EVAL_LIGHTS pictures, as is */
-    nn_program *indirect; /* NULL for a variant without global illumination */
+    eval_program maps;     /* of one picture */
+    eval_program relit;    /* of EVAL_LIGHTS; empty where nothing is relit by the network */
+    eval_program indirect; /* of EVAL_LIGHTS; empty for a variant without global illumination */
     int size, views;
 };
 
-/* Copies picture i of an output; nothing if the variant lacks it. */
+/* A picture and its mask into slot i. */
+void eval_put_picture(nn_program *p, const img *image, const img *mask, size_t i);
+/* Copies picture i of an output; nothing if there is no such output. */
 void eval_take(const nn_program *p, const char *name, size_t i, img *out);
 
-/* Maps and what is rendered from them over again, from the mean of the model's views. */
-status eval_predict_views(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
-                          eval_prediction *out);
+/* The maps lit by the training data's lamp and camera; what out held before is freed. */
+status eval_show(const eval_maps *maps, const img *mask, const eval_lighting *lighting, img *out);
 
 #endif

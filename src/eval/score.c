@@ -119,7 +119,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
         r.lights[i].light = eval_light(on->sample, i);
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
-    s = eval_predict(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+    s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
     if (s == OK) {
         score_maps(on, &e->prediction.maps, EVAL_MODEL);
         score_maps(on, &e->means.maps, EVAL_MEAN);
@@ -159,7 +159,7 @@ static status score_shadows(eval_scorer *e, eval_subject *on, int first, const e
 {
     const eval_maps *truth = &on->truth;
     shadow_caster caster;
-    status s = eval_predict_shadows(e->model, &on->mask, on->sample->fov, r->lights, &e->prediction);
+    status s = eval_relight_shadows(e->model, &on->mask, on->sample->fov, r->lights, &e->prediction);
     if (s == OK) s = shadow_caster_new(&truth->depth, &truth->normal, &on->mask, on->sample->fov, &caster);
     if (s != OK) return s;
     for (int i = 0; s == OK && i < r->count; i++) {
@@ -179,7 +179,7 @@ static status score_traced_targets(eval_scorer *e, eval_subject *on)
         eval_relighting r;
         s = relight_by_tracing(on, first, &r);
         if (s != OK) return s;
-        s = eval_predict(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+        s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
         if (s == OK)
             s = eval_score_relighting(e, on, &r, EVAL_TRACED_NETWORK, EVAL_TRACED_BRDF, e->prediction.full_by_network,
                                       e->prediction.full_by_brdf);
@@ -216,6 +216,7 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
     if (st == OK) st = take_photograph(e, &on);
     if (st == OK) st = eval_maps_of_sample(s, &on.truth);
     if (st == OK) st = eval_inflate(&on.image, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
+    if (st == OK) st = eval_estimate(e->model, &on.image, &on.mask, &e->prediction);
     if (st == OK) st = score_brdf_targets(e, &on);
     if (st == OK) st = score_traced_targets(e, &on);
     if (st == OK && eval_model_config(e->model)->lighting == MODEL_LIGHT_BOTH) st = eval_score_both_lights(e, &on);

@@ -2,11 +2,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <vips/vips.h>
 
 #include "image/codes.h"
 #include "image/color.h"
-#include "image/start.h"
+#include "image/vips_library.h"
 
 status canvas_new(canvas *out, int width, int height)
 {
@@ -41,22 +40,24 @@ void canvas_paste(canvas *c, const img *image, int x, int y)
 status canvas_draw_begin(const canvas *c, canvas_drawing *d)
 {
     *d = (canvas_drawing){0};
+    status s = vips_begin();
+    if (s != OK) return s;
     d->out = open_memstream(&d->text, &d->size);
     if (!d->out) return fail(ERROR_MEMORY, "no memory for a drawing");
     fprintf(d->out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"" CANVAS_FONT
-            "\" fill=\"" CANVAS_INK "\">\n",
+            "\" fill=\"" CANVAS_INK_CSS "\">\n",
             c->width, c->height);
     return OK;
 }
 
 void canvas_print_escaped(canvas_drawing *d, const char *words)
 {
-    char *valid = g_utf8_make_valid(words, -1);
-    char *escaped = g_markup_escape_text(valid, -1);
+    char *valid = vips()->g_utf8_make_valid(words, -1);
+    char *escaped = vips()->g_markup_escape_text(valid, -1);
     fputs(escaped, d->out);
-    g_free(escaped);
-    g_free(valid);
+    vips()->g_free(escaped);
+    vips()->g_free(valid);
 }
 
 /* rgba: the drawing's pixels, alpha not multiplied in. */
@@ -76,17 +77,17 @@ static void lay_over(canvas *c, const uint8_t *rgba)
 static status draw(canvas *c, const canvas_drawing *d)
 {
     VipsImage *image = NULL;
-    if (vips_svgload_buffer(d->text, d->size, &image, NULL)) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
+    if (vips()->svgload_buffer(d->text, d->size, &image, NULL)) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
     size_t size = 0;
-    uint8_t *rgba = vips_image_write_to_memory(image, &size);
-    g_object_unref(image);
+    uint8_t *rgba = vips()->image_write_to_memory(image, &size);
+    vips()->g_object_unref(image);
     if (!rgba) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
     status s = OK;
     if (size == 4 * (size_t)c->width * (size_t)c->height)
         lay_over(c, rgba);
     else
         s = fail(ERROR_DEVICE, "cannot draw a figure: the drawing has another size than its canvas");
-    g_free(rgba);
+    vips()->g_free(rgba);
     return s;
 }
 
@@ -94,7 +95,7 @@ status canvas_draw_end(canvas *c, canvas_drawing *d)
 {
     fputs("</svg>\n", d->out);
     int failed = fclose(d->out);
-    status s = failed ? fail(ERROR_MEMORY, "no memory for a drawing") : vips_begin();
+    status s = failed ? fail(ERROR_MEMORY, "no memory for a drawing") : OK;
     if (s == OK) s = draw(c, d);
     free(d->text);
     *d = (canvas_drawing){0};
@@ -111,16 +112,4 @@ static void copy_row(const void *context, int y, void *codes)
 status canvas_write(const canvas *c, const char *path)
 {
     return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, copy_row, c});
-}
-
-void canvas_find_font(void)
-{
-    canvas c;
-    canvas_drawing d = {0};
-    if (canvas_new(&c, 16, 16) != OK) return;
-    if (canvas_draw_begin(&c, &d) == OK) {
-        fputs("<text x=\"0\" y=\"12\" font-size=\"12\">x</text>\n", d.out);
-        (void)canvas_draw_end(&c, &d); /* whoever draws next will hear of it */
-    }
-    canvas_free(&c);
 }

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdlib.h>
 
 #include "image/canvas.h"
 #include "image/figure.h"
@@ -49,20 +50,33 @@ static status paste_tile(canvas *c, const layout *l, int index, const img *image
     return OK;
 }
 
-static status draw_labels(canvas *c, const layout *l, const figure_tile *tiles, int count)
+/* By an SVG, which takes a while, only where it must be. */
+static status draw_words(canvas *c, const canvas_words *words, int count, int size)
 {
+    if (canvas_write_words(c, words, count, size)) return OK;
     canvas_drawing d;
     status s = canvas_draw_begin(c, &d);
     if (s != OK) return s;
-    fprintf(d.out, "<g font-size=\"%d\" text-anchor=\"middle\">\n", l->font);
+    fprintf(d.out, "<g font-size=\"%d\" text-anchor=\"middle\">\n", size);
     for (int i = 0; i < count; i++) {
-        int x = tile_x(l, i) + l->tile / 2, y = tile_y(l, i) + l->tile + l->font * 3 / 2;
-        fprintf(d.out, "<text x=\"%d\" y=\"%d\">", x, y);
-        canvas_print_escaped(&d, tiles[i].label ? tiles[i].label : "");
+        fprintf(d.out, "<text x=\"%d\" y=\"%d\">", words[i].x, words[i].y);
+        canvas_print_escaped(&d, words[i].text);
         fputs("</text>\n", d.out);
     }
     fputs("</g>\n", d.out);
     return canvas_draw_end(c, &d);
+}
+
+static status draw_labels(canvas *c, const layout *l, const figure_tile *tiles, int count)
+{
+    canvas_words *words = malloc((size_t)count * sizeof *words);
+    if (!words) return fail(ERROR_MEMORY, "no memory for %d labels", count);
+    for (int i = 0; i < count; i++)
+        words[i] = (canvas_words){tiles[i].label ? tiles[i].label : "", tile_x(l, i) + l->tile / 2,
+                                  tile_y(l, i) + l->tile + l->font * 3 / 2};
+    status s = draw_words(c, words, count, l->font);
+    free(words);
+    return s;
 }
 
 status figure_sheet(const char *path, const figure_tile *tiles, int count, int columns, int tile_size)

@@ -195,19 +195,15 @@ static status check_sizes(const img *low, const img *low_mask, const img *guide,
 static status find_coefficients(const img *low, const img *low_mask, const img *guide, int radius, float epsilon,
                                 img *coefficients)
 {
-    img stats = {0}, scratch = {0}, scratch2 = {0};
+    img stats = {0};
     int planes = AT_MAP + low->channels * PER_CHANNEL;
     status s = img_new(&stats, low->width, low->height, planes);
-    if (s == OK) s = img_new(&scratch, low->width, low->height, planes);
     if (s == OK) fill_statistics(low, low_mask, guide, &stats);
-    if (s == OK) s = img_box_sums(&stats, &scratch, radius);
+    if (s == OK) s = img_box_sums(&stats, radius);
     if (s == OK) s = img_new(coefficients, low->width, low->height, 1 + low->channels * PER_CHANNEL);
-    if (s == OK) s = img_new(&scratch2, low->width, low->height, coefficients->channels);
     if (s == OK) solve_windows(&stats, low->channels, epsilon, coefficients);
-    if (s == OK) s = img_box_sums(coefficients, &scratch2, radius);
+    if (s == OK) s = img_box_sums(coefficients, radius);
     img_free(&stats);
-    img_free(&scratch);
-    img_free(&scratch2);
     return s;
 }
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-status img_new(img *out, int width, int height, int channels)
+/* With the pixels that allocate gives for so many bytes. */
+static status make(img *out, int width, int height, int channels, void *(*allocate)(size_t bytes))
 {
     *out = (img){0};
     if (width < 1 || height < 1 || channels < 1)
@@ -13,12 +14,22 @@ status img_new(img *out, int width, int height, int channels)
     if (__builtin_mul_overflow((size_t)width * (size_t)height, (size_t)channels, &count) ||
         __builtin_mul_overflow(count, sizeof(float), &bytes) || bytes > PTRDIFF_MAX)
         return fail(ERROR_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
-    out->data = calloc(count, sizeof(float));
+    out->data = allocate(bytes);
     if (!out->data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
     out->width = width;
     out->height = height;
     out->channels = channels;
     return OK;
+}
+
+static void *zeros(size_t bytes)
+{
+    return calloc(1, bytes);
+}
+
+status img_new(img *out, int width, int height, int channels)
+{
+    return make(out, width, height, channels, zeros);
 }
 
 void img_free(img *image)
@@ -30,7 +41,7 @@ void img_free(img *image)
 
 status img_copy(img *out, const img *from)
 {
-    status s = img_new(out, from->width, from->height, from->channels);
+    status s = make(out, from->width, from->height, from->channels, malloc);
     if (s != OK) return s;
     size_t count = (size_t)from->width * (size_t)from->height * (size_t)from->channels;
     memcpy(out->data, from->data, count * sizeof(float));

@@ -1,7 +1,9 @@
-/* Reading, before colour is decoded: a picture as its samples lie in the file, upright, colour and alpha apart. The two
- * sources behind it, libvips and EXR, are read by picture_decode and picture_read_exr. */
+/* Reading, before colour is decoded: a picture as its samples lie in the file, upright, colour and alpha apart. The
+ * sources behind it, libpng, libvips and EXR, are read by picture_read_png, picture_decode and picture_read_exr. */
 #ifndef MERLIN_IMAGE_PICTURE_H
 #define MERLIN_IMAGE_PICTURE_H
+
+#include <stdbool.h>
 
 #include "image/image.h"
 
@@ -11,10 +13,18 @@ typedef enum picture_colour {
     PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and nothing else */
 } picture_colour;
 
+/* A PNG as most are: *plain; one with a colour profile or an orientation is left to picture_decode, and *plain false.
+ * color, alpha as below, bits (8 or 16): any may be NULL. */
+status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, int *bits, bool *plain);
+
 /* color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
 status picture_decode(const char *path, picture_colour how, img *color, img *alpha);
 /* Bits of a sample, from the file's head alone: 8, 16 or 32. Not for EXR. */
 status picture_bits(const char *path, int *bits);
+status picture_check_size(const char *path, int width, int height);
+/* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
+ * they mean as sRGB, or else scaled to [0, 1]. */
+void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out);
 status picture_read_exr(const char *path, img *color, img *alpha);
 
 #endif

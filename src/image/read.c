@@ -3,16 +3,26 @@
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "image/color.h"
 #include "image/picture.h"
 
-/* Says what is wrong with a path before any decoder sees it, and whether the file is EXR. */
-static status look_at(const char *path, bool *is_exr)
+typedef enum file_kind { KIND_OTHER, KIND_PNG, KIND_EXR } file_kind;
+
+static file_kind kind_of(const unsigned char head[8])
 {
-    static const unsigned char exr_magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01},
+                               png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    return !memcmp(head, exr, sizeof exr) ? KIND_EXR : !memcmp(head, png, sizeof png) ? KIND_PNG : KIND_OTHER;
+}
+
+/* Says what is wrong with a path before any decoder sees it, and which of them is to. */
+static status look_at(const char *path, file_kind *kind)
+{
     struct stat about;
     FILE *f = fopen(path, "rb");
     if (!f || fstat(fileno(f), &about) != 0) {
@@ -20,15 +30,38 @@ static status look_at(const char *path, bool *is_exr)
         if (f) fclose(f);
         return s;
     }
-    unsigned char magic[4] = {0};
+    unsigned char head[8] = {0};
     bool regular = S_ISREG(about.st_mode);
-    size_t got = regular ? fread(magic, 1, sizeof magic, f) : 0;
+    size_t got = regular ? fread(head, 1, sizeof head, f) : 0;
     fclose(f);
     if (S_ISDIR(about.st_mode)) return fail(ERROR_INPUT, "cannot read %s: it is a folder, not a picture", path);
     if (!regular) return fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
     if (got == 0) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
-    *is_exr = got == sizeof magic && memcmp(magic, exr_magic, sizeof magic) == 0;
+    *kind = kind_of(head);
     return OK;
+}
+
+status picture_check_size(const char *path, int width, int height)
+{
+    if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: it is %d x %d pixels, more than %d a side; make it smaller first", path,
+                width, height, IMAGE_MAX_SIDE);
+}
+
+void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out)
+{
+    ptrdiff_t pixels = (ptrdiff_t)out->width * out->height;
+    int channels = out->channels;
+    const uint8_t *codes8 = codes;
+    const uint16_t *codes16 = codes;
+    const float *table = wide ? srgb_decode_table16() : srgb_decode_table8();
+#pragma omp parallel for schedule(static) if (pixels > 1 << 18)
+    for (ptrdiff_t i = 0; i < pixels; i++)
+        for (int c = 0; c < channels; c++) {
+            ptrdiff_t at = i * bands + first + c;
+            unsigned code = wide ? codes16[at] : codes8[at];
+            out->data[i * channels + c] = is_srgb ? table[code] : (float)code / (wide ? 65535.0f : 255.0f);
+        }
 }
 
 static status check_finite(const char *path, const img *image)
@@ -43,9 +76,12 @@ static status check_finite(const char *path, const img *image)
 
 static status read_any(const char *path, picture_colour how, img *color, img *alpha)
 {
-    bool is_exr = false;
-    status s = look_at(path, &is_exr);
-    if (s == OK) s = is_exr ? picture_read_exr(path, color, alpha) : picture_decode(path, how, color, alpha);
+    file_kind kind;
+    bool plain = false;
+    status s = look_at(path, &kind);
+    if (s == OK && kind == KIND_PNG) s = picture_read_png(path, how, color, alpha, NULL, &plain);
+    if (s == OK && kind == KIND_EXR) s = picture_read_exr(path, color, alpha);
+    if (s == OK && kind != KIND_EXR && !plain) s = picture_decode(path, how, color, alpha);
     if (s == OK) s = check_finite(path, color);
     if (s == OK && alpha && alpha->data) s = check_finite(path, alpha);
     return s;
@@ -85,15 +121,23 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
+static picture_colour colour_of_samples(int bits, bool decode_8_bit)
+{
+    return bits == 8 && decode_8_bit ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
+}
+
 static status read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
 {
-    bool is_exr = false;
+    file_kind kind;
+    bool plain = false;
     *bits = 32;
-    status s = look_at(path, &is_exr);
-    if (s != OK || is_exr) return s == OK ? picture_read_exr(path, color, NULL) : s;
-    s = picture_bits(path, bits);
-    if (s != OK) return s;
-    return picture_decode(path, *bits == 8 && decode_8_bit ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS, color, NULL);
+    status s = look_at(path, &kind);
+    if (s != OK || kind == KIND_EXR) return s == OK ? picture_read_exr(path, color, NULL) : s;
+    if (kind == KIND_PNG) s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, bits, &plain);
+    if (s == OK && plain)
+        return picture_read_png(path, colour_of_samples(*bits, decode_8_bit), color, NULL, bits, &plain);
+    if (s == OK) s = picture_bits(path, bits);
+    return s == OK ? picture_decode(path, colour_of_samples(*bits, decode_8_bit), color, NULL) : s;
 }
 
 status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits)

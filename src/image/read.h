@@ -1,4 +1,4 @@
-/* Photographs and maps from disk into linear float (libvips; OpenEXR Core for EXR).
+/* Photographs and maps from disk into linear float (libpng, OpenEXR Core, libvips for all others).
  *
  * 8- and 16-bit files are decoded from sRGB (or by their ICC profile, honoured) to linear; EXR and Radiance HDR are
  * linear already. EXIF orientation is applied. Grey becomes three equal channels. */

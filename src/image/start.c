@@ -1,14 +1,17 @@
 #include "image/start.h"
 
-#include <gmodule.h>
+#include <dlfcn.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <vips/vips.h>
+
+#include "base/library.h"
+#include "image/vips_library.h"
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
-static int started;
+static vips_functions functions;
+static bool started;
 
 static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *message, gpointer user)
 {
@@ -20,16 +23,25 @@ static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *mess
 
 static void start(void)
 {
-    g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
-    started = VIPS_INIT("merlin") == 0;
-    vips_concurrency_set(1);
-    vips_cache_set_max(0);
+#define WANT_VIPS(name) {"vips_" #name, &functions.name},
+#define WANT_GLIB(name) {"g_" #name, &functions.g_##name},
+    static const library_function wanted[] = {VIPS_FUNCTIONS(WANT_VIPS) GLIB_FUNCTIONS(WANT_GLIB)};
+    if (!library_load(MERLIN_VIPS, wanted, sizeof wanted / sizeof *wanted)) return;
+    functions.g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
+    started = functions.init("merlin") == 0;
+    functions.concurrency_set(1);
+    functions.cache_set_max(0);
 }
 
 status vips_begin(void)
 {
     pthread_once(&once, start);
-    return started ? OK : fail(ERROR_DEVICE, "the image library libvips did not start: is it installed whole?");
+    return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start: is it installed?");
+}
+
+const vips_functions *vips(void)
+{
+    return &functions;
 }
 
 void vips_without_modules(void)
@@ -40,18 +52,16 @@ void vips_without_modules(void)
 bool vips_load_heif(void)
 {
     char path[1024];
-    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif." G_MODULE_SUFFIX, vips_version(0),
-             vips_version(1));
-    GModule *module = g_module_open(path, G_MODULE_BIND_LAZY);
-    if (module) g_module_make_resident(module); /* its types stay registered */
-    return module != NULL;
+    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", functions.version(0),
+             functions.version(1));
+    return dlopen(path, RTLD_LAZY | RTLD_LOCAL) != NULL; /* for good: its types stay registered */
 }
 
 status vips_refusal(status s, const char *verb, const char *path)
 {
     char words[256];
-    g_strlcpy(words, vips_error_buffer(), sizeof words);
-    vips_error_clear();
+    snprintf(words, sizeof words, "%s", functions.error_buffer());
+    functions.error_clear();
     words[strcspn(words, "\r\n")] = 0;
     return fail(s, "cannot %s %s: %s", verb, path, words[0] ? words : "the image library does not say why");
 }

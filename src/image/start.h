@@ -1,5 +1,6 @@
-/* libvips, started once, silent, and without the caches and threads that a command reading a few files does not need.
- */
+/* libvips, which a hundred other libraries hang from: loaded when it is first needed, so that a program that reads and
+ * writes PNG and EXR alone does without it; started once, silent, and without the caches and threads that a command
+ * reading a few files does not need. */
 #ifndef MERLIN_IMAGE_START_H
 #define MERLIN_IMAGE_START_H
 
@@ -7,6 +8,7 @@
 
 #include "base/status.h"
 
+/* From any thread. ERROR_DEVICE if it is not installed. */
 status vips_begin(void);
 
 /* "cannot VERB PATH: the library's first words" with status s; forgets the library's words. */

@@ -6,13 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <vips/vips.h>
 
 #include "base/file.h"
 #include "image/codes.h"
 #include "image/color.h"
 #include "image/exr.h"
-#include "image/start.h"
+#include "image/vips_library.h"
 
 static float unit(float x)
 {
@@ -90,11 +89,12 @@ typedef struct film {
 static VipsImage *wrap(const film *f)
 {
     size_t size = 3 * (size_t)f->width * (size_t)f->height * (size_t)f->count;
-    VipsImage *bare = vips_image_new_from_memory(f->codes, size, f->width, f->height * f->count, 3, VIPS_FORMAT_UCHAR);
+    VipsImage *bare =
+        vips()->image_new_from_memory(f->codes, size, f->width, f->height * f->count, 3, VIPS_FORMAT_UCHAR);
     if (!bare) return NULL;
     VipsImage *named = NULL;
-    int failed = vips_copy(bare, &named, "interpretation", VIPS_INTERPRETATION_sRGB, NULL);
-    g_object_unref(bare);
+    int failed = vips()->copy(bare, &named, "interpretation", VIPS_INTERPRETATION_sRGB, NULL);
+    vips()->g_object_unref(bare);
     return failed ? NULL : named;
 }
 
@@ -109,7 +109,7 @@ static status check_frames(const char *path, const img *frames, int count)
     if (!ends_in(path, ".webp") && !ends_in(path, ".gif"))
         return fail(ERROR_USAGE, "cannot write %s: an animation's name ends in .webp or .gif", path);
     if (count < 1) return fail(ERROR_USAGE, "cannot write %s: an animation needs at least one frame", path);
-    if (ends_in(path, ".gif") && !vips_type_find("VipsOperation", "gifsave_buffer"))
+    if (ends_in(path, ".gif") && !vips()->type_find("VipsOperation", "gifsave_buffer"))
         return fail(ERROR_OUTPUT, "cannot write %s: this libvips has no GIF writer, use .webp", path);
     for (int i = 0; i < count; i++)
         if (!frames[i].data || frames[i].channels != 3 || frames[i].width != frames[0].width ||
@@ -131,12 +131,12 @@ static int save_frames(const char *path, const film *f, int milliseconds, void *
     }
     for (int i = 0; i < f->count; i++)
         delays[i] = milliseconds;
-    vips_image_set_int(image, VIPS_META_PAGE_HEIGHT, f->height);
-    vips_image_set_int(image, "loop", 0);
-    vips_image_set_array_int(image, "delay", delays, f->count);
-    int failed = ends_in(path, ".gif") ? vips_gifsave_buffer(image, data, size, NULL)
-                                       : vips_webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
-    g_object_unref(image);
+    vips()->image_set_int(image, VIPS_META_PAGE_HEIGHT, f->height);
+    vips()->image_set_int(image, "loop", 0);
+    vips()->image_set_array_int(image, "delay", delays, f->count);
+    int failed = ends_in(path, ".gif") ? vips()->gifsave_buffer(image, data, size, NULL)
+                                       : vips()->webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
+    vips()->g_object_unref(image);
     free(delays);
     return failed;
 }
@@ -158,7 +158,7 @@ status img_write_animation(const char *path, const img *frames, int count, int m
         s = vips_refusal(ERROR_OUTPUT, "write", path);
     else
         s = file_write(path, data, size);
-    g_free(data);
+    vips()->g_free(data);
     free(codes);
     return s;
 }

@@ -3,10 +3,10 @@
 #include "nn/safetensors.h"
 
 #include <cjson/cJSON.h>
+#include <libdeflate.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "base/file.h"
 #include "base/half.h"
@@ -191,7 +191,7 @@ static status check_sum(const st_file *f)
     const char *written = st_metadata(f, ST_CHECKSUM);
     if (!written) return OK;
     char found[ST_CHECKSUM_SIZE];
-    st_format_checksum((uint32_t)crc32_z(0, f->data, f->data_size), found);
+    st_format_checksum(libdeflate_crc32(0, f->data, f->data_size), found);
     if (strcmp(written, found) == 0) return OK;
     return fail(ERROR_INPUT, "%s was altered: its data's checksum is %s, not the recorded one; get the file again",
                 f->where, found);

@@ -2,10 +2,10 @@
 #include "nn/safetensors.h"
 
 #include <cjson/cJSON.h>
+#include <libdeflate.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "base/file.h"
 #include "nn/safetensors_format.h"
@@ -45,18 +45,18 @@ static bool describe_metadata(cJSON *header, const char *const (*metadata)[2], s
 /* malloc'ed JSON; NULL when memory runs out. */
 static char *header_of(const st_tensor *tensors, size_t count, const char *const (*metadata)[2], size_t metadata_count)
 {
-    uLong sum = crc32_z(0, NULL, 0);
+    uint32_t sum = 0;
     cJSON *header = cJSON_CreateObject();
     bool good = header;
     size_t at = 0;
     for (size_t i = 0; good && i < count; i++) {
         good = describe(header, &tensors[i], at);
         at += bytes_of(&tensors[i]);
-        /* zlib starts over when given no buffer, as an empty tensor has none */
-        if (tensors[i].count > 0) sum = crc32_z(sum, tensors[i].data, bytes_of(&tensors[i]));
+        /* it starts over when given no buffer, as an empty tensor has none */
+        if (tensors[i].count > 0) sum = libdeflate_crc32(sum, tensors[i].data, bytes_of(&tensors[i]));
     }
     char checksum[ST_CHECKSUM_SIZE];
-    st_format_checksum((uint32_t)sum, checksum);
+    st_format_checksum(sum, checksum);
     good = good && describe_metadata(header, metadata, metadata_count, checksum);
     char *text = good ? cJSON_PrintUnformatted(header) : NULL;
     cJSON_Delete(header);

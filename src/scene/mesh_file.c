@@ -3,14 +3,42 @@
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/file.h"
+#include "base/library.h"
 #include "scene/mesh_ply.h"
 
 enum { TRIANGLE_LIMIT = 5000000 };
+
+/* Loaded when it is first needed. */
+static struct {
+    __typeof__(aiCreatePropertyStore) *create_settings;
+    __typeof__(aiSetImportPropertyInteger) *set_integer;
+    __typeof__(aiReleasePropertyStore) *release_settings;
+    __typeof__(aiImportFileExWithProperties) *import;
+    __typeof__(aiReleaseImport) *release;
+    __typeof__(aiGetErrorString) *error;
+} assimp;
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+static bool loaded;
+
+static void load(void)
+{
+    static const library_function wanted[] = {
+        {"aiCreatePropertyStore", &assimp.create_settings},
+        {"aiSetImportPropertyInteger", &assimp.set_integer},
+        {"aiReleasePropertyStore", &assimp.release_settings},
+        {"aiImportFileExWithProperties", &assimp.import},
+        {"aiReleaseImport", &assimp.release},
+        {"aiGetErrorString", &assimp.error},
+    };
+    loaded = library_load(MERLIN_ASSIMP, wanted, sizeof wanted / sizeof *wanted);
+}
 
 static bool ends_in(const char *path, const char *ending)
 {
@@ -91,18 +119,19 @@ static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts
 
 static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
 {
-    struct aiPropertyStore *settings = aiCreatePropertyStore();
+    pthread_once(&once, load);
+    if (!loaded) return fail(ERROR_DEVICE, "the library " MERLIN_ASSIMP " cannot be loaded: is it installed?");
+    struct aiPropertyStore *settings = assimp.create_settings();
     if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");
-    aiSetImportPropertyInteger(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const struct aiScene *scene =
-        aiImportFileExWithProperties(path,
-                                     aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                         aiProcess_PreTransformVertices | aiProcess_SortByPType,
-                                     NULL, settings);
-    aiReleasePropertyStore(settings);
-    if (!scene) return fail(ERROR_INPUT, "cannot read the mesh: %s", aiGetErrorString());
+    assimp.set_integer(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const struct aiScene *scene = assimp.import(path,
+                                                aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                                    aiProcess_PreTransformVertices | aiProcess_SortByPType,
+                                                NULL, settings);
+    assimp.release_settings(settings);
+    if (!scene) return fail(ERROR_INPUT, "cannot read the mesh: %s", assimp.error());
     status s = take_scene(scene, mesh, parts);
-    aiReleaseImport(scene);
+    assimp.release(scene);
     return s;
 }
 

@@ -98,11 +98,13 @@ static status read_truth(layout kind, const char *folder, pst_capture *c)
     return OK;
 }
 
-static void forget_lights(pst_capture *c)
+void pst_capture_forget_lights(pst_capture *c)
 {
-    memset(c->light, 0, (size_t)c->count * sizeof *c->light);
+    for (int i = 0; i < c->count; i++) {
+        const float *e = c->light[i].intensity;
+        c->light[i] = (pst_light){.intensity = {e[0], e[1], e[2]}};
+    }
     c->lighting = PST_UNKNOWN_LIGHT;
-    c->intensities_known = false;
 }
 
 /* What the user says of the camera wins; a near capture that says nothing has the project's 60 degrees. */
@@ -137,6 +139,6 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
         return s;
     }
     settle_camera(options, out);
-    if (options->unknown_lights) forget_lights(out);
+    if (options->unknown_lights) pst_capture_forget_lights(out);
     return OK;
 }

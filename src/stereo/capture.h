@@ -18,7 +18,7 @@
 typedef enum pst_lighting {
     PST_DISTANT,      /* direction */
     PST_NEAR,         /* position, attenuation, LED lobe; needs the camera */
-    PST_UNKNOWN_LIGHT /* nothing is known */
+    PST_UNKNOWN_LIGHT /* nothing is known but, perhaps, intensities */
 } pst_lighting;
 
 typedef struct pst_light {
@@ -55,7 +55,7 @@ typedef struct pst_read_options {
     const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or the pictures' own non-black part */
     const char *ambient; /* picture to subtract; NULL: ambient.png in the folder if there is one */
     bool near;           /* lights.txt holds positions */
-    bool unknown_lights; /* ignore lights: uncalibrated */
+    bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
     pst_camera camera;   /* focal 0: by the field of view, else from the layout, else 60 degrees when near */
     float field_of_view; /* horizontal, degrees; 0: not known */
@@ -63,5 +63,8 @@ typedef struct pst_read_options {
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
 void pst_capture_free(pst_capture *c);
+
+/* The lights become unknown, but for their intensities, which are measured apart. */
+void pst_capture_forget_lights(pst_capture *c);
 
 #endif

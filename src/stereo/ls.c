@@ -5,6 +5,7 @@
  * Pictures are streamed: a block of pixels small enough for the cache is summed over all pictures (ls_sums.h), so that
  * every sample is read from memory once and working memory does not grow with the number of pictures. */
 #include <math.h>
+#include <string.h>
 
 #include "base/parallel.h"
 #include "stereo/ls_sums.h"
@@ -102,16 +103,47 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-/* Three components side by side. */
-static void store_triples(const float from[3][LS_BLOCK], int count, const float *restrict mask, float *restrict to)
+/* Sixteen pixels: vectors of the compiler's, as in ls_sums.c. */
+enum { LANES = 16 };
+typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t lane_bits __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+/* A component of sixteen pixels, zero outside the mask. */
+static inline void take(const float *from, const lane_bits *counts, lanes *to)
 {
-    const float *restrict x = from[0], *restrict y = from[1], *restrict z = from[2];
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        to[3 * i] = inside(mask[i], x[i]);
-        to[3 * i + 1] = inside(mask[i], y[i]);
-        to[3 * i + 2] = inside(mask[i], z[i]);
+    memcpy(to, from, sizeof *to);
+    *to = (lanes)((lane_bits)*to & *counts);
+}
+
+/* Three components side by side, each store a whole register: compilers weave them value by value. */
+static inline void weave(const lanes *x, const lanes *y, const lanes *z, float *to)
+{
+    lanes some = __builtin_shufflevector(*x, *y, 0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
+    lanes all = __builtin_shufflevector(some, *z, 0, 1, 16, 3, 4, 17, 6, 7, 18, 9, 10, 19, 12, 13, 20, 15);
+    memcpy(to, &all, sizeof all);
+    some = __builtin_shufflevector(*x, *y, 21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
+    all = __builtin_shufflevector(some, *z, 0, 21, 2, 3, 22, 5, 6, 23, 8, 9, 24, 11, 12, 25, 14, 15);
+    memcpy(to + LANES, &all, sizeof all);
+    some = __builtin_shufflevector(*x, *y, 0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
+    all = __builtin_shufflevector(some, *z, 26, 1, 2, 27, 4, 5, 28, 7, 8, 29, 10, 11, 30, 13, 14, 31);
+    memcpy(to + 2 * LANES, &all, sizeof all);
+}
+
+static void store_triples(const float from[3][LS_BLOCK], int count, const float *mask, float *to)
+{
+    int i = 0;
+    for (; i + LANES <= count; i += LANES) {
+        lanes m, x, y, z;
+        memcpy(&m, mask + i, sizeof m);
+        lane_bits counts = m > 0.5f;
+        take(from[0] + i, &counts, &x);
+        take(from[1] + i, &counts, &y);
+        take(from[2] + i, &counts, &z);
+        weave(&x, &y, &z, to + (size_t)i * 3);
     }
+    for (; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            to[3 * i + c] = inside(mask[i], from[c][i]);
 }
 
 static void store_values(const float *restrict from, int count, const float *restrict mask, float *restrict to)

@@ -264,7 +264,7 @@ static status find_depth_small(near_job *job, int factor)
 {
     const pst_capture *c = job->problem->capture;
     pst_capture small;
-    status s = pst_shrink(c, factor, job->problem->saturation, &small);
+    status s = pst_shrink(c, pst_blocks_of(c, factor), job->problem->saturation, &small);
     if (s != OK) return s;
     pst_problem p = *job->problem;
     pst_surface found = {0};

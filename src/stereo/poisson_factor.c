@@ -1,8 +1,42 @@
 #include <cholmod.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/library.h"
 #include "stereo/poisson_level.h"
+
+/* Loaded when it is first needed. */
+static struct {
+    __typeof__(cholmod_start) *start;
+    __typeof__(cholmod_finish) *finish;
+    __typeof__(cholmod_allocate_sparse) *allocate_sparse;
+    __typeof__(cholmod_free_sparse) *free_sparse;
+    __typeof__(cholmod_analyze) *analyze;
+    __typeof__(cholmod_factorize) *factorize;
+    __typeof__(cholmod_free_factor) *free_factor;
+    __typeof__(cholmod_solve) *solve;
+    __typeof__(cholmod_free_dense) *free_dense;
+} cholmod;
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+static bool loaded;
+
+static void load(void)
+{
+    static const library_function wanted[] = {
+        {"cholmod_start", &cholmod.start},
+        {"cholmod_finish", &cholmod.finish},
+        {"cholmod_allocate_sparse", &cholmod.allocate_sparse},
+        {"cholmod_free_sparse", &cholmod.free_sparse},
+        {"cholmod_analyze", &cholmod.analyze},
+        {"cholmod_factorize", &cholmod.factorize},
+        {"cholmod_free_factor", &cholmod.free_factor},
+        {"cholmod_solve", &cholmod.solve},
+        {"cholmod_free_dense", &cholmod.free_dense},
+    };
+    loaded = library_load(MERLIN_CHOLMOD, wanted, sizeof wanted / sizeof *wanted);
+}
 
 struct poisson_factor {
     const poisson_grid *grid;
@@ -41,17 +75,19 @@ static void fill(poisson_factor *f)
 
 status poisson_factor_new(const poisson_grid *g, poisson_factor **out)
 {
-    poisson_factor *f = calloc(1, sizeof *f);
     *out = NULL;
+    pthread_once(&once, load);
+    if (!loaded) return fail(ERROR_DEVICE, "the library " MERLIN_CHOLMOD " cannot be loaded: is it installed?");
+    poisson_factor *f = calloc(1, sizeof *f);
     if (!f) return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", g->count);
     f->grid = g;
-    cholmod_start(&f->common);
+    cholmod.start(&f->common);
     f->common.print = 0;
     size_t n = (size_t)g->count;
-    f->matrix = cholmod_allocate_sparse(n, n, 3 * n, true, true, -1, CHOLMOD_REAL, &f->common);
+    f->matrix = cholmod.allocate_sparse(n, n, 3 * n, true, true, -1, CHOLMOD_REAL, &f->common);
     if (f->matrix) {
         fill(f);
-        f->factor = cholmod_analyze(f->matrix, &f->common);
+        f->factor = cholmod.analyze(f->matrix, &f->common);
     }
     if (!f->factor) {
         status s = refuse(f);
@@ -65,16 +101,16 @@ status poisson_factor_new(const poisson_grid *g, poisson_factor **out)
 void poisson_factor_free(poisson_factor *f)
 {
     if (!f) return;
-    cholmod_free_factor(&f->factor, &f->common);
-    cholmod_free_sparse(&f->matrix, &f->common);
-    cholmod_finish(&f->common);
+    cholmod.free_factor(&f->factor, &f->common);
+    cholmod.free_sparse(&f->matrix, &f->common);
+    cholmod.finish(&f->common);
     free(f);
 }
 
 status poisson_factor_update(poisson_factor *f)
 {
     fill(f);
-    if (!cholmod_factorize(f->matrix, f->factor, &f->common) || f->common.status != CHOLMOD_OK) return refuse(f);
+    if (!cholmod.factorize(f->matrix, f->factor, &f->common) || f->common.status != CHOLMOD_OK) return refuse(f);
     return OK;
 }
 
@@ -82,9 +118,9 @@ status poisson_factor_solve(poisson_factor *f, const double *b, double *x)
 {
     size_t n = (size_t)f->grid->count;
     cholmod_dense right = {.nrow = n, .ncol = 1, .nzmax = n, .d = n, .x = (void *)b, .xtype = CHOLMOD_REAL};
-    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, f->factor, &right, &f->common);
+    cholmod_dense *solution = cholmod.solve(CHOLMOD_A, f->factor, &right, &f->common);
     if (!solution) return refuse(f);
     memcpy(x, solution->x, n * sizeof *x);
-    cholmod_free_dense(&solution, &f->common);
+    cholmod.free_dense(&solution, &f->common);
     return OK;
 }

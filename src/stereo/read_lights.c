@@ -118,16 +118,25 @@ static status read_listed(const char *folder, const char *lights, bool near, pst
     s = list.name ? names_from_list(folder, lights, &list, c) : names_from_folder(folder, lights, list.count, c);
     if (s == OK) s = set_lights(lights, &list, near, c);
     light_list_free(&list);
-    char *intensities = s == OK ? file_join(folder, "light_intensities.txt") : NULL;
-    if (intensities && file_exists(intensities)) s = pst_read_intensities(intensities, c);
-    free(intensities);
+    return s;
+}
+
+static status read_intensities_if_any(const char *folder, pst_capture *c)
+{
+    char *path = file_join(folder, "light_intensities.txt");
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = file_exists(path) ? pst_read_intensities(path, c) : OK;
+    free(path);
     return s;
 }
 
 status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c)
 {
-    if (options->unknown_lights) return names_from_folder(folder, NULL, 0, c);
-    char *lights;
+    char *lights = NULL;
+    if (options->unknown_lights) {
+        status s = names_from_folder(folder, NULL, 0, c);
+        return s == OK ? read_intensities_if_any(folder, c) : s;
+    }
     status s = find_lights(folder, options->lights, &lights);
     if (s == OK && !lights)
         return fail(ERROR_INPUT,
@@ -135,6 +144,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
                     "with --lights, or use --method uncalibrated",
                     folder);
     if (s == OK) s = read_listed(folder, lights, options->near, c);
+    if (s == OK) s = read_intensities_if_any(folder, c);
     free(lights);
     return s;
 }

@@ -1,12 +1,12 @@
 #include "stereo/samples.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
 #include "stereo/field_fit.h"
+#include "stereo/lapack.h"
 #include "stereo/lobe_fit.h"
 #include "stereo/pixel_fit.h"
 
@@ -83,14 +83,13 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
             if (pass == 1 && level > 0 && (all || *lit < ENOUGH)) add_pixel(m, i, level, gram);
         }
     double *eigenvalue = gram + n * n;
-    int size = m->lights;
-    lapack_int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', size, gram, size, eigenvalue);
+    bool solved = lapack_eigen(gram, m->lights, true, eigenvalue);
     double smallest = eigenvalue[n - 3], largest = eigenvalue[n - 1];
     for (size_t j = 0; j < n; j++)
         for (size_t k = 0; k < 3; k++)
             basis[3 * j + k] = gram[j * n + n - 1 - k] * sqrt(eigenvalue[n - 1 - k] > 0 ? eigenvalue[n - 1 - k] : 0);
     free(gram);
-    if (info != 0 || !(smallest > 1e-9 * largest))
+    if (!solved || !(smallest > 1e-9 * largest))
         return fail(ERROR_INPUT, "the pictures do not differ enough to tell the lights from the surface");
     return OK;
 }

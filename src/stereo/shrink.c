@@ -8,7 +8,7 @@
 typedef struct shrink_job {
     const pst_capture *from;
     pst_capture *to;
-    int factor;
+    pst_blocks blocks;
     uint16_t high;
 } shrink_job;
 
@@ -17,18 +17,24 @@ typedef struct block {
     int left, right, top, bottom;
 } block;
 
+static int inside(int at, int end)
+{
+    return at < 0 ? 0 : at > end ? end : at;
+}
+
 static block block_of(const shrink_job *job, int x, int y)
 {
-    int f = job->factor, right = (x + 1) * f, bottom = (y + 1) * f;
-    return (block){x * f, right < job->from->width ? right : job->from->width, y * f,
-                   bottom < job->from->height ? bottom : job->from->height};
+    const pst_blocks *b = &job->blocks;
+    int left = b->x + x * b->factor, top = b->y + y * b->factor, width = job->from->width, height = job->from->height;
+    return (block){inside(left, width), inside(left + b->factor, width), inside(top, height),
+                   inside(top + b->factor, height)};
 }
 
 static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)
 {
     const pst_capture *c = job->from;
     uint64_t sum[3] = {0}, count = 0;
-    bool saturated = false;
+    bool saturated[3] = {false};
     for (int y = b.top; y < b.bottom; y++)
         for (int x = b.left; x < b.right; x++) {
             size_t at = (size_t)y * (size_t)c->width + (size_t)x;
@@ -37,11 +43,11 @@ static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uin
             for (int ch = 0; ch < c->channels; ch++) {
                 uint16_t code = picture[at * (size_t)c->channels + (size_t)ch];
                 sum[ch] += code;
-                saturated |= code >= job->high;
+                saturated[ch] |= code >= job->high;
             }
         }
     for (int ch = 0; ch < c->channels; ch++)
-        out[ch] = saturated ? UINT16_MAX : (uint16_t)(count ? (sum[ch] + count / 2) / count : 0);
+        out[ch] = saturated[ch] ? UINT16_MAX : (uint16_t)(count ? (sum[ch] + count / 2) / count : 0);
 }
 
 static void shrink_picture(void *context, size_t k)
@@ -56,29 +62,36 @@ static void shrink_picture(void *context, size_t k)
         }
 }
 
-static void shrink_mask(const shrink_job *job)
+static int pixels_on_object(const shrink_job *job, block b)
 {
-    const img *from = &job->from->mask;
-    img *to = &job->to->mask;
-    for (int y = 0; y < from->height; y++)
-        for (int x = 0; x < from->width; x++)
-            if (from->data[(size_t)y * (size_t)from->width + (size_t)x] > 0.5f)
-                to->data[(size_t)(y / job->factor) * (size_t)to->width + (size_t)(x / job->factor)] = 1;
+    int count = 0;
+    for (int y = b.top; y < b.bottom; y++)
+        for (int x = b.left; x < b.right; x++)
+            count += *img_at(&job->from->mask, x, y) > 0.5f;
+    return count;
 }
 
-static status allocate(const pst_capture *c, int factor, pst_capture *out)
+static void shrink_mask(const shrink_job *job)
 {
-    size_t count = (size_t)c->count, samples;
-    *out = (pst_capture){.width = (c->width + factor - 1) / factor,
-                         .height = (c->height + factor - 1) / factor,
+    int needed = job->blocks.whole ? job->blocks.factor * job->blocks.factor : 1;
+    img *to = &job->to->mask;
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++)
+            *img_at(to, x, y) = pixels_on_object(job, block_of(job, x, y)) >= needed;
+}
+
+static status allocate(const pst_capture *c, const pst_blocks *b, pst_capture *out)
+{
+    size_t count = (size_t)c->count, samples = (size_t)b->columns * (size_t)b->rows * (size_t)c->channels;
+    *out = (pst_capture){.width = b->columns,
+                         .height = b->rows,
                          .channels = c->channels,
                          .lighting = c->lighting,
                          .intensities_known = c->intensities_known,
                          .camera = c->camera};
-    out->camera.focal /= (float)factor;
-    out->camera.center_x /= (float)factor;
-    out->camera.center_y /= (float)factor;
-    samples = (size_t)out->width * (size_t)out->height * (size_t)c->channels;
+    out->camera.focal /= (float)b->factor;
+    out->camera.center_x = (c->camera.center_x - (float)b->x) / (float)b->factor;
+    out->camera.center_y = (c->camera.center_y - (float)b->y) / (float)b->factor;
     out->light = malloc(count * sizeof *out->light);
     out->picture = calloc(count, sizeof *out->picture);
     if (!out->light || !out->picture) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
@@ -90,15 +103,21 @@ static status allocate(const pst_capture *c, int factor, pst_capture *out)
     return img_new(&out->mask, out->width, out->height, 1);
 }
 
-status pst_shrink(const pst_capture *c, int factor, float saturation, pst_capture *out)
+pst_blocks pst_blocks_of(const pst_capture *c, int factor)
 {
-    status s = allocate(c, factor, out);
+    return (pst_blocks){
+        .columns = (c->width + factor - 1) / factor, .rows = (c->height + factor - 1) / factor, .factor = factor};
+}
+
+status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst_capture *out)
+{
+    status s = allocate(c, &blocks, out);
     if (s != OK) {
         pst_capture_free(out);
         return s;
     }
     float high = saturation * 65535;
-    shrink_job job = {c, out, factor, (uint16_t)(high < 65535 ? high : 65535)};
+    shrink_job job = {c, out, blocks, (uint16_t)(high < 65535 ? high : 65535)};
     shrink_mask(&job);
     parallel_for((size_t)c->count, shrink_picture, &job);
     return OK;

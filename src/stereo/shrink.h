@@ -1,7 +1,7 @@
-/* A capture with fewer, larger pixels: what slow searches start on.
+/* A capture with fewer, larger pixels: what slow searches start on, and what evaluation brings large ones to.
  *
  *     pst_capture small;
- *     status s = pst_shrink(&capture, 4, 0.98f, &small);
+ *     status s = pst_shrink(&capture, pst_blocks_of(&capture, 4), 0.98f, &small);
  *     ... find its depth ...
  *     pst_enlarge(&depth, &small.mask, &capture.mask, 4, &out);
  *     pst_capture_free(&small); */
@@ -10,9 +10,20 @@
 
 #include "stereo/capture.h"
 
-/* Every pixel the mean of factor × factor on the object; where one of them reaches the share `saturation` of full
- * scale, saturated itself. On the object is what holds a pixel of it. Names and truth are left out. */
-status pst_shrink(const pst_capture *c, int factor, float saturation, pst_capture *out);
+/* Which pixels become one: columns × rows blocks of factor × factor, the first at (x, y). They may hang over the edges.
+ */
+typedef struct pst_blocks {
+    int x, y, columns, rows, factor;
+    bool whole; /* on the object is what lies on it wholly; else what holds a pixel of it */
+} pst_blocks;
+
+/* The whole picture's. */
+pst_blocks pst_blocks_of(const pst_capture *c, int factor);
+
+/* Every pixel the mean of its block's pixels on the object. A channel of which one reaches the share `saturation` of
+ * full scale is saturated itself, as it would be on a sensor; whether the others count still is for the solvers to say.
+ * Names and truth are left out. */
+status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst_capture *out);
 
 /* Values between the means of 1 channel, for the pixels of mask that the small mask covers; out has the mask's size. */
 void pst_enlarge(const img *small, const img *small_mask, const img *mask, int factor, img *out);

@@ -1,11 +1,11 @@
 #include "stereo/solve.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "stereo/lapack.h"
 #include "stereo/solve_parts.h"
 
 static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
@@ -36,8 +36,7 @@ status pst_check_directions(const pst_light *light, int count)
         for (int j = 0; j < 9; j++)
             m[j] += d[j / 3] * d[j % 3];
     }
-    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, m, 3, eigenvalue) != 0)
-        return fail(ERROR_INPUT, "the light directions are not numbers");
+    if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
     return OK;
@@ -90,13 +89,15 @@ status pst_list_pixels(const pst_capture *c, pst_problem *p)
     return OK;
 }
 
-/* Intensities that are not known count as 1; a light of no intensity tells nothing and would divide by zero. */
-static status list_lights(const pst_capture *c, pst_light *light)
+/* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
+ * divide by zero. */
+static status list_lights(const pst_capture *c, pst_method method, pst_light *light)
 {
     for (int i = 0; i < c->count; i++) {
         light[i] = c->light ? c->light[i] : (pst_light){0};
         float *e = light[i].intensity;
-        bool unknown = !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
+        bool unknown =
+            method == PST_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
         for (int k = 0; k < 3; k++) {
             if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
             if (!(e[k] > 0) || !isfinite(e[k]))
@@ -143,7 +144,8 @@ static status run(const pst_problem *p, pst_surface *out)
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
 {
     *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
-    status s = check_method(c, out->method);
+    status s = lapack_begin();
+    if (s == OK) s = check_method(c, out->method);
     if (s != OK) return s;
     pst_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
@@ -152,7 +154,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .shadow = options->shadow,
                      .saturation = options->saturation > 0 ? options->saturation : 0.98f,
                      .iterations = options->iterations};
-    s = list_lights(c, light);
+    s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
     if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);

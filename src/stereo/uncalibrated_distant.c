@@ -10,12 +10,12 @@
  * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
  * outward.
  * 4. With the lights found, their strengths among them, the robust solver does the rest. */
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "stereo/field_fit.h"
+#include "stereo/lapack.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"
@@ -258,11 +258,11 @@ static status equal_strengths(const lights3 *l, double whiten[9], double unwhite
         memcpy(a + 6 * k, &(double[6]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z}, 6 * sizeof *a);
         q[k] = 1;
     }
-    lapack_int info = LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n, 6, 1, a, 6, q, 1);
+    bool solved = lapack_least_squares(a, n, 6, q);
     double m[9] = {q[0], q[1], q[2], q[1], q[3], q[4], q[2], q[4], q[5]};
     free(a);
-    if (info == 0) info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, m, 3, eigenvalue);
-    if (info != 0 || !(eigenvalue[2] > 0))
+    solved = solved && lapack_eigen(m, 3, true, eigenvalue);
+    if (!solved || !(eigenvalue[2] > 0))
         return fail(ERROR_INPUT, "the lights found are not of a kind: are they equally strong?");
     for (int j = 0; j < 9; j++) {
         /* not positive: highlights have bent the factors */

@@ -1,0 +1,101 @@
+#include <string.h>
+
+#include "estimate/view.h"
+#include "eval/predict_parts.h"
+
+static status take(const eval_model *m, const char *name, int channels, img *out)
+{
+    status s = img_new(out, m->size, m->size, channels);
+    if (s == OK) eval_take(m->maps.program, name, 0, out);
+    return s;
+}
+
+/* What the network says of the picture in this orientation, as it lies there. */
+static status look(eval_model *m, const img *image, const img *mask, int view, network_estimation *out)
+{
+    img turned = {0}, turned_mask = {0};
+    status s = view_turn(image, view, &turned);
+    if (s == OK) s = view_turn(mask, view, &turned_mask);
+    if (s == OK) {
+        eval_put_picture(m->maps.program, &turned, &turned_mask, 0);
+        s = nn_forward(m->maps.program);
+    }
+    if (s == OK) s = take(m, "albedo", 3, &out->maps.albedo);
+    if (s == OK) s = take(m, "normal", 3, &out->maps.normal);
+    if (s == OK) s = take(m, "roughness", 1, &out->maps.roughness);
+    if (s == OK) s = take(m, "depth", 1, &out->maps.depth);
+    if (s == OK) s = take(m, "indirect", 3, &out->indirect);
+    const float *code = nn_output_data(m->maps.program, "environment_code");
+    if (code) model_decode_sh(code, out->environment);
+    img_free(&turned);
+    img_free(&turned_mask);
+    return s;
+}
+
+static status mean_of_views(eval_model *m, const img *image, const img *mask, network_estimation *mean)
+{
+    status s = view_mean_new(m->size, mean);
+    for (int view = 0; view < m->views && s == OK; view++) {
+        network_estimation turned = {0};
+        s = look(m, image, mask, view, &turned);
+        if (s == OK) view_mean_add(mean, &turned, view, 1 / (float)m->views);
+        network_estimation_free(&turned);
+    }
+    if (s == OK && m->views > 1) eval_make_unit(&mean->maps.normal);
+    return s;
+}
+
+static void move(img *from, img *to)
+{
+    img_free(to);
+    *to = *from;
+    *from = (img){0};
+}
+
+static void keep(network_estimation *mean, eval_prediction *out)
+{
+    move(&mean->maps.albedo, &out->maps.albedo);
+    move(&mean->maps.normal, &out->maps.normal);
+    move(&mean->maps.roughness, &out->maps.roughness);
+    move(&mean->maps.depth, &out->maps.depth);
+    move(&mean->indirect, &out->indirect);
+    memcpy(out->sh, mean->environment, sizeof out->sh);
+}
+
+/* By the network's rendering layer; what the surroundings light is taken out of the flash's light afterwards. */
+static status show_by_network(const eval_model *m, const img *mask, eval_prediction *out)
+{
+    const float *lit = nn_output_data(m->maps.program, "environment");
+    eval_take(m->maps.program, "direct", 0, &out->flash);
+    img_free(&out->reconstruction);
+    status s = eval_picture(&out->flash, &out->indirect, mask, &out->reconstruction);
+    for (size_t i = 0, n = 3 * (size_t)m->size * (size_t)m->size; lit && i < n; i++)
+        out->flash.data[i] -= lit[i];
+    return s;
+}
+
+/* Means of several views are rendered over again. */
+static status show_by_rendering(const img *mask, eval_prediction *out)
+{
+    const eval_lighting flash = {{0, 0, 0}, NULL}, both = {{0, 0, 0}, (const float(*)[3])out->sh};
+    img lit = {0};
+    status s = eval_show(&out->maps, mask, &flash, &out->flash);
+    if (s == OK) s = eval_show(&out->maps, mask, &both, &lit);
+    img_free(&out->reconstruction);
+    if (s == OK) s = eval_picture(&lit, &out->indirect, mask, &out->reconstruction);
+    img_free(&lit);
+    return s;
+}
+
+status eval_estimate(eval_model *m, const img *image, const img *mask, eval_prediction *out)
+{
+    if (image->width != m->size || image->height != m->size)
+        return fail(ERROR_INPUT, "a picture of %dx%d does not fit a model prepared for %dx%d", image->width,
+                    image->height, m->size, m->size);
+    network_estimation mean = {0};
+    status s = mean_of_views(m, image, mask, &mean);
+    if (s == OK) keep(&mean, out);
+    network_estimation_free(&mean);
+    if (s == OK) s = m->views == 1 ? show_by_network(m, mask, out) : show_by_rendering(mask, out);
+    return s;
+}

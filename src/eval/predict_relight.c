@@ -1,0 +1,157 @@
+#include <string.h>
+
+#include "estimate/black.h"
+#include "estimate/bounce.h"
+#include "estimate/shadow.h"
+#include "estimate/smooth.h"
+#include "eval/predict_parts.h"
+
+/* The target's lighting code: the light's place and, in setting B, its surroundings. */
+static void fill_code(const eval_model *m, const float light[3], const float (*sh)[3], float *code)
+{
+    static const float dark[9][3];
+    memcpy(code, light, 3 * sizeof *light);
+    if (m->config.lighting == MODEL_LIGHT_BOTH) model_encode_sh(sh ? sh : dark, code + 3);
+}
+
+static void fill_inputs(eval_model *m, const img *image, const img *mask, const eval_lighting *lights)
+{
+    nn_program *p = m->relit.program;
+    float *code = nn_input_data(p, "light"), *position = nn_input_data(p, "light_position");
+    size_t code_size = (size_t)model_light_size(&m->config);
+    for (size_t i = 0; i < EVAL_LIGHTS; i++) {
+        const float light[3] = {lights[i].light.x, lights[i].light.y, lights[i].light.z};
+        eval_put_picture(p, image, mask, i);
+        if (position) memcpy(position + 3 * i, light, sizeof light);
+        if (code) fill_code(m, light, lights[i].sh, code + i * code_size);
+    }
+}
+
+static float clip(float x)
+{
+    return x > 0 ? (x < 1 ? x : 1) : 0;
+}
+
+static void clip_image(img *image)
+{
+    for (size_t i = 0, n = (size_t)image->width * (size_t)image->height * 3; i < n; i++)
+        image->data[i] = clip(image->data[i]);
+}
+
+/* out = direct + indirect, clipped; indirect may be NULL. */
+static void add_indirect(const img *direct, const float *indirect, img *out)
+{
+    for (size_t i = 0, n = (size_t)out->width * (size_t)out->height * 3; i < n; i++)
+        out->data[i] = clip(direct->data[i] + (indirect ? indirect[i] : 0));
+}
+
+/* The network's bounces for the four pictures in `direct`, given the maps; NULL for a variant without. */
+static status run_indirect(eval_model *m, const eval_maps *maps, const img *mask, const img direct[EVAL_LIGHTS],
+                           const float **indirect)
+{
+    const struct {
+        const char *name;
+        const img *image;
+    } inputs[] = {{"albedo", &maps->albedo},
+                  {"normal", &maps->normal},
+                  {"roughness", &maps->roughness},
+                  {"depth", &maps->depth},
+                  {"mask", mask}};
+    size_t pixels = (size_t)m->size * (size_t)m->size;
+    *indirect = NULL;
+    if (!m->indirect.program) return OK;
+    for (size_t i = 0; i < EVAL_LIGHTS; i++) {
+        for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
+            size_t values = pixels * (size_t)inputs[k].image->channels;
+            memcpy(nn_input_data(m->indirect.program, inputs[k].name) + i * values, inputs[k].image->data,
+                   values * sizeof(float));
+        }
+        memcpy(nn_input_data(m->indirect.program, "direct") + i * pixels * 3, direct[i].data,
+               pixels * 3 * sizeof(float));
+    }
+    status s = nn_forward(m->indirect.program);
+    if (s == OK) *indirect = nn_output_data(m->indirect.program, "indirect");
+    return s;
+}
+
+/* full = direct + bounces, as merlin relight adds them. */
+static status add_bounces(eval_model *m, const eval_prediction *p, const img *mask, const img direct[EVAL_LIGHTS],
+                          img full[EVAL_LIGHTS])
+{
+    const float *indirect;
+    size_t values = 3 * (size_t)m->size * (size_t)m->size;
+    img bounces = {0};
+    status s = run_indirect(m, &p->maps, mask, direct, &indirect);
+    if (s == OK) s = img_new(&bounces, m->size, m->size, 3);
+    for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        if (indirect) memcpy(bounces.data, indirect + i * values, values * sizeof *indirect);
+        s = bounce_follow(&p->flash, &direct[i], NULL, &bounces);
+        if (s == OK) add_indirect(&direct[i], bounces.data, &full[i]);
+    }
+    img_free(&bounces);
+    return s;
+}
+
+/* By the network, and while maps are of a single view by its rendering layer, too. */
+static status relight(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
+                      eval_prediction *out)
+{
+    fill_inputs(m, image, mask, lights);
+    status s = nn_forward(m->relit.program);
+    for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        eval_take(m->relit.program, "relit_direct", i, &out->by_network[i]);
+        eval_take(m->relit.program, "relit_brdf", i, &out->by_brdf[i]);
+        if (!lights[i].sh) relit_black_level(&out->by_network[i]); /* surroundings leave nothing black */
+        clip_image(&out->by_network[i]);
+        clip_image(&out->by_brdf[i]);
+    }
+    return s;
+}
+
+status eval_relight(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
+                    eval_prediction *out)
+{
+    status s = m->relit.program ? relight(m, image, mask, lights, out) : OK;
+    for (int i = 0; i < EVAL_LIGHTS && s == OK && m->views > 1; i++)
+        s = eval_show(&out->maps, mask, &lights[i], &out->by_brdf[i]);
+    if (s == OK) s = add_bounces(m, out, mask, out->by_brdf, out->full_by_brdf);
+    if (s == OK && eval_model_relights(m)) s = add_bounces(m, out, mask, out->by_network, out->full_by_network);
+    return s;
+}
+
+/* From shape as estimate gives it. */
+static status caster_of(const eval_maps *maps, const img *mask, float fov, shadow_caster *out)
+{
+    img depth = {0}, normal = {0};
+    status s = img_copy(&depth, &maps->depth);
+    if (s == OK) s = img_copy(&normal, &maps->normal);
+    if (s == OK) s = smooth_inside(&depth, mask);
+    if (s == OK) s = smooth_inside(&normal, mask);
+    if (s == OK) s = shadow_caster_new(&depth, &normal, mask, fov, out);
+    img_free(&depth);
+    img_free(&normal);
+    return s;
+}
+
+static status cast_shadow(const shadow_caster *caster, vec3 light, img *image)
+{
+    img seen = {0};
+    status s = shadow_cast(caster, light, image->width, image->height, &seen);
+    if (s == OK) shadow_darken(&seen, image);
+    img_free(&seen);
+    return s;
+}
+
+status eval_relight_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
+                            eval_prediction *p)
+{
+    shadow_caster caster;
+    status s = caster_of(&p->maps, mask, fov, &caster);
+    if (s != OK) return s;
+    for (int i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        memcpy(p->shadowed[i].data, p->by_brdf[i].data, 3 * (size_t)m->size * (size_t)m->size * sizeof(float));
+        s = cast_shadow(&caster, lights[i].light, &p->shadowed[i]);
+    }
+    shadow_caster_free(&caster);
+    return s == OK ? add_bounces(m, p, mask, p->shadowed, p->shadowed) : s;
+}

@@ -1,0 +1,72 @@
+/* The functions of libvips, which is loaded by vips_begin and not when the program starts.
+ *
+ *     status s = vips_begin();
+ *     if (s == OK) failed = vips()->autorot(image, &made, NULL);
+ */
+#ifndef MERLIN_IMAGE_VIPS_LIBRARY_H
+#define MERLIN_IMAGE_VIPS_LIBRARY_H
+
+#include <vips/vips.h>
+
+#include "image/start.h"
+
+/* What is used of it: vips_NAME for every NAME. */
+#define VIPS_FUNCTIONS(USE)                                                                                            \
+    USE(autorot)                                                                                                       \
+    USE(band_format_get_type)                                                                                          \
+    USE(band_format_isint)                                                                                             \
+    USE(cache_set_max)                                                                                                 \
+    USE(cast)                                                                                                          \
+    USE(colourspace)                                                                                                   \
+    USE(concurrency_set)                                                                                               \
+    USE(copy)                                                                                                          \
+    USE(enum_nick)                                                                                                     \
+    USE(error_buffer)                                                                                                  \
+    USE(error_clear)                                                                                                   \
+    USE(extract_band)                                                                                                  \
+    USE(foreign_find_load)                                                                                             \
+    USE(gifsave_buffer)                                                                                                \
+    USE(icc_transform)                                                                                                 \
+    USE(image_copy_memory)                                                                                             \
+    USE(image_get_bands)                                                                                               \
+    USE(image_get_coding)                                                                                              \
+    USE(image_get_format)                                                                                              \
+    USE(image_get_height)                                                                                              \
+    USE(image_get_interpretation)                                                                                      \
+    USE(image_get_orientation)                                                                                         \
+    USE(image_get_typeof)                                                                                              \
+    USE(image_get_width)                                                                                               \
+    USE(image_hasalpha)                                                                                                \
+    USE(image_new_from_file)                                                                                           \
+    USE(image_new_from_memory)                                                                                         \
+    USE(image_set_array_int)                                                                                           \
+    USE(image_set_int)                                                                                                 \
+    USE(image_write_to_memory)                                                                                         \
+    USE(init)                                                                                                          \
+    USE(rad2float)                                                                                                     \
+    USE(svgload_buffer)                                                                                                \
+    USE(type_find)                                                                                                     \
+    USE(version)                                                                                                       \
+    USE(webpsave_buffer)
+
+/* And of GLib below it: g_NAME. */
+#define GLIB_FUNCTIONS(USE)                                                                                            \
+    USE(free)                                                                                                          \
+    USE(log_set_handler)                                                                                               \
+    USE(markup_escape_text)                                                                                            \
+    USE(object_unref)                                                                                                  \
+    USE(utf8_make_valid)
+
+#define VIPS_MEMBER(name) __typeof__(vips_##name) *name;
+#define GLIB_MEMBER(name) __typeof__(g_##name) *g_##name;
+typedef struct vips_functions {
+    VIPS_FUNCTIONS(VIPS_MEMBER)
+    GLIB_FUNCTIONS(GLIB_MEMBER)
+} vips_functions;
+#undef VIPS_MEMBER
+#undef GLIB_MEMBER
+
+/* After vips_begin (image/start.h). */
+const vips_functions *vips(void);
+
+#endif
