@@ -66,8 +66,8 @@ pst_fall_off pst_fall_off_of(const pst_lobe_data *here, const pst_lobe_data *dee
                 m[i][j] += w * rows[i][k] * rows[j][k];
         }
     }
-    float information = eliminate(m, right);
-    if (!(information > 0) || !(count > UNKNOWNS)) return (pst_fall_off){0, 0};
-    float variance = squares / (count - UNKNOWNS) + least_residual * least_residual;
+    float information = eliminate(m, right), freedom = count - (float)(lobe->tail > 0 ? UNKNOWNS : UNKNOWNS - 2);
+    if (!(information > 0) || !(freedom > 0)) return (pst_fall_off){0, 0};
+    float variance = squares / freedom + least_residual * least_residual;
     return (pst_fall_off){right[SURFACE] / information, information / variance};
 }
