@@ -142,8 +142,8 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
 void merlin_environment_free(merlin_environment *environment);
 
 /* The object in these surroundings, and under a point light too unless that is NULL: diffuse by nine spherical
- * harmonics, highlights from the picture itself; the surroundings cast no shadows. MERLIN_BY_NETWORK needs a light and
- * a model that was trained for both. */
+ * harmonics, highlights from the picture itself. MERLIN_BY_BRDF: with the shadows that the object casts on itself and a
+ * bounce. MERLIN_BY_NETWORK needs a light and a model that was trained for both; its surroundings cast no shadows. */
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps,
                                          const merlin_environment *environment, const float *light,
                                          merlin_relighting how, merlin_image *out);

@@ -36,7 +36,7 @@ static const char help[] =
     "                       with --orbit they go round once, and the light stays\n"
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
     "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
-    "      --no-shadows     brdf without cast shadows, as in the paper\n"
+    "      --no-shadows     brdf without cast shadows (lights and surroundings), as in the paper\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
     "      --mask FILE, --size N, --views N, --exposure EV\n"

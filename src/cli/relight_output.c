@@ -114,8 +114,8 @@ static status write_lights(const relight_job *job, const staging *t)
     status s = stage_new(job->maps, 0, job->how, &st);
     if (s != OK) return s;
     sheet all = {.count = 0};
-    if (job->environment) st.environment = &job->environment->map;
-    if (count == 0) s = write_light(job, &st, t, &(picture){"relit", 0, NULL}, &all);
+    if (job->environment) s = stage_surround(&st, &job->environment->map);
+    if (s == OK && count == 0) s = write_light(job, &st, t, &(picture){"relit", 0, NULL}, &all);
     for (size_t i = 0; i < count && s == OK; i++)
         s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
                          : write_light(job, &st, t, &(picture){"relit", i, &job->lights.at[i]}, &all);
@@ -213,11 +213,11 @@ static status render_frame(const relight_job *job, stage *st, env_map *environme
     if (job->environment) {
         light = job->lights.count ? &job->lights.at[0] : NULL;
         if (i > 0) env_map_turn(environment, 360.0f / (float)job->orbit);
-        st->environment = environment;
         snprintf(label, sizeof label, "turned by %.0f°", 360.0 * i / job->orbit);
     }
     int step = (job->orbit + MOST_TILES - 1) / MOST_TILES;
-    status s = relight(job, st, light, frame);
+    status s = job->environment ? stage_surround(st, environment) : OK;
+    if (s == OK) s = relight(job, st, light, frame);
     return s == OK && i % step == 0 ? sheet_add(some, frame, label) : s;
 }
 

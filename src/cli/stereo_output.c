@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "estimate/crop.h"
 #include "estimate/staging.h"
 #include "image/exr.h"
 #include "image/figure.h"
@@ -126,20 +127,37 @@ static status write_error(const stereo_result *r, const char *path)
     return s;
 }
 
+/* The part of a tile that shows the object; large photographs often show little of it. */
+static status crop_tile(crop_square c, img *tile)
+{
+    img part = {0};
+    status s = crop_take(tile, c, &part);
+    if (s != OK) return s;
+    img_free(tile);
+    *tile = part;
+    return OK;
+}
+
 static status write_overview(const stereo_result *r, const char *path)
 {
-    img normal = {0}, depth = {0}, error = {0}, side = {0};
-    status s = figure_normals(&r->normal, &r->mask, &normal);
-    if (s == OK) s = figure_depth(&r->depth, &r->mask, &depth);
-    if (s == OK) s = error_picture(r, &error);
-    if (s == OK) s = stereo_side_view(r, TILE_SIZE, &side);
-    const figure_tile tiles[TILES] = {{"normal", &normal}, {"albedo", &r->albedo},  {"depth", &depth},
-                                      {"mask", &r->mask},  {r->error_name, &error}, {"from 45 degrees", &side}};
+    img tile[TILES] = {0};
+    crop_square c;
+    status s = crop_around(&r->mask, &c);
+    if (s != OK) c = (crop_square){0, 0, r->mask.width > r->mask.height ? r->mask.width : r->mask.height};
+    s = figure_normals(&r->normal, &r->mask, &tile[0]);
+    if (s == OK) s = crop_tile(c, &tile[0]);
+    if (s == OK) s = crop_take(&r->albedo, c, &tile[1]);
+    if (s == OK) s = figure_depth(&r->depth, &r->mask, &tile[2]);
+    if (s == OK) s = crop_tile(c, &tile[2]);
+    if (s == OK) s = crop_take(&r->mask, c, &tile[3]);
+    if (s == OK) s = error_picture(r, &tile[4]);
+    if (s == OK) s = crop_tile(c, &tile[4]);
+    if (s == OK) s = stereo_side_view(r, TILE_SIZE, &tile[5]);
+    const figure_tile tiles[TILES] = {{"normal", &tile[0]}, {"albedo", &tile[1]},      {"depth", &tile[2]},
+                                      {"mask", &tile[3]},   {r->error_name, &tile[4]}, {"from 45 degrees", &tile[5]}};
     if (s == OK) s = figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
-    img_free(&normal);
-    img_free(&depth);
-    img_free(&error);
-    img_free(&side);
+    for (int k = 0; k < TILES; k++)
+        img_free(&tile[k]);
     return s;
 }
 

@@ -4,6 +4,7 @@
 
 #include "estimate/crop.h"
 #include "estimate/env_map.h"
+#include "estimate/horizon.h"
 #include "estimate/mask.h"
 #include "estimate/network.h"
 #include "estimate/shadow.h"
@@ -64,6 +65,7 @@ typedef struct stage {
     img low_photo;              /* radiance */
     img flash;                  /* `low` under it, bounce 1 */
     shadow_caster caster;       /* empty unless shadows are cast */
+    horizon horizon;            /* the same, and an environment was given */
     const env_map *environment; /* lights beside the point light, or NULL; borrowed */
     float white;                /* the radiance that becomes 1: the photograph's, unless changed */
     merlin_relighting how;
@@ -72,6 +74,8 @@ typedef struct stage {
 /* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
 status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
+/* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
+status stage_surround(stage *s, const env_map *environment);
 /* The square under a point light and the stage's environment, bounces included: 3 channels in [0, 1] of `white`. */
 status stage_relight(network *n, const stage *s, vec3 light, img *out);
 /* Under its environment alone, which it must have. */

@@ -6,26 +6,13 @@
 
 #include "image/resize.h"
 #include "optics/latlong.h"
+#include "optics/octahedron.h"
 #include "optics/sh.h"
 
 static const float pi = 3.14159265358979f;
 enum { WIDEST_MAP = 2 * ENV_MAP_SIDE };
 
 /* ---- the octahedron -------------------------------------------------------------------------------------------- */
-
-/* The place of a unit direction in the unit square (Clarberg 2008). */
-static void square_of(vec3 d, float *x, float *y)
-{
-    float r = sqrtf(fmaxf(0, 1 - fabsf(d.z)));
-    float v = r * atan2f(fabsf(d.y), fabsf(d.x)) * (2 / pi), u = r - v;
-    if (d.z < 0) {
-        float t = u;
-        u = 1 - v;
-        v = 1 - t;
-    }
-    *x = 0.5f + 0.5f * copysignf(u, d.x);
-    *y = 0.5f + 0.5f * copysignf(v, d.y);
-}
 
 /* Beyond an edge of the square the octahedron goes on at the same edge, mirrored. */
 static const float *texel(const img *level, int x, int y)
@@ -65,7 +52,7 @@ static void collect(const collection *to, vec3 d, const float *radiance, float a
 {
     float x, y;
     int side = to->sum->width;
-    square_of(d, &x, &y);
+    octahedron_place(d, &x, &y);
     int column = (int)fminf(x * (float)side, (float)side - 1), row = (int)fminf(y * (float)side, (float)side - 1);
     float *cell = img_at(to->sum, column, row);
     for (int c = 0; c < 3; c++)
@@ -211,7 +198,7 @@ vec3 env_map_lookup(const env_map *e, vec3 d, float solid_angle)
     const float finest = 4 * pi / ((float)ENV_MAP_SIDE * (float)ENV_MAP_SIDE);
     vec3 unturned = vec3_make(e->cosine * d.x + e->sine * d.z, d.y, e->cosine * d.z - e->sine * d.x);
     float x, y, level = 0.5f * log2f(fmaxf(solid_angle, finest) / finest);
-    square_of(unturned, &x, &y);
+    octahedron_place(unturned, &x, &y);
     level = fminf(level, ENV_MAP_LEVELS - 1);
     int fine = (int)level, coarse = fine + 1 < ENV_MAP_LEVELS ? fine + 1 : fine;
     vec3 a = interpolate(&e->levels[fine], x, y), b = interpolate(&e->levels[coarse], x, y);

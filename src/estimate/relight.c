@@ -1,4 +1,5 @@
 /* merlin_relight and merlin_relight_environment: maps under other light. */
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "estimate/api.h"
@@ -30,6 +31,7 @@ void stage_free(stage *s)
     img_free(&s->low_photo);
     img_free(&s->flash);
     shadow_caster_free(&s->caster);
+    horizon_free(&s->horizon);
 }
 
 status maps_check(const merlin_maps *maps)
@@ -129,6 +131,13 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
     return s;
 }
 
+status stage_surround(stage *s, const env_map *environment)
+{
+    s->environment = environment;
+    bool first = environment && s->how == MERLIN_BY_BRDF && !s->horizon.closed;
+    return first ? horizon_new(&s->caster, &s->horizon) : OK;
+}
+
 /* ---- light ---- */
 
 static int least(int a, int b)
@@ -169,8 +178,32 @@ static status light_by_network(network *n, const stage *s, vec3 light, img *full
     return result;
 }
 
-/* The environment's light: its diffuse part at the network's size, and all of it on top of `full`. What the relighting
- * decoder gives (`low` and `full` then) has the diffuse part already. */
+static void add_to(const img *part, img *sum)
+{
+    for (size_t i = 0; i < value_count(sum); i++)
+        sum->data[i] += part->data[i];
+}
+
+/* The environment's light with its shadows and a bounce on top of `full`: nothing of it is left to the network. */
+static status add_shadowed_environment(const stage *s, img *full)
+{
+    const env_map *env = s->environment;
+    img diffuse = {0}, share = {0};
+    status result = img_new(&diffuse, full->width, full->height, 3);
+    if (result == OK) result = surface_arriving_light(&s->low, &s->horizon, env, &share);
+    if (result == OK) {
+        surface_add_ambient(&s->full, (const float(*)[3])env->sh, &diffuse);
+        shadow_darken(&share, &diffuse);
+        add_to(&diffuse, full);
+        surface_add_reflections(&s->full, env, &s->horizon, full);
+    }
+    img_free(&diffuse);
+    img_free(&share);
+    return result;
+}
+
+/* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
+ * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
 static status add_environment(const stage *s, img *low, img *full, img *ambient)
 {
     const env_map *env = s->environment;
@@ -184,7 +217,7 @@ static status add_environment(const stage *s, img *low, img *full, img *ambient)
     } else {
         surface_add_ambient(&s->full, sh, full);
     }
-    surface_add_reflections(&s->full, env, full);
+    surface_add_reflections(&s->full, env, NULL, full);
     return OK;
 }
 
@@ -198,8 +231,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
     if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, full->width, full->height, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
-        for (size_t i = 0; i < value_count(full); i++)
-            full->data[i] += large.data[i];
+        add_to(&large, full);
     }
     img_free(&indirect);
     img_free(&large);
@@ -228,9 +260,11 @@ static status relight(network *n, const stage *s, const vec3 *light, img *out)
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
+    bool shadows = s->environment && s->how == MERLIN_BY_BRDF;
     status result = light ? light_by_point(n, s, *light, out, &low) : dark(s, out, &low);
-    if (result == OK && s->environment) result = add_environment(s, &low, out, &ambient);
-    if (result == OK) result = add_indirect(n, s, &low, &ambient, out);
+    if (result == OK && s->environment && !shadows) result = add_environment(s, &low, out, &ambient);
+    if (result == OK && (light || !shadows)) result = add_indirect(n, s, &low, &ambient, out);
+    if (result == OK && shadows) result = add_shadowed_environment(s, out);
     if (result == OK) expose(out, s->white);
     img_free(&low);
     img_free(&ambient);
@@ -258,9 +292,10 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const v
     status s = stage_new(maps, 0, how, &st);
     if (s != OK) return s;
     img part = {0}, whole = {0};
-    st.environment = environment;
-    s = light ? stage_relight(model->network, &st, *light, &part)
-              : stage_relight_environment(model->network, &st, &part);
+    s = stage_surround(&st, environment);
+    if (s == OK)
+        s = light ? stage_relight(model->network, &st, *light, &part)
+                  : stage_relight_environment(model->network, &st, &part);
     stage_free(&st);
     if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
     if (s == OK) crop_put(&part, crop_of(maps), &whole);

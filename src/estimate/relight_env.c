@@ -1,8 +1,12 @@
 #include "estimate/relight_env.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "base/parallel.h"
+#include "estimate/env_lights.h"
+#include "estimate/fill.h"
+#include "image/resize.h"
 #include "optics/ambient.h"
 #include "optics/camera.h"
 
@@ -10,6 +14,8 @@ enum { SAMPLES = 64 };
 /* What a sample averages over, in parts of the solid angle that it stands for: neighbours that overlap leave no pattern
  * where a lamp falls between them. */
 #define OVERLAP 2.0f
+/* What counts as nearby, for bounces. */
+enum { FRAME_BY_RADIUS = 24 };
 
 /* Where a sample lies on the disc: its radius is a matter of the roughness. */
 typedef struct sample_place {
@@ -19,6 +25,7 @@ typedef struct sample_place {
 typedef struct pixel {
     vec3 albedo, normal, view;
     float roughness;
+    float x, y; /* shares of the frame */
 } pixel;
 
 typedef struct job job;
@@ -27,8 +34,12 @@ struct job {
     camera eye;
     const float (*sh)[3];
     const env_map *env;
+    const horizon *hidden; /* or NULL */
+    const env_light *lights;
+    int light_count;
     sample_place places[SAMPLES];
     vec3 (*shade)(const job *j, const pixel *p);
+    bool share; /* of light: not times coverage */
     img *image;
 };
 
@@ -47,12 +58,14 @@ static void add_rows(void *context, size_t begin, size_t end)
         if (!(coverage > 0)) continue;
         size_t x = i % width, y = i / width;
         vec3 ray = camera_ray(&j->eye, (float)x + 0.5f, (float)y + 0.5f);
-        pixel p = {at3(&s->albedo, i), at3(&s->normal, i), vec3_scale(ray, -1), s->roughness.data[i]};
-        vec3 radiance = j->shade(j, &p);
+        pixel p = {at3(&s->albedo, i),
+                   at3(&s->normal, i),
+                   vec3_scale(ray, -1),
+                   s->roughness.data[i],
+                   ((float)x + 0.5f) / (float)width,
+                   ((float)y + 0.5f) / (float)s->mask.height};
         float *out = j->image->data + 3 * i;
-        out[0] += coverage * radiance.x;
-        out[1] += coverage * radiance.y;
-        out[2] += coverage * radiance.z;
+        vec3_put(vec3_fma(vec3_of(out), j->share ? 1 : coverage, j->shade(j, &p)), out);
     }
 }
 
@@ -100,7 +113,8 @@ static void place_samples(sample_place places[SAMPLES])
 }
 
 /* One half vector's share: radiance times f (n·l) over the density of drawing it, D (n·h) / (4 v·h). */
-static vec3 sample_lobe(const job *j, const pixel *p, const sample_place *at, float alpha2, float k)
+static vec3 sample_lobe(const job *j, const pixel *p, const horizon_view *edge, const sample_place *at, float alpha2,
+                        float k)
 {
     const vec3 black = {0, 0, 0};
     float cosine2 = (1 - at->u) / (1 + (alpha2 - 1) * at->u), sine = sqrtf(fmaxf(0, 1 - cosine2));
@@ -112,6 +126,7 @@ static vec3 sample_lobe(const job *j, const pixel *p, const sample_place *at, fl
     if (v_h <= 0 || n_l <= 0) return black;
     float density = brdf_distribution(alpha2, n_h) * n_h / (4 * v_h);
     float weight = brdf_fresnel(fminf(v_h, 1)) * brdf_visibility(k, fminf(n_l, 1), n_v) * 4 * n_l * v_h / n_h;
+    if (j->hidden) weight *= horizon_sees(edge, l, 1 / (SAMPLES * density));
     return vec3_scale(env_map_lookup(j->env, l, OVERLAP / (SAMPLES * density)), weight / SAMPLES);
 }
 
@@ -119,14 +134,89 @@ static vec3 shade_reflections(const job *j, const pixel *p)
 {
     vec3 sum = {0, 0, 0};
     float alpha2 = brdf_alpha2(p->roughness), k = brdf_k(p->roughness);
+    horizon_view edge = {0};
+    if (j->hidden) horizon_at(j->hidden, p->x, p->y, &edge);
     for (int i = 0; i < SAMPLES; i++)
-        sum = vec3_add(sum, sample_lobe(j, p, &j->places[i], alpha2, k));
+        sum = vec3_add(sum, sample_lobe(j, p, &edge, &j->places[i], alpha2, k));
     return sum;
 }
 
-void surface_add_reflections(const surface *s, const env_map *env, img *image)
+void surface_add_reflections(const surface *s, const env_map *env, const horizon *h, img *image)
 {
-    job j = {.s = s, .env = env, .shade = shade_reflections, .image = image};
+    job j = {.s = s, .env = env, .hidden = h, .shade = shade_reflections, .image = image};
     place_samples(j.places);
     add(&j);
+}
+
+/* ---- what of it arrives ---- */
+
+static float share_of(float part, float whole)
+{
+    return whole > 1e-12f ? fminf(part / whole, 1) : 1;
+}
+
+static vec3 shade_seen(const job *j, const pixel *p)
+{
+    vec3 seen = {0, 0, 0}, all = {0, 0, 0};
+    horizon_view edge;
+    horizon_at(j->hidden, p->x, p->y, &edge);
+    for (int i = 0; i < j->light_count; i++) {
+        const env_light *l = &j->lights[i];
+        float cosine = vec3_dot(p->normal, l->direction);
+        if (!(cosine > 0)) continue;
+        all = vec3_fma(all, cosine, l->power);
+        seen = vec3_fma(seen, cosine * horizon_sees(&edge, l->direction, l->solid_angle), l->power);
+    }
+    return vec3_make(share_of(seen.x, all.x), share_of(seen.y, all.y), share_of(seen.z, all.z));
+}
+
+/* Mean radiance of the lit surfaces around every pixel, and how many of these there are. */
+static status lit_nearby(const surface *s, const img *seen, const float sh[9][3], img *out)
+{
+    img lit = {0};
+    int width = s->mask.width, height = s->mask.height;
+    status result = img_new(&lit, width, height, 3);
+    if (result == OK) result = img_new(out, width, height, 4);
+    if (result == OK) {
+        surface_add_ambient(s, sh, &lit);
+        for (size_t i = 0; i < (size_t)width * (size_t)height; i++) {
+            for (size_t c = 0; c < 3; c++)
+                out->data[4 * i + c] = lit.data[3 * i + c] * seen->data[3 * i + c];
+            out->data[4 * i + 3] = s->mask.data[i];
+        }
+        result = img_box_sums(out, width / FRAME_BY_RADIUS);
+    }
+    img_free(&lit);
+    return result;
+}
+
+/* From where a surface hides the surroundings, it sends light itself: about what it sends to the camera nearby. */
+static status add_bounce(const surface *s, const float sh[9][3], img *seen)
+{
+    img nearby = {0};
+    status result = lit_nearby(s, seen, sh, &nearby);
+    size_t count = result == OK ? (size_t)s->mask.width * (size_t)s->mask.height : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!(s->mask.data[i] > 0)) continue;
+        vec3 e = sh_irradiance(sh, at3(&s->normal, i));
+        const float *sum = nearby.data + 4 * i, open[3] = {e.x, e.y, e.z};
+        for (size_t c = 0; c < 3; c++) {
+            float *share = &seen->data[3 * i + c];
+            *share += (1 - *share) * share_of(sum[c] * BRDF_PI, sum[3] * open[c]);
+        }
+    }
+    img_free(&nearby);
+    return result;
+}
+
+status surface_arriving_light(const surface *s, const horizon *h, const env_map *env, img *share)
+{
+    env_light lights[ENV_LIGHTS_MOST];
+    status result = img_new(share, s->mask.width, s->mask.height, 3);
+    if (result != OK) return result;
+    job j = {.s = s, .hidden = h, .lights = lights, .shade = shade_seen, .share = true, .image = share};
+    j.light_count = env_lights(env, lights);
+    add(&j);
+    result = add_bounce(s, (const float(*)[3])env->sh, share);
+    return result == OK ? fill_outside(share, &s->mask) : result;
 }

@@ -7,9 +7,8 @@
 #include "estimate/fuse.h"
 #include "optics/camera.h"
 
-/* Scene units, of which an object is about one wide. Found by trying on samples with path-traced shadows
- * (docs/evaluation.md). */
-static const float THICKNESS = 0.15f, THICKNESS_BORDER = 0.04f;
+/* Over what range it ends. */
+static const float THICKNESS_BORDER = 0.04f;
 /* How far behind the map is behind it, and over what range it becomes so: in pixels, and in shares of the way. */
 static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
 
@@ -59,11 +58,11 @@ static corners corners_of(const img *image, float x, float y)
                      {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
 }
 
-static float value_at(const img *image, const corners *c)
+static float value_at(const img *image, const corners *c, int channel)
 {
     float sum = 0;
     for (int i = 0; i < 4; i++)
-        sum += c->weight[i] * image->data[c->at[i]];
+        sum += c->weight[i] * image->data[c->at[i] * (size_t)image->channels + (size_t)channel];
     return sum;
 }
 
@@ -82,7 +81,7 @@ typedef struct march {
 /* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
 static float part_with_occluders(const shadow_caster *c, vec3 p, vec3 to_light)
 {
-    float behind = c->farthest + THICKNESS + THICKNESS_BORDER, part = 1;
+    float behind = c->farthest + SHADOW_THICKNESS + THICKNESS_BORDER, part = 1;
     if (p.z + to_light.z > -c->nearest) part = (-c->nearest - p.z) / to_light.z;
     if (p.z + to_light.z < -behind) part = (-behind - p.z) / to_light.z;
     return fminf(part, 1);
@@ -121,7 +120,7 @@ static float stops(const shadow_caster *c, size_t at, float depth, float margin,
     if (c->mask.data[at] < 0.5f) return 0;
     float behind = depth - c->depth.data[at];
     if (!(behind > margin)) return 0;
-    float front = fminf((behind - margin) / border, 1), back = (THICKNESS - behind) / THICKNESS_BORDER + 1;
+    float front = fminf((behind - margin) / border, 1), back = (SHADOW_THICKNESS - behind) / THICKNESS_BORDER + 1;
     return front * fminf(fmaxf(back, 0), 1);
 }
 
@@ -166,8 +165,8 @@ static void cast_row(void *context, size_t row)
         march m;
         float *seen = img_at(job->seen, i, (int)row);
         *seen = 1;
-        if (!(value_at(&c->mask, &around) > 0)) continue;
-        if (march_begin(c, x, y, value_at(&c->depth, &around), job->light, &m)) *seen = 1 - hidden(c, &m);
+        if (!(value_at(&c->mask, &around, 0) > 0)) continue;
+        if (march_begin(c, x, y, value_at(&c->depth, &around, 0), job->light, &m)) *seen = 1 - hidden(c, &m);
     }
 }
 
@@ -194,9 +193,9 @@ static void darken_rows(void *context, size_t begin, size_t end)
         for (int x = 0; x < d->image->width; x++) {
             corners around =
                 corners_of(d->seen, ((float)x + 0.5f) * scale_x - 0.5f, ((float)row + 0.5f) * scale_y - 0.5f);
-            float share = value_at(d->seen, &around), *pixel = img_at(d->image, x, (int)row);
+            float *pixel = img_at(d->image, x, (int)row);
             for (int c = 0; c < d->image->channels; c++)
-                pixel[c] *= share;
+                pixel[c] *= value_at(d->seen, &around, c % d->seen->channels);
         }
     }
 }

@@ -20,6 +20,10 @@
 #include "base/vec.h"
 #include "image/image.h"
 
+/* Of what is seen, in scene units, of which an object is about one wide. Found by trying on samples with path-traced
+ * shadows (docs/evaluation.md). */
+#define SHADOW_THICKNESS 0.15f
+
 typedef struct shadow_caster {
     img depth;               /* 1 channel, fused; continued outside the mask */
     img mask;                /* 1 channel */
@@ -36,7 +40,7 @@ void shadow_caster_free(shadow_caster *caster);
  */
 status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen);
 
-/* image (any size of the same frame, any channels) times seen, interpolated. */
+/* image (any size of the same frame, any channels) times seen (1 channel, or as many), interpolated. */
 void shadow_darken(const img *seen, img *image);
 
 #endif

@@ -52,6 +52,10 @@ present room/relit_000.png room/relit.png
 absent room/relit_001.png
 succeeds turned relight disc.merlin --env room.hdr --rotate 90 -o turned
 cmp -s room/relit_000.png turned/relit_000.png && complain "turned surroundings give the same picture"
+succeeds room-again relight disc.merlin --env room.hdr -o room-again
+cmp -s room/relit_000.png room-again/relit_000.png || complain "surroundings with shadows are not deterministic"
+succeeds open relight disc.merlin --env room.hdr --no-shadows -o open
+cmp -s room/relit_000.png open/relit_000.png && complain "--no-shadows makes no difference under surroundings"
 succeeds whole relight disc.merlin --env room.hdr --env-exposure 1 --light 0.5,0.2,-0.4 -o whole
 cmp -s room/relit_000.png whole/relit_000.png && complain "a light beside the surroundings makes no difference"
 succeeds around relight disc.merlin --env room.hdr --orbit 3 -o around

@@ -92,7 +92,7 @@ static void white_furnace_gives_the_brdfs_directional_albedo(void **state)
     env_map e = map_of(white);
     img image = picture();
     surface_add_ambient(&s, (const float(*)[3])e.sh, &image);
-    surface_add_reflections(&s, &e, &image);
+    surface_add_reflections(&s, &e, NULL, &image);
     float worst = 0;
     for (int i = 1; i < PIXELS; i += 7) {
         float share = share_of_lobe(s.roughness.data[i], normal_of(&s, i), view_of(i));
@@ -123,7 +123,7 @@ static void small_bright_spot_is_a_distant_light(void **state)
     env_map e = map_of(small_bright_spot);
     img diffuse = picture(), shiny = picture();
     surface_add_ambient(&s, (const float(*)[3])e.sh, &diffuse);
-    surface_add_reflections(&s, &e, &shiny);
+    surface_add_reflections(&s, &e, NULL, &shiny);
     float irradiance = env_map_mean(&e) * 4 * BRDF_PI, worst_diffuse = 0, worst = 0, brightest = 0;
     for (int i = 1; i < PIXELS; i++) {
         vec3 n = normal_of(&s, i);
@@ -150,11 +150,11 @@ static void highlights_turn_with_the_environment(void **state)
     surface s = wall(0.3f);
     env_map e = map_of(small_bright_spot);
     img before = picture(), after = picture(), back = picture();
-    surface_add_reflections(&s, &e, &before);
+    surface_add_reflections(&s, &e, NULL, &before);
     env_map_turn(&e, 120);
-    surface_add_reflections(&s, &e, &after);
+    surface_add_reflections(&s, &e, NULL, &after);
     env_map_turn(&e, 240);
-    surface_add_reflections(&s, &e, &back);
+    surface_add_reflections(&s, &e, NULL, &back);
     double difference = 0, all = 0;
     for (int i = 0; i < 3 * PIXELS; i++) {
         assert_float_equal(before.data[i], back.data[i], 2e-3 * (double)(before.data[i] + 1)); /* a full turn */
@@ -181,7 +181,7 @@ static void highlights_of_smooth_surroundings_need_no_map(void **state)
     surface s = wall(0.2f);
     env_map e = map_of(sunset);
     img by_map = picture(), by_coefficients = picture();
-    surface_add_reflections(&s, &e, &by_map);
+    surface_add_reflections(&s, &e, NULL, &by_map);
     surface_add_ambient_highlights(&s, (const float(*)[3])e.sh, &by_coefficients);
     for (int i = 0; i < 3 * PIXELS; i++)
         assert_float_equal(by_map.data[i], by_coefficients.data[i], 0.02); /* optics/ambient.h: 0.015 for radiance 1 */
