@@ -11,15 +11,15 @@
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MODEL, FALL_OFF, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MEND, MODEL, FALL_OFF, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    const int32_t *slot;   /* spread */
+    const int32_t *slot;   /* spread, mend: a pixel's place in the field, -1 outside */
     const bool *news;      /* spread: whose shading has changed since the neighbours saw it; NULL: all */
     float limit;           /* search */
-    pst_shading *next;     /* spread: to take the place of the field's */
+    pst_shading *next;     /* spread, mend: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_fall_off *fall;    /* fall off */
     pst_surface *out;      /* store */
@@ -95,32 +95,65 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
 }
 
+/* Cosines of 18 degrees off the mean and of 20. */
+static const float agreeing = 0.95f, contrary = 0.94f;
+
 static bool alike(const pst_shading *a, const pst_shading *b)
 {
     static const float cosine = 0.9994f; /* of 2 degrees */
     return vec3_dot(a->normal, b->normal) >= cosine;
 }
 
-/* Neighbours that differ from the pixel and from each other and cost less; returns how many. */
-static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
+/* Places in the field of the four pixels around, and how many are in it. */
+static int neighbours(const fit_job *job, size_t i, int32_t place[4])
 {
     static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const pst_field *f = job->field;
-    const pst_shading *own = &f->shading[i];
     int width = f->problem->capture->width, height = f->problem->capture->height, count = 0;
     int x = (int)(f->pixel[i] % (size_t)width), y = (int)(f->pixel[i] / (size_t)width);
     for (int k = 0; k < 4; k++) {
         int nx = x + step[k][0], ny = y + step[k][1];
         if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
         int32_t other = job->slot[(size_t)ny * (size_t)width + (size_t)nx];
-        if (other < 0 || (job->news && !job->news[other])) continue;
-        const pst_shading *from = &f->shading[other];
+        if (other >= 0) place[count++] = other;
+    }
+    return count;
+}
+
+/* Neighbours that differ from the pixel and from each other and cost less; returns how many. */
+static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
+{
+    const pst_shading *own = &job->field->shading[i];
+    int32_t place[4];
+    int around = neighbours(job, i, place), count = 0;
+    for (int k = 0; k < around; k++) {
+        if (job->news && !job->news[place[k]]) continue;
+        const pst_shading *from = &job->field->shading[place[k]];
         bool known = alike(from, own) || from->cost >= own->cost - PST_FAR_LESS;
         for (int m = 0; m < count; m++)
             known |= alike(from, found[m]);
         if (!known) found[count++] = from;
     }
     return count;
+}
+
+/* The best fitted of at least three neighbours that agree with each other and not with the pixel; else NULL. */
+static const pst_shading *contradiction(const fit_job *job, size_t i)
+{
+    const pst_shading *shading = job->field->shading, *best = NULL;
+    int32_t place[4];
+    int around = neighbours(job, i, place);
+    vec3 sum = {0, 0, 0};
+    for (int k = 0; k < around; k++)
+        sum = vec3_add(sum, shading[place[k]].normal);
+    vec3 mean = vec3_normalize(sum);
+    if (around < 3 || vec3_dot(shading[i].normal, mean) > contrary) return NULL;
+    for (int k = 0; k < around; k++) {
+        const pst_shading *one = &shading[place[k]];
+        if (vec3_dot(one->normal, mean) < agreeing) return NULL;
+        if (!best || one->cost < best->cost) best = one;
+    }
+    return best;
 }
 
 /* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
@@ -157,6 +190,16 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
     }
 }
 
+/* Detail as small as a pixel costs much less than what its neighbours have, and stays. */
+static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
+{
+    const pst_field *f = job->field;
+    const pst_shading *from = contradiction(job, i);
+    pst_shading trial = pst_lobe_refine(d, lobe_of(f, from), from);
+    if (vec3_dot(trial.normal, from->normal) > contrary && trial.cost < f->shading[i].cost + PST_FAR_LESS)
+        job->next[i] = trial;
+}
+
 /* power NULL: distant. */
 static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
 {
@@ -178,6 +221,9 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
         break;
     case SPREAD:
         try_neighbours(job, i, d);
+        break;
+    case MEND:
+        mend(job, i, d);
         break;
     case MODEL:
         pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
@@ -227,6 +273,7 @@ static bool concerns(const fit_job *job, size_t i)
 {
     const pst_shading *start[4];
     if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
+    if (job->task == MEND) return contradiction(job, i) != NULL;
     return job->task != SPREAD || better_neighbours(job, i, start) > 0;
 }
 
@@ -363,19 +410,26 @@ static size_t take(const pst_field *f, const pst_shading *next, bool *news)
     return moved;
 }
 
-status pst_field_spread(const pst_field *f, int sweeps)
+/* By place in the picture: where in the field; malloc'ed. */
+static int32_t *list_slots(const pst_field *f)
 {
     const pst_capture *c = f->problem->capture;
-    size_t size = (size_t)c->width * (size_t)c->height, moved = 1;
-    pst_shading *next = malloc(f->count * sizeof *next);
+    size_t size = (size_t)c->width * (size_t)c->height;
     int32_t *slot = malloc(size * sizeof *slot);
+    if (!slot) return NULL;
+    memset(slot, 0xff, size * sizeof *slot);
+    for (size_t i = 0; i < f->count; i++)
+        slot[f->pixel[i]] = (int32_t)i;
+    return slot;
+}
+
+status pst_field_spread(const pst_field *f, int sweeps)
+{
+    size_t moved = 1;
+    pst_shading *next = malloc(f->count * sizeof *next);
+    int32_t *slot = list_slots(f);
     bool *news = malloc(f->count * sizeof *news);
     status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
-    if (s == OK) {
-        memset(slot, 0xff, size * sizeof *slot);
-        for (size_t i = 0; i < f->count; i++)
-            slot[f->pixel[i]] = (int32_t)i;
-    }
     for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
         s = run(&(fit_job){.field = f, .task = SPREAD, .slot = slot, .news = k > 0 ? news : NULL, .next = next});
@@ -384,6 +438,21 @@ status pst_field_spread(const pst_field *f, int sweeps)
     free(next);
     free(slot);
     free(news);
+    return s;
+}
+
+status pst_field_mend(const pst_field *f)
+{
+    pst_shading *next = malloc(f->count * sizeof *next);
+    int32_t *slot = list_slots(f);
+    status s = next && slot ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    if (s == OK) {
+        memcpy(next, f->shading, f->count * sizeof *next);
+        s = run(&(fit_job){.field = f, .task = MEND, .slot = slot, .next = next});
+    }
+    if (s == OK) memcpy(f->shading, next, f->count * sizeof *next);
+    free(next);
+    free(slot);
     return s;
 }
 

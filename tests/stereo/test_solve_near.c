@@ -8,6 +8,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
+#include "stereo/field_fit.h"
 
 /* enough pixels to be searched small */
 enum { SIZE = 128, LIGHTS = 32 };
@@ -121,6 +122,36 @@ static void near_lights_give_the_distance_too(void **state)
     check_ball(0, false, 2, 0.05);
 }
 
+/* One pixel's fit is turned away and its cost left; it comes back, and no other pixel changes. */
+static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
+{
+    (void)state;
+    pst_capture c;
+    double cost;
+    ball_capture(&c, 0);
+    pst_problem p = {.capture = &c, .light = c.light, .saturation = 0.98f};
+    assert_int_equal(pst_list_pixels(&c, &p), OK);
+    pst_lobe lobe = {.width = 0.04f, .shadow = PST_SHADOW_COST, .masking = 0.28f};
+    pst_shading *shading = calloc(2 * p.pixel_count, sizeof *shading), *before = shading + p.pixel_count;
+    pst_field f = {.problem = &p,
+                   .pixel = p.pixel,
+                   .count = p.pixel_count,
+                   .depth = &c.depth_true,
+                   .scale = 1,
+                   .lobe = &lobe,
+                   .shading = shading};
+    assert_int_equal(pst_field_fit(&f, &cost), OK);
+    memcpy(before, shading, p.pixel_count * sizeof *shading);
+    size_t lone = p.pixel_count / 2;
+    shading[lone].normal = vec3_make(0.8f, 0, 0.6f);
+    assert_int_equal(pst_field_mend(&f), OK);
+    for (size_t i = 0; i < p.pixel_count; i++)
+        assert_true(vec3_dot(shading[i].normal, before[i].normal) > (i == lone ? 0.9998f : 0.999999f));
+    free(shading);
+    free(p.pixel);
+    capture_drop(&c);
+}
+
 static void a_near_capture_without_focal_length_is_refused(void **state)
 {
     (void)state;
@@ -139,6 +170,7 @@ int main(void)
         cmocka_unit_test(near_lights_give_normals_and_depth),
         cmocka_unit_test(near_lights_see_through_highlights),
         cmocka_unit_test(near_lights_give_the_distance_too),
+        cmocka_unit_test(a_lone_pixel_is_fitted_again_from_its_neighbours),
         cmocka_unit_test(a_near_capture_without_focal_length_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
