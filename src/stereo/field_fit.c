@@ -11,7 +11,7 @@
 /* Pixels gathered at a time: a picture's cache lines serve them all. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MODEL, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MODEL, FALL_OFF, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
@@ -21,6 +21,7 @@ typedef struct fit_job {
     float limit;           /* search */
     pst_shading *next;     /* spread: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
+    pst_fall_off *fall;    /* fall off */
     pst_surface *out;      /* store */
     float *x, *y, *z;      /* distant lights, padded */
     float *cost;           /* a pixel */
@@ -203,6 +204,24 @@ static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, fl
                                     ((float)y + 0.5f - 0.5f * (float)c->height) / f->lobe->focal, 1));
 }
 
+static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *d, const pst_near_lights *lights,
+                             vec3 view)
+{
+    const pst_lobe *kind = lobe_of(f, &f->shading[i]);
+    int padded = d->seen.padded, width = f->problem->capture->width;
+    size_t at = f->pixel[i];
+    vec3 ray = pst_ray(&f->problem->capture->camera, (int)(at % (size_t)width), (int)(at / (size_t)width));
+    pst_near_lights behind;
+    pst_lobe_data deeper;
+    float value[PST_MAX_LIGHTS];
+    pst_near_lights_at(f->problem, vec3_scale(ray, f->scale * f->depth->data[at] * expf(PST_DEEPER)), &behind);
+    for (int k = 0; k < padded; k++)
+        value[k] = behind.power[k] > 0 ? d->seen.value[k] * lights->power[k] / behind.power[k] : 0;
+    pst_observations o = {padded, behind.x, behind.y, behind.z, value, d->seen.usable, 0};
+    pst_lobe_prepare(&o, view, kind->shadow, &deeper);
+    return pst_fall_off_of(d, &deeper, kind, &f->shading[i]);
+}
+
 /* Whether the task has anything to do there. */
 static bool concerns(const fit_job *job, size_t i)
 {
@@ -232,7 +251,10 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
     } else {
         pst_lobe_data d;
         pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
-        fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
+        if (job->task == FALL_OFF)
+            job->fall[i] = fall_off(f, i, &d, &lights, view);
+        else
+            fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
     }
 }
 
@@ -318,6 +340,11 @@ status pst_field_foretell(const pst_field *f, double *cost)
 status pst_field_model(const pst_field *f, float *weight, float *model)
 {
     return run(&(fit_job){.field = f, .task = MODEL, .weight = weight, .model = model});
+}
+
+status pst_field_fall_off(const pst_field *f, pst_fall_off *out)
+{
+    return run(&(fit_job){.field = f, .task = FALL_OFF, .fall = out});
 }
 
 status pst_field_store(const pst_field *f, pst_surface *out)

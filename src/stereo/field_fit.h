@@ -7,6 +7,7 @@
 #ifndef MERLIN_STEREO_FIELD_FIT_H
 #define MERLIN_STEREO_FIELD_FIT_H
 
+#include "stereo/fall_off.h"
 #include "stereo/lobe_fit.h"
 #include "stereo/solve_parts.h"
 
@@ -51,6 +52,9 @@ status pst_field_spread(const pst_field *f, int sweeps);
 
 /* Each observation's share in the fit and what the fit makes of it (both count × pst_padded(pictures)). */
 status pst_field_model(const pst_field *f, float *weight, float *model);
+
+/* What each pixel's shading says of its depth (count); near lights only. */
+status pst_field_fall_off(const pst_field *f, pst_fall_off *out);
 
 /* Normal, albedo and residual into the surface's pictures. */
 status pst_field_store(const pst_field *f, pst_surface *out);

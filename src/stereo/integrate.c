@@ -66,16 +66,26 @@ static bool has_prior(const pst_integration *o)
     return o->prior && o->prior_weight > 0;
 }
 
+/* The unknown that a prior stands for, if it knows the pixel. */
+static bool prior_at(const integration_steps *s, const pst_integration *o, int node, double *x)
+{
+    float depth = o->prior->data[s->grid.pixel[node]];
+    if (!(depth > 0) || !isfinite(depth)) return false;
+    *x = (double)(s->camera.perspective ? logf(depth) : depth);
+    return true;
+}
+
 /* A prior pulls every pixel it knows; a piece without one is held at its first pixel, which changes nothing but its
  * constant. held: count of pieces. */
 static void anchor(integration_steps *s, const pst_integration *o, const int *piece, int *held)
 {
     poisson_grid *g = &s->grid;
     for (int i = 0; i < g->count && has_prior(o); i++) {
-        float depth = o->prior->data[g->pixel[i]];
-        if (!(depth > 0) || !isfinite(depth)) continue;
-        g->pull[i] = o->prior_weight;
-        g->pulled_to[i] = s->camera.perspective ? logf(depth) : depth;
+        float trust = o->trust ? o->trust->data[g->pixel[i]] : 1;
+        double x;
+        if (!(trust > 0) || !prior_at(s, o, i, &x)) continue;
+        g->pull[i] = o->prior_weight * trust;
+        g->pulled_to[i] = (float)x;
         held[piece[i]] = 1;
     }
     for (int i = 0; i < g->count; i++)
@@ -83,6 +93,12 @@ static void anchor(integration_steps *s, const pst_integration *o, const int *pi
             g->pull[i] = 1;
             held[piece[i]] = -1;
         }
+}
+
+static void start_from_prior(const integration_steps *s, const pst_integration *o, double *x)
+{
+    for (int i = 0; i < s->grid.count; i++)
+        prior_at(s, o, i, &x[i]);
 }
 
 /* Pieces without a prior get mean 0. */
@@ -131,8 +147,10 @@ static status solve(integration_steps *s, const pst_integration *o, int *piece, 
     steps_least_squares(s);
     poisson_solver *solver;
     result = poisson_solver_new(&s->grid, &solver);
-    if (result == OK) result = poisson_solve(solver, TOLERANCE, x);
-    if (result == OK && o->preserve_edges) result = integrate_edges(s, solver, x);
+    bool stepped = o->preserve_edges && o->from_prior && has_prior(o);
+    if (result == OK && stepped) start_from_prior(s, o, x);
+    if (result == OK && !stepped) result = poisson_solve(solver, TOLERANCE, x);
+    if (result == OK && o->preserve_edges) result = integrate_edges(s, solver, stepped, x);
     poisson_solver_free(solver);
     if (result == OK) result = center(&s->grid, piece, held, pieces, x);
     if (result == OK) result = img_new(depth, s->normal->width, s->normal->height, 1);
@@ -150,6 +168,9 @@ static status check(const img *normal, const img *mask, const pst_camera *camera
     if (has_prior(o) && (o->prior->width != normal->width || o->prior->height != normal->height))
         return fail(ERROR_USAGE, "the depth to start from is %d × %d, the normals are %d × %d", o->prior->width,
                     o->prior->height, normal->width, normal->height);
+    if (has_prior(o) && o->trust && (o->trust->width != normal->width || o->trust->height != normal->height))
+        return fail(ERROR_USAGE, "the trust in depths is %d × %d, the normals are %d × %d", o->trust->width,
+                    o->trust->height, normal->width, normal->height);
     if (camera->perspective && !(camera->focal > 0))
         return fail(ERROR_USAGE, "perspective integration needs a focal length in pixels");
     return OK;

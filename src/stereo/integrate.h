@@ -12,6 +12,9 @@ typedef struct pst_integration {
                           * betray, but may also cut where the normals have errors of their own */
     const img *prior;    /* 1 channel depth pulled toward weakly, or NULL */
     float prior_weight;
+    const img *trust; /* 1 channel, a pixel's factor on the prior's weight; NULL: 1 everywhere */
+    bool from_prior;  /* preserve_edges starts from the prior's steps instead of from least squares, which spreads them:
+                       * a few solutions instead of fifty. Needs a prior at every pixel of the mask */
 } pst_integration;
 
 /* depth: 1 channel, distance along -z, zero outside the mask. Orthographic: in pixels, mean 0 shifted to be positive;

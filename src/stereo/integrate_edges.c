@@ -10,6 +10,8 @@
  * gather along the jump before any pair is given up for good (graduated non-convexity, Blake & Zisserman 1987). It ends
  * where a tenth of a pixel still counts as noise: real normals do not fit together better than that. */
 static const double FIRST_SHARPNESS = 2, LAST_SHARPNESS = 100, GROWTH = 1.08;
+/* Where the jumps are in x from the first, it need not grow so slowly. */
+static const double STEPPED_SHARPNESS = 10, STEPPED_GROWTH = 3;
 static const double TOLERANCE = 1e-6;
 static const float LEAST_WEIGHT = 1e-6f; /* keeps the system definite where both sides of a pair are given up */
 
@@ -86,11 +88,12 @@ static void reweigh(const poisson_grid *g, const pairs *p, int k, double sharpne
     }
 }
 
-status integrate_edges(integration_steps *s, poisson_solver *solver, double *x)
+status integrate_edges(integration_steps *s, poisson_solver *solver, bool stepped, double *x)
 {
     pairs p = {0};
     status result = pairs_new(&s->grid, &p);
-    for (double sharpness = FIRST_SHARPNESS; result == OK && sharpness < LAST_SHARPNESS; sharpness *= GROWTH) {
+    double first = stepped ? STEPPED_SHARPNESS : FIRST_SHARPNESS, growth = stepped ? STEPPED_GROWTH : GROWTH;
+    for (double sharpness = first; result == OK && sharpness < LAST_SHARPNESS; sharpness *= growth) {
         for (int k = 0; k < 2; k++) {
             find_misfits(s, x, k, &p);
             reweigh(&s->grid, &p, k, sharpness);

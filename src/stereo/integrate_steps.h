@@ -30,7 +30,7 @@ real steps_between(const integration_steps *s, int direction, int to, vec3 m);
 /* Sets weights and targets for least squares. */
 void steps_least_squares(integration_steps *s);
 /* Bilaterally weighted least squares (Cao et al., ECCV 2022, "Bilateral normal integration") from least squares' x: one
- * solution after another, each side of a pixel weighed by how well the other fits. */
-status integrate_edges(integration_steps *s, poisson_solver *solver, double *x);
+ * solution after another, each side of a pixel weighed by how well the other fits. stepped: x has its steps already. */
+status integrate_edges(integration_steps *s, poisson_solver *solver, bool stepped, double *x);
 
 #endif

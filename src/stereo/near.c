@@ -3,11 +3,15 @@
  * light vectors, inverse-square attenuation and LED lobes; from these its normal (field_fit.h); from the normals a
  * depth map by integration. The first depth map is a plane that faces the camera.
  *
+ * Normals cannot tell how far behind another a part of the object lies, and integration alone joins what only meets in
+ * the picture. The lights tell: each pixel's fit also says in which distance it would agree better with how they fall
+ * off (fall_off.h), and draws its depth there, softly, so that all of a part's pixels together place the part.
+ *
  * Most rounds are gone through on a small version of the pictures (shrink.h), which knows the depth nearly as well.
  *
- * Normals leave the scale of the depth free. It is the camera's mean distance where that is known; otherwise the lights
- * tell: only at the right distance does what they send agree with the inverse-square law. With few lights the first
- * rounds also find out whether a highlight's lobe is worth fitting (lobe_choice.h). */
+ * Where the camera's mean distance is known the depth keeps it until parts have found their places (then what is still
+ * wrong in the dark must not move the rest); otherwise the lights tell that, too. With few lights the first rounds also
+ * find out whether a highlight's lobe is worth fitting (lobe_choice.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,14 +22,20 @@
 #include "stereo/shrink.h"
 
 /* SMALL: pixels that the depth is searched on, up to four times as many; ANEW: rounds whose fits start from nothing,
- * since the depth was far off; ADMISSIONS: rounds until it is good enough to judge a lobe by. */
-enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, SWEEPS = 2 };
+ * since the depth was far off; ADMISSIONS: rounds until it is good enough to judge a lobe by; STEPPED: rounds at the
+ * end. */
+enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
 
-/* Rounds end when no depth moves by more than this share of the distance. */
-static const float settled = 1e-4f;
+/* Rounds end when depths move by less than this share of the distance, on average. */
+static const float settled = 3e-4f;
 
-/* What the small depth map weighs against a step between pixels: it holds over about 1/√this pixels. */
-static const float small_weight = 1e-3f;
+/* The slope that normals are taken to err by beside what a pixel says of its own depth: more where parts still look for
+ * their place, less where the surface is to be smooth. Normals err by less, but neighbours err alike in their depths.
+ * Rendered objects come out much the same for slopes from half to twice these. */
+static const float searching = 0.3f, placed = 0.1f;
+
+/* No pixel asks for more than this change of log depth in a round, nor is trusted further than to a percent. */
+static const float most_offset = 0.1f, most_trust = 1e4f, least_trust = 1e-2f;
 
 typedef struct near_job {
     const pst_problem *problem;
@@ -34,7 +44,8 @@ typedef struct near_job {
     pst_camera camera;
     pst_lobe lobe;
     pst_shading *shading; /* a pixel */
-    float moved;          /* by the last integration: most of all pixels, against the distance */
+    float held_at;        /* mean distance, where it is known and until parts have found their places; else 0 */
+    float moved;          /* by the last integration: mean of all pixels, against the distance */
 } near_job;
 
 static void fill_plane(const pst_problem *p, float distance, img *depth)
@@ -77,13 +88,23 @@ static void rescale(near_job *job, float scale)
     job->camera.mean_distance *= scale;
 }
 
-/* Largest change in depth against the distance. */
+static void keep_distance(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    double sum = 0;
+    for (size_t i = 0; i < p->pixel_count; i++)
+        sum += (double)job->out->depth.data[p->pixel[i]];
+    rescale(job, job->held_at * (float)p->pixel_count / (float)sum);
+    job->camera.mean_distance = job->held_at;
+}
+
+/* Mean change in depth against the distance. */
 static float change(const pst_problem *p, const img *a, const img *b, float distance)
 {
-    float most = 0;
+    double sum = 0;
     for (size_t i = 0; i < p->pixel_count; i++)
-        most = fmaxf(most, fabsf(a->data[p->pixel[i]] - b->data[p->pixel[i]]));
-    return most / distance;
+        sum += fabs((double)(a->data[p->pixel[i]] - b->data[p->pixel[i]]));
+    return (float)(sum / (double)p->pixel_count) / distance;
 }
 
 static pst_field whole_field(const near_job *job)
@@ -127,13 +148,50 @@ static status integrate(near_job *job, const pst_integration *how)
     img depth = {0};
     status s = pst_integrate(&job->out->normal, &job->problem->capture->mask, &job->camera, how, &depth);
     if (s != OK) return s;
-    job->moved = change(job->problem, &depth, &job->out->depth, job->camera.mean_distance);
-    img_free(&job->out->depth);
+    img before = job->out->depth;
     job->out->depth = depth;
+    if (job->held_at > 0) keep_distance(job);
+    job->moved = change(job->problem, &job->out->depth, &before, job->camera.mean_distance);
+    img_free(&before);
     return OK;
 }
 
-static status iterate(near_job *job, bool scale_known)
+/* Where each pixel's fit would have its depth, and what that weighs. */
+static status place_pixels(near_job *job, float slope, img *place, img *trust)
+{
+    pst_field f = whole_field(job);
+    pst_fall_off *found = malloc(f.count * sizeof *found);
+    status s = found ? OK : fail(ERROR_MEMORY, "no memory to place %zu pixels", f.count);
+    if (s == OK) s = img_copy(place, f.depth);
+    if (s == OK) s = img_copy(trust, f.depth);
+    if (s == OK) s = pst_field_fall_off(&f, found);
+    float unit = slope / job->camera.focal;
+    for (size_t i = 0; s == OK && i < f.count; i++) {
+        float offset = fmaxf(fminf(found[i].offset, most_offset), -most_offset);
+        place->data[f.pixel[i]] *= expf(offset);
+        trust->data[f.pixel[i]] = unit * unit * fmaxf(fminf(found[i].trust, most_trust), least_trust);
+    }
+    free(found);
+    return s;
+}
+
+/* The depth map by way of the normals and of what the lights say. */
+static status place(near_job *job, float slope, bool preserve_edges)
+{
+    img place = {0}, trust = {0};
+    status s = place_pixels(job, slope, &place, &trust);
+    pst_integration how = {.prior = &place,
+                           .prior_weight = 1,
+                           .trust = &trust,
+                           .preserve_edges = preserve_edges,
+                           .from_prior = preserve_edges};
+    if (s == OK) s = integrate(job, &how);
+    img_free(&place);
+    img_free(&trust);
+    return s;
+}
+
+static status iterate(near_job *job)
 {
     const pst_problem *p = job->problem;
     int iterations = p->iterations > 0 ? p->iterations : ITERATIONS;
@@ -143,8 +201,8 @@ static status iterate(near_job *job, bool scale_known)
     for (int k = 0; s == OK && k < iterations && job->moved > settled; k++) {
         if (k < ADMISSIONS) s = admit_lobe(job);
         if (s == OK) s = fit_normals(job, k < ANEW);
-        if (s == OK) s = integrate(job, &(pst_integration){0});
-        if (s != OK || scale_known) continue;
+        if (s == OK) s = k == 0 ? integrate(job, &(pst_integration){0}) : place(job, searching, false);
+        if (s != OK || job->held_at > 0) continue;
         float scale = 1;
         s = best_scale(job, ratio, 3, k < ANEW, &scale);
         rescale(job, scale);
@@ -158,17 +216,21 @@ static status iterate(near_job *job, bool scale_known)
 static status find_depth(near_job *job)
 {
     const pst_problem *p = job->problem;
-    bool scale_known = job->camera.mean_distance > 0;
-    job->camera.perspective = true;
-    if (!scale_known) job->camera.mean_distance = fmaxf(light_reach(p->capture), 1e-6f);
+    float distance = p->capture->camera.mean_distance;
+    job->held_at = distance;
+    job->camera.mean_distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
     fill_plane(p, job->camera.mean_distance, &job->out->depth);
     float scale = 1;
-    status s = scale_known ? OK : best_scale(job, 1.3f, 8, true, &scale);
+    status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
     rescale(job, scale);
-    if (s == OK) s = iterate(job, scale_known);
-    /* steps in depth are let in at the end: that integration takes many times as long */
-    if (s == OK) s = fit_normals(job, true);
-    return s == OK ? integrate(job, &(pst_integration){.preserve_edges = true}) : s;
+    if (s == OK) s = iterate(job);
+    /* steps in depth are let in once parts have found their places */
+    job->held_at = 0;
+    for (int k = 0; s == OK && k < STEPPED; k++) {
+        s = fit_normals(job, k == 0);
+        if (s == OK) s = place(job, placed, true);
+    }
+    return s;
 }
 
 static void job_free(near_job *job)
@@ -185,6 +247,7 @@ static status job_new(const pst_problem *p, pst_surface *out, near_job *job)
                       .sample = {.problem = p},
                       .camera = p->capture->camera,
                       .lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST}};
+    job->camera.perspective = true;
     uint32_t *pixel;
     status s = img_new(&out->depth, p->capture->width, p->capture->height, 1);
     if (s == OK) s = pst_field_sample(p, SAMPLE, &pixel, &job->sample.count);
@@ -214,7 +277,6 @@ static status find_depth_small(near_job *job, int factor)
     if (s == OK) pst_enlarge(&found.depth, &small.mask, &c->mask, factor, &job->out->depth);
     job->lobe = search.lobe;
     job->camera.mean_distance = search.camera.mean_distance;
-    job->camera.perspective = true;
     job_free(&search);
     pst_surface_free(&found);
     free(p.pixel);
@@ -222,16 +284,11 @@ static status find_depth_small(near_job *job, int factor)
     return s;
 }
 
-/* The small depth map keeps its steps and is filled in with what the small pictures do not show. */
+/* The small depth map's steps find their pixels. */
 static status fill_in(near_job *job)
 {
-    img small;
     status s = fit_normals(job, true);
-    if (s == OK) s = img_copy(&small, &job->out->depth);
-    if (s != OK) return s;
-    s = integrate(job, &(pst_integration){.prior = &small, .prior_weight = small_weight});
-    img_free(&small);
-    return s;
+    return s == OK ? place(job, placed, true) : s;
 }
 
 static status solve(near_job *job)

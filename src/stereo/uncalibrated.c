@@ -15,6 +15,9 @@ enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192 };
  * distant ones do. Measured on rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.93 to 1.2
  * where they were distant. */
 static const double clearly = 0.8;
+/* Of a sample's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
+ * twentieth do, by noise; where they were not, half. Times the cost of such an answer. */
+static const double most_away = 0.25, absurd = 1e3;
 /* Of the camera that stands for none, in widths of the picture. */
 static const float far_away = 30;
 /* What holds the depth where normals leave it free, beside them. */
@@ -39,6 +42,16 @@ static pst_camera perspective_of(const pst_capture *c)
     return camera;
 }
 
+static double share_away(const pst_field *f)
+{
+    size_t away = 0, width = (size_t)f->problem->capture->width;
+    for (size_t i = 0; i < f->count; i++) {
+        int x = (int)(f->pixel[i] % width), y = (int)(f->pixel[i] / width);
+        away += vec3_dot(f->b[i], pst_ray(&f->problem->capture->camera, x, y)) > 0;
+    }
+    return (double)away / (double)f->count;
+}
+
 /* What the robust fit leaves of a sample. */
 static status judge(const pst_problem *p, hypothesis *h)
 {
@@ -49,7 +62,10 @@ static status judge(const pst_problem *p, hypothesis *h)
     status s = pst_field_sample(p, SAMPLE, &pixel, &f.count);
     if (s != OK) return s;
     f.pixel = pixel;
-    s = pst_field_fit(&f, &h->cost);
+    f.b = calloc(f.count, sizeof *f.b);
+    s = f.b ? pst_field_fit(&f, &h->cost) : fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", f.count);
+    if (s == OK && share_away(&f) > most_away) h->cost *= absurd;
+    free(f.b);
     free(pixel);
     return s;
 }

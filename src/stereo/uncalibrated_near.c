@@ -4,9 +4,9 @@
  * surface and lights are refined together, which converges where alternation creeps (bundle.h).
  *
  * Stated priors: all lights have one power and are about equally far away, and the scale is the camera's mean distance.
- * Convex or concave, high or low: several surfaces inflated from the object's outline are started from, on a coarse
- * grid, each with the lights that make it look most like the pictures; the one that explains the pictures best is
- * refined on a finer grid. A bowl must do so clearly better than what bulges. */
+ * Convex, flat or concave: several surfaces inflated from the object's outline are started from, on a coarse grid, each
+ * with the lights that make it look most like the pictures; the one that explains the pictures best, once lights that
+ * went astray are back, is refined on a finer grid. A bowl must do so clearly better than what bulges. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,8 +25,10 @@ typedef struct start {
     float handicap;         /* factor on what it costs */
 } start;
 
-static const start starts[] = {{1, 2.5f, 1}, {0.3f, 2.5f, 1}, {1, 5, 1}, {-0.5f, 2.5f, 1.05f}};
+static const start starts[] = {{1, 2.5f, 1}, {0.3f, 2.5f, 1}, {1, 5, 1}, {0, 3, 1}, {-0.5f, 2.5f, 1.05f}};
 enum { STARTS = sizeof starts / sizeof *starts };
+/* Recalled lights lower the cost by up to a twentieth: a start that is further behind the best stays there. */
+static const double within_reach = 1.1;
 
 /* Widths of the loss, and steps at each. */
 typedef struct pass {
@@ -123,11 +125,16 @@ static status refine(bundle *b, const pass *passes, int count)
     return s;
 }
 
-static status solve_from(const start *from, bundle *b)
+/* least: of the starts before. */
+static status solve_from(const start *from, double least, bundle *b)
 {
     status s = bundle_inflate(b, from->relief);
     if (s == OK) s = find_lights(b, from->distance);
     if (s == OK) s = refine(b, coarse_pass, sizeof coarse_pass / sizeof *coarse_pass);
+    for (int i = 0; i < RECALLS && s == OK && b->cost < within_reach * least; i++) {
+        recall_lights(b, last_pass.width);
+        s = refine(b, &last_pass, 1);
+    }
     b->cost *= (double)from->handicap;
     return s;
 }
@@ -135,21 +142,17 @@ static status solve_from(const start *from, bundle *b)
 static status solve_coarse(const pst_problem *p, const pst_camera *camera, bundle *best)
 {
     status s = bundle_new(p, camera, COARSE, best);
-    if (s == OK) s = solve_from(&starts[0], best);
+    if (s == OK) s = solve_from(&starts[0], HUGE_VAL, best);
     for (int i = 1; i < STARTS && s == OK; i++) {
         bundle trial;
         s = bundle_new(p, camera, COARSE, &trial);
-        if (s == OK) s = solve_from(&starts[i], &trial);
+        if (s == OK) s = solve_from(&starts[i], best->cost, &trial);
         bundle worse = trial;
         if (s == OK && trial.cost < best->cost) {
             worse = *best;
             *best = trial;
         }
         bundle_free(&worse);
-    }
-    for (int i = 0; i < RECALLS && s == OK; i++) {
-        recall_lights(best, last_pass.width);
-        s = refine(best, &last_pass, 1);
     }
     return s;
 }
