@@ -10,7 +10,8 @@ status img_resize(const img *from, int width, int height, img *out);
 status img_resize_masked(const img *from, const img *mask, int width, int height, img *out);
 /* The rectangle at (x, y), which may hang over the edges: what lies outside is zero. */
 status img_crop(const img *from, int x, int y, int width, int height, img *out);
-/* Sums over windows of (2 radius + 1)² pixels, in time that does not depend on the radius; outside the image is zero. */
+/* Sums over windows of (2 radius + 1)² pixels, in time that does not depend on the radius; outside the image is zero.
+ */
 status img_box_sums(img *image, int radius);
 /* Guided filter upsampling (He et al. 2013; fast form, He & Sun 2015): low-resolution maps brought to the guide's size
  * so that their edges follow it. guide: 1 or 3 channels. low_mask (1 channel, low's size, or NULL) and mask (1 channel,
