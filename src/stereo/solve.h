@@ -14,7 +14,7 @@ typedef enum pst_method {
     PST_ROBUST,      /* a specular lobe a pixel; cast shadows as outliers */
     PST_NEAR_LIGHTS, /* near point lights, perspective camera, alternating depth and normals */
     PST_SEMI,        /* directions known, intensities not */
-    PST_UNCALIBRATED /* lights unknown, near or distant, of one strength */
+    PST_UNCALIBRATED /* lights unknown, near or distant, of one strength or on one albedo */
 } pst_method;
 
 typedef struct pst_options {

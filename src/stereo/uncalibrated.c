@@ -102,9 +102,21 @@ static status solve_near(const pst_problem *p, const img *depth, pst_surface *ou
     return s;
 }
 
+/* Beyond so many of the object's radii near lights are distant ones, whose distances stand for their strengths. */
+static bool lights_are_near(const pst_problem *p, const hypothesis *h)
+{
+    static const float farthest = 10;
+    const pst_camera *camera = &p->capture->camera;
+    float radius = sqrtf((float)p->pixel_count / 3.1415927f) / camera->focal * camera->mean_distance, sum = 0;
+    for (int k = 0; k < p->capture->count; k++)
+        sum += vec3_length(vec3_sub(h->light[k].position, vec3_make(0, 0, -camera->mean_distance)));
+    return sum < farthest * radius * (float)p->capture->count;
+}
+
 static status find_both(const pst_problem *p, hypothesis *near, hypothesis *distant)
 {
     status found = pst_find_near_lights(p, &p->capture->camera, near->light, &near->depth);
+    if (found == OK && !lights_are_near(p, near)) found = fail(ERROR_INPUT, "the lights are not near");
     if (found == OK) found = judge(p, near);
     if (found != OK && found != ERROR_INPUT) return found;
     status s = pst_find_distant_lights(p, distant->light);

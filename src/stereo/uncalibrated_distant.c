@@ -3,8 +3,8 @@
  * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors
  *    are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3 matrix
  *    is left between the factors.
- * 2. Prior: all lights are equally strong. It leaves a rotation or reflection (H. Hayakawa, Photometric stereo under a
- *    light source with arbitrary motion, JOSA A 11(11), 1994).
+ * 2. Prior: most lights are equally strong or, where that cannot be, most of the surface has one albedo. It leaves a
+ *    rotation or reflection (unit_quadric.h).
  * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
  * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
  * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
@@ -15,15 +15,15 @@
 #include <string.h>
 
 #include "stereo/field_fit.h"
-#include "stereo/lapack.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"
+#include "stereo/unit_quadric.h"
 
-enum { SAMPLE = 1500, REFITS = 8, PASSES = 5, GRID = 24 };
+enum { SAMPLE = 1500, REFITS = 30, PASSES = 5, GRID = 24, FEWEST = 100 };
 
-/* Of the strengths' quadric: its smallest axis' share of its largest. */
-#define FLATTEST 0.02
+/* Lights whose strengths differ by more are not meant to be equal. */
+static const double uneven = 0.07;
 /* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
 #define FRONTAL 0.8
 
@@ -121,6 +121,11 @@ static double row_length(const double row[6])
     return sqrt(square);
 }
 
+static status too_thin(void)
+{
+    return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+}
+
 /* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
  * depth jumps, and where the surface turns most), for the minors (A3 × A1, A3 × A2) of the last pass. */
 static status integrability_form(const pseudo *f, const double minor[6], double *scale, double form[36])
@@ -134,7 +139,7 @@ static status integrability_form(const pseudo *f, const double minor[6], double 
         lengths += row_length(row);
         count++;
     }
-    if (count < 100) return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+    if (count < FEWEST) return too_thin();
     length = fmax(lengths / (double)count, 1e-12);
     for (size_t i = 0; i < p->pixel_count; i++) {
         if (!integrability_row(f, p->pixel[i], row)) continue;
@@ -245,34 +250,6 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9])
     return s;
 }
 
-/* lᵀ Q l = 1 for all lights, linear in the six numbers of Q; whiten then makes them unit vectors: l = whiten l',
- * b = unwhiten b'. */
-static status equal_strengths(const lights3 *l, double whiten[9], double unwhiten[9])
-{
-    int n = l->count;
-    double *a = calloc((size_t)n * 7, sizeof *a), eigenvalue[3];
-    if (!a) return fail(ERROR_MEMORY, "no memory for %d lights", n);
-    double *q = a + 6 * n; /* the right-hand side first, xx xy xz yy yz zz then */
-    for (int k = 0; k < n; k++) {
-        double x = l->x[k], y = l->y[k], z = l->z[k];
-        memcpy(a + 6 * k, &(double[6]){x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z}, 6 * sizeof *a);
-        q[k] = 1;
-    }
-    bool solved = lapack_least_squares(a, n, 6, q);
-    double m[9] = {q[0], q[1], q[2], q[1], q[3], q[4], q[2], q[4], q[5]};
-    free(a);
-    solved = solved && lapack_eigen(m, 3, true, eigenvalue);
-    if (!solved || !(eigenvalue[2] > 0))
-        return fail(ERROR_INPUT, "the lights found are not of a kind: are they equally strong?");
-    for (int j = 0; j < 9; j++) {
-        /* not positive: highlights have bent the factors */
-        double root = sqrt(fmax(eigenvalue[j / 3], FLATTEST * eigenvalue[2]));
-        whiten[j] = root * m[j % 3 * 3 + j / 3];
-        unwhiten[j] = m[j % 3 * 3 + j / 3] / root;
-    }
-    return OK;
-}
-
 static void transform_lights(const double m[9], lights3 *l)
 {
     for (int k = 0; k < l->count; k++) {
@@ -304,15 +281,35 @@ static double outwardness(const pseudo *f, const double surface[9], double *towa
     return sum;
 }
 
+/* Lights become equally strong or, if they cannot, the surface becomes one of equal albedo; up to a rotation. */
+static status straighten(pseudo *f, lights3 *l)
+{
+    unit_quadric strength, albedo;
+    size_t n = f->problem->pixel_count;
+    vec3 *light = malloc((size_t)l->count * sizeof *light);
+    if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", l->count);
+    for (int k = 0; k < l->count; k++)
+        light[k] = vec3_make(l->x[k], l->y[k], l->z[k]);
+    status s = unit_quadric_fit(light, (size_t)l->count, &strength);
+    free(light);
+    if (s != OK) return s;
+    bool by_albedo = strength.spread > uneven;
+    if (by_albedo && (unit_quadric_fit(f->b, n, &albedo) != OK || albedo.spread > strength.spread))
+        return fail(ERROR_INPUT,
+                    "the lights are not equally strong, nor is the surface of one albedo: where the lights "
+                    "are cannot be told; state their intensities in light_intensities.txt");
+    transform_lights(by_albedo ? albedo.dual : strength.make, l);
+    for (size_t i = 0; i < n; i++)
+        f->b[i] = transform(by_albedo ? albedo.make : strength.dual, f->b[i]);
+    return OK;
+}
+
 /* The pseudo lights become directions. */
 static status resolve(pseudo *f, lights3 *l)
 {
-    double whiten[9], unwhiten[9], a[9], toward;
-    status s = equal_strengths(l, whiten, unwhiten);
+    double a[9], toward;
+    status s = straighten(f, l);
     if (s != OK) return s;
-    transform_lights(whiten, l);
-    for (size_t i = 0; i < f->problem->pixel_count; i++)
-        f->b[i] = transform(unwhiten, f->b[i]);
     s = rotate(f, l, a);
     if (s != OK) return s;
     double outward = outwardness(f, a, &toward);
@@ -368,6 +365,7 @@ static status name_lights(const pst_problem *p, const lights3 *l, pst_light *lig
 
 status pst_find_distant_lights(const pst_problem *p, pst_light *light)
 {
+    if (p->pixel_count < FEWEST) return too_thin();
     int count = p->capture->count;
     size_t padded = (size_t)pst_padded(count);
     pseudo f = {0};

@@ -173,6 +173,50 @@ static void unknown_lights_of_equal_strength_are_found(void **state)
     capture_drop(&c);
 }
 
+/* Strengths of 0.5 to 1.5. */
+static void dim_some(pst_capture *c)
+{
+    for (int k = 0; k < c->count; k++)
+        for (int i = 0; i < c->width * c->height * c->channels; i++)
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.33f + 0.67f * (float)(k * 7 % 5) / 4));
+}
+
+/* The sphere's colours as if they were all as bright as its darkest. */
+static void even_out(pst_capture *c)
+{
+    pst_surface s;
+    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_LS}, &s), OK);
+    for (int i = 0; i < c->width * c->height * c->channels; i++)
+        for (int k = 0; k < c->count && s.albedo.data[i] > 0; k++)
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * 0.17f / s.albedo.data[i]);
+    pst_surface_free(&s);
+}
+
+static void unknown_lights_of_unequal_strength_need_one_albedo(void **state)
+{
+    (void)state;
+    relief r = lambert;
+    r.lights = 30;
+    for (int even = 0; even < 2; even++) {
+        pst_capture c;
+        pst_surface s;
+        relief_capture(&r, &c);
+        if (even) even_out(&c);
+        dim_some(&c);
+        pst_capture_forget_lights(&c);
+        c.intensities_known = false;
+        if (even) {
+            double angle = solve_angle(&c, PST_AUTO);
+            print_message("uncalibrated sphere of one albedo, unequal lights: %.2f degrees\n", angle);
+            assert_true(angle < 3);
+        } else {
+            assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+            assert_non_null(strstr(status_message(), "not equally strong"));
+        }
+        capture_drop(&c);
+    }
+}
+
 static void all_values_are_numbers(const pst_surface *s)
 {
     size_t pixels = (size_t)s->normal.width * (size_t)s->normal.height;
@@ -257,6 +301,7 @@ int main(void)
         cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
         cmocka_unit_test(equal_strengths_are_recognized),
         cmocka_unit_test(unknown_lights_of_equal_strength_are_found),
+        cmocka_unit_test(unknown_lights_of_unequal_strength_need_one_albedo),
         cmocka_unit_test(darkness_and_saturation_leave_numbers),
         cmocka_unit_test(impossible_captures_are_refused_in_one_line),
         cmocka_unit_test(methods_are_named),
