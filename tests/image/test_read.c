@@ -144,6 +144,33 @@ static void every_photograph_format_is_read(void **state)
     }
 }
 
+/* Interlaced, by a palette, two greys a bit each: what a reader must unfold. */
+static void pngs_of_every_layout_show_the_same(void **state)
+{
+    (void)state;
+    img plain = {0}, color = {0};
+    assert_int_equal(img_read(save(quarters(), "plain.png"), &plain, NULL), OK);
+    for (int palette = 0; palette < 2; palette++) {
+        VipsImage *image = quarters();
+        int failed = vips_pngsave(image, scratch_path("laid.png"), "interlace", TRUE, "palette", palette, NULL);
+        g_object_unref(image);
+        assert_int_equal(failed, 0);
+        assert_int_equal(img_read(scratch_path("laid.png"), &color, NULL), OK);
+        for (size_t i = 0; i < 3 * 16 * 8; i++) /* a palette's colours are found by clustering: a code of error */
+            assert_true(fabsf(color.data[i] - plain.data[i]) <= (palette ? 0.01f : 0));
+        img_free(&color);
+    }
+    uint8_t codes[3] = {255, 0, 255};
+    VipsImage *image = fixture(codes, 3, 1, 1, VIPS_INTERPRETATION_B_W);
+    int failed = vips_pngsave(image, scratch_path("bits.png"), "bitdepth", 1, NULL);
+    g_object_unref(image);
+    assert_int_equal(failed, 0);
+    assert_int_equal(img_read(scratch_path("bits.png"), &color, NULL), OK);
+    assert_true(color.data[0] == 1 && color.data[4] == 0 && color.data[8] == 1);
+    img_free(&color);
+    img_free(&plain);
+}
+
 static void exif_orientation_turns_the_picture(void **state)
 {
     (void)state;
@@ -398,6 +425,7 @@ int main(void)
         cmocka_unit_test(sixteen_bits_keep_their_steps),
         cmocka_unit_test(linear_png_round_trips_within_half_a_code),
         cmocka_unit_test(every_photograph_format_is_read),
+        cmocka_unit_test(pngs_of_every_layout_show_the_same),
         cmocka_unit_test(exif_orientation_turns_the_picture),
         cmocka_unit_test(alpha_is_split_off_unchanged),
         cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
