@@ -44,7 +44,7 @@ static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
         {"mask", .text = &r->mask},
-        {"output", 'o', .text = &r->output},
+        {"output", 'o', .folder = &r->output},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},

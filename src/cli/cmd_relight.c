@@ -108,7 +108,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"model", .text = &r->weights},
-        {"output", 'o', .text = &r->output},
+        {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},

@@ -75,7 +75,7 @@ static status read_options(int *argc, char ***argv, request *r)
     render_options *o = &r->options;
     const cli_option options[] = {
         {"count", .count = &o->count, .low = 1, .high = 100000000},
-        {"output", 'o', .text = &o->folder},
+        {"output", 'o', .folder = &o->folder},
         {"seed", .take = take_seed, .into = &o->seed},
         {"first", .take = take_first, .into = &o->first},
         {"size", .integer = &o->image.size, .low = 8, .high = 4096},

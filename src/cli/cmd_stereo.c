@@ -105,7 +105,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
-        {"output", 'o', .text = &r->output},
+        {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},

@@ -50,7 +50,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"mask", .text = &r->options.mask},
         {"linear", .flag = &r->options.linear},
         {"fov", .real = &r->options.field_of_view, .low = 1, .high = 170},
-        {"output", 'o', .text = &r->output},
+        {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},

@@ -35,7 +35,7 @@ static status parse(int argc, char **argv, request *r)
     trn_options *o = &r->options;
     const cli_option options[] = {
         {"data", 'd', .text = &o->data},
-        {"output", 'o', .text = &o->output},
+        {"output", 'o', .folder = &o->output},
         {"resume", 'r', .flag = &o->resume},
         {"init", 'i', .text = &r->init},
         {"init-shared", .text = &r->init_shared},

@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
+#include <string.h>
+#include <strings.h>
 
 #include "cli/cli.h"
 
@@ -51,9 +53,23 @@ static status take_number(const cli_option *o, const char *value)
     return s;
 }
 
+/* Whoever asks for one file would find a folder of that name. */
+static status take_folder(const cli_option *o, const char *value)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".hdr"};
+    const char *dot = strrchr(value, '.');
+    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++)
+        if (strcasecmp(dot, endings[i]) == 0)
+            return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name,
+                        value);
+    *o->folder = value;
+    return OK;
+}
+
 static status take(const cli_option *o, const char *value)
 {
     if (o->take) return o->take(value, o->into);
+    if (o->folder) return take_folder(o, value);
     if (o->flag)
         *o->flag = true;
     else if (o->text)

@@ -25,6 +25,7 @@ typedef struct cli_option {
     char letter;      /* of -l, or 0 */
     bool *flag;       /* takes no value; is set to true */
     const char **text;
+    const char **folder; /* a folder to write; a picture's name is refused */
     int *integer;  /* from low to high */
     size_t *count; /* from low to high */
     float *real;   /* from low to high */
