@@ -8,7 +8,6 @@
 static struct {
     __typeof__(LAPACKE_dsyev) *dsyev;
     __typeof__(LAPACKE_dposv) *dposv;
-    __typeof__(LAPACKE_dgels) *dgels;
 } lapack;
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -16,8 +15,7 @@ static bool loaded;
 
 static void load(void)
 {
-    static const library_function wanted[] = {
-        {"LAPACKE_dsyev", &lapack.dsyev}, {"LAPACKE_dposv", &lapack.dposv}, {"LAPACKE_dgels", &lapack.dgels}};
+    static const library_function wanted[] = {{"LAPACKE_dsyev", &lapack.dsyev}, {"LAPACKE_dposv", &lapack.dposv}};
     loaded = library_load(MERLIN_LAPACKE, wanted, sizeof wanted / sizeof *wanted);
 }
 
@@ -40,9 +38,4 @@ bool lapack_eigen(double *m, int n, bool vectors, double *value)
 bool lapack_solve_positive(double *m, int n, double *b)
 {
     return ready() && lapack.dposv(LAPACK_ROW_MAJOR, 'L', n, 1, m, n, b, 1) == 0;
-}
-
-bool lapack_least_squares(double *a, int rows, int columns, double *b)
-{
-    return ready() && lapack.dgels(LAPACK_ROW_MAJOR, 'N', rows, columns, 1, a, columns, b, 1) == 0;
 }
