@@ -7,11 +7,9 @@
 static struct {
     __typeof__(LAPACKE_dsyev) *dsyev;
     __typeof__(LAPACKE_dposv) *dposv;
-    __typeof__(LAPACKE_dgels) *dgels;
 } lapack;
 
-static const library_function wanted[] = {
-    {"LAPACKE_dsyev", &lapack.dsyev}, {"LAPACKE_dposv", &lapack.dposv}, {"LAPACKE_dgels", &lapack.dgels}};
+static const library_function wanted[] = {{"LAPACKE_dsyev", &lapack.dsyev}, {"LAPACKE_dposv", &lapack.dposv}};
 static library liblapacke = {.file = MERLIN_LAPACKE, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
 status lapack_begin(void)
@@ -27,9 +25,4 @@ bool lapack_eigen(double *m, int n, bool vectors, double *value)
 bool lapack_solve_positive(double *m, int n, double *b)
 {
     return lapack_begin() == OK && lapack.dposv(LAPACK_ROW_MAJOR, 'L', n, 1, m, n, b, 1) == 0;
-}
-
-bool lapack_least_squares(double *a, int rows, int columns, double *b)
-{
-    return lapack_begin() == OK && lapack.dgels(LAPACK_ROW_MAJOR, 'N', rows, columns, 1, a, columns, b, 1) == 0;
 }
