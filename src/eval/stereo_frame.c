@@ -6,9 +6,6 @@
 #include "image/resize.h"
 #include "stereo/shrink.h"
 
-/* Where the solvers stop to believe a value, as a share of full scale. */
-static const float SATURATED = 0.98f;
-
 /* The mean of each block, in place. */
 static status shrink_image(const pst_blocks *b, img *image)
 {
@@ -62,7 +59,7 @@ status stereo_frame(pst_capture *c, img *photo, int most_side)
     int factor = (square.side + most_side - 1) / most_side, side = (square.side + factor - 1) / factor;
     pst_blocks frame = {.x = square.x, .y = square.y, .columns = side, .rows = side, .factor = factor, .whole = true};
     pst_capture small;
-    s = pst_shrink(c, frame, SATURATED, &small);
+    s = pst_shrink(c, frame, PST_SATURATED, &small);
     if (s != OK) return s;
     take_place(&small, c);
     s = shrink_image(&frame, &c->normal_true);

@@ -151,7 +151,7 @@ static float select_lit(shade *at, size_t count, vec3 light, float spread)
     float power = vec3_length(light);
     for (size_t i = 0; i < count; i++) {
         float expected = vec3_dot(light, at[i].normal), off = at[i].value - expected;
-        at[i].used = expected > GRAZING * power && at[i].value < 0.98f && fabsf(off) < 3 * spread * power;
+        at[i].used = expected > GRAZING * power && at[i].value < PST_SATURATED && fabsf(off) < 3 * spread * power;
         if (!at[i].used) continue;
         sum += (double)off * off;
         used++;

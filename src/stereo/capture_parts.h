@@ -15,8 +15,8 @@ status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
  * truth or what merlin itself wrote there. numbered: only names that are a number. Free with file_list_free. */
 status pst_list_pictures(const char *folder, bool numbered, char ***names, size_t *count);
 
-/* Light intensities, one or three numbers a line, for the capture's lights. */
-status pst_read_intensities(const char *path, pst_capture *c);
+/* The folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights. */
+status pst_read_intensities(const char *folder, pst_capture *c);
 
 status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c);
 status pst_read_luces(const char *folder, pst_capture *c);

@@ -15,10 +15,11 @@ static void change_surface(const pst_lobe_data *d, const pst_lobe *lobe, const p
                            float rows[SURFACE][PST_MAX_LIGHTS])
 {
     float ignored[PST_MAX_LIGHTS];
-    vec3 n = at->normal, t1 = vec3_normalize(fabsf(n.x) < 0.7f ? vec3_make(0, n.z, -n.y) : vec3_make(-n.z, 0, n.x));
+    vec3 n = at->normal, t1, t2;
+    pst_tangents(n, &t1, &t2);
     pst_shading next[SURFACE] = {*at, *at, *at, *at, *at};
     next[0].normal = vec3_normalize(vec3_fma(n, turn, t1));
-    next[1].normal = vec3_normalize(vec3_fma(n, turn, vec3_cross(n, t1)));
+    next[1].normal = vec3_normalize(vec3_fma(n, turn, t2));
     next[2].albedo = at->albedo + share * d->level;
     next[3].gloss = at->gloss + share * d->level;
     next[4].sharpness = at->sharpness + share;

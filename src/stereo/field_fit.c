@@ -410,8 +410,7 @@ static size_t take(const pst_field *f, const pst_shading *next, bool *news)
     return moved;
 }
 
-/* By place in the picture: where in the field; malloc'ed. */
-static int32_t *list_slots(const pst_field *f)
+int32_t *pst_field_slots(const pst_field *f)
 {
     const pst_capture *c = f->problem->capture;
     size_t size = (size_t)c->width * (size_t)c->height;
@@ -427,7 +426,7 @@ status pst_field_spread(const pst_field *f, int sweeps)
 {
     size_t moved = 1;
     pst_shading *next = malloc(f->count * sizeof *next);
-    int32_t *slot = list_slots(f);
+    int32_t *slot = pst_field_slots(f);
     bool *news = malloc(f->count * sizeof *news);
     status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
     for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
@@ -444,7 +443,7 @@ status pst_field_spread(const pst_field *f, int sweeps)
 status pst_field_mend(const pst_field *f)
 {
     pst_shading *next = malloc(f->count * sizeof *next);
-    int32_t *slot = list_slots(f);
+    int32_t *slot = pst_field_slots(f);
     status s = next && slot ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
     if (s == OK) {
         memcpy(next, f->shading, f->count * sizeof *next);

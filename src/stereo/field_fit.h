@@ -63,6 +63,9 @@ status pst_field_fall_off(const pst_field *f, pst_fall_off *out);
 /* Normal, albedo and residual into the surface's pictures. */
 status pst_field_store(const pst_field *f, pst_surface *out);
 
+/* By place in the picture: where in the field, -1 outside; malloc'ed, NULL if there is no memory. */
+int32_t *pst_field_slots(const pst_field *f);
+
 /* Grey values (the mean of the channels, each under unit intensity) of count pixels and whether they are usable (1, 0):
  * one pixel's all pictures together, pst_padded(pictures) a pixel, the next pixel's stride behind. */
 void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride);

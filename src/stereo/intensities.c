@@ -43,17 +43,11 @@ void pst_intensities_normalize(double *e, int count)
         e[k] /= mean;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 double pst_intensities_typical(float *ratio, size_t count)
 {
     static const double width = 0.1;
     if (count == 0) return 1;
-    qsort(ratio, count, sizeof *ratio, ascending);
+    qsort(ratio, count, sizeof *ratio, pst_ascending);
     double middle = fmax((double)ratio[count / 2], 1e-6);
     for (int round = 0; round < 5; round++) {
         double sum = 0, weights = 0;
@@ -77,10 +71,7 @@ static void fit_pixel(intensities_job *job, size_t i, const double *e, float wid
     vec3 right = {0, 0, 0};
     for (int k = 0; k < m->lights; k++) {
         vec3 d = job->problem->light[k].direction, s = vec3_scale(d, weight[k]);
-        memcpy(a,
-               &(float[6]){a[0] + s.x * d.x, a[1] + s.x * d.y, a[2] + s.x * d.z, a[3] + s.y * d.y, a[4] + s.y * d.z,
-                           a[5] + s.z * d.z},
-               sizeof a);
+        pst_add_outer3(a, s, d);
         right = vec3_fma(right, value[k] / (float)e[k], s);
     }
     m->b[i] = pst_solve3(a, right);
@@ -104,10 +95,7 @@ static void add_pixel(intensities_job *job, size_t i)
     for (int k = 0; k < n; k++) {
         vec3 d = light[k].direction, s = vec3_scale(d, weight[k]);
         float seen = value[k] / level;
-        memcpy(a,
-               &(float[6]){a[0] + s.x * d.x, a[1] + s.x * d.y, a[2] + s.x * d.z, a[3] + s.y * d.y, a[4] + s.y * d.z,
-                           a[5] + s.z * d.z},
-               sizeof a);
+        pst_add_outer3(a, s, d);
         row[k] = vec3_scale(s, seen);
         job->own[k] += (double)(weight[k] * seen * seen);
     }

@@ -21,7 +21,4 @@ bool lapack_eigen(double *m, int n, bool vectors, double *value);
 /* x from m x = b, in b's place; m symmetric and positive, its lower half given, overwritten. */
 bool lapack_solve_positive(double *m, int n, double *b);
 
-/* The first `columns` values of b (rows of them) become the x with the least |a x - b|; a is overwritten. */
-bool lapack_least_squares(double *a, int rows, int columns, double *b);
-
 #endif

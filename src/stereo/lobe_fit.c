@@ -133,17 +133,11 @@ typedef struct equations {
     vec3 t1, t2;             /* the directions that the first two unknowns turn the normal to */
 } equations;
 
-static void tangents(vec3 n, vec3 *t1, vec3 *t2)
-{
-    *t1 = vec3_normalize(fabsf(n.x) < 0.7f ? vec3_make(0, n.z, -n.y) : vec3_make(-n.z, 0, n.x));
-    *t2 = vec3_cross(n, *t1);
-}
-
 static void linearize(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float width,
                       float width_before, equations *e)
 {
     vec3 t1, t2;
-    tangents(at->normal, &t1, &t2);
+    pst_tangents(at->normal, &t1, &t2);
     const float *px = d->seen.x, *py = d->seen.y, *pz = d->seen.z, *value = d->seen.value, *usable = d->seen.usable;
     const int count = pst_whole(d->seen.padded);
     const tail_choice tail = choose_tail(lobe->tail);

@@ -35,6 +35,13 @@ typedef struct pst_shading {
     bool second;     /* of the two lobes that a field of pixels may have (field_fit.h) */
 } pst_shading;
 
+/* Two unit vectors that make a right-handed frame with a normal. */
+static inline void pst_tangents(vec3 n, vec3 *t1, vec3 *t2)
+{
+    *t1 = vec3_normalize(fabsf(n.x) < 0.7f ? vec3_make(0, n.z, -n.y) : vec3_make(-n.z, 0, n.x));
+    *t2 = vec3_cross(n, *t1);
+}
+
 typedef struct pst_lobe_data {
     pst_observations seen; /* borrowed */
     float level;           /* a value that is ordinary for the pixel; residuals are in its unit */

@@ -103,11 +103,6 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-/* Sixteen pixels: vectors of the compiler's, as in ls_sums.c. */
-enum { LANES = 16 };
-typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
-typedef int32_t lane_bits __attribute__((vector_size(LANES * sizeof(int32_t))));
-
 /* A component of sixteen pixels, zero outside the mask. */
 static inline void take(const float *from, const lane_bits *counts, lanes *to)
 {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Pictures added at once; pictures whose bits fill a word; pixels side by side. */
-enum { TOGETHER = 2, WORD = 32, LANES = 16, PRODUCTS = 8, CACHE_LINE = 64 };
+enum { TOGETHER = 2, WORD = 32, PRODUCTS = 8, CACHE_LINE = 64 };
 
 /* What one picture's light contributes. */
 typedef struct ls_light {
@@ -55,10 +55,6 @@ void ls_lights_free(ls_lights *l)
 
 /* ---- right sides ---- */
 
-/* LANES pixels side by side: vectors of the compiler's, wide registers where the processor has them. They are handed on
- * by address, because how they are passed by value depends on the processor. */
-typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
-typedef int32_t lane_bits __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef uint32_t lane_words __attribute__((vector_size(LANES * sizeof(uint32_t))));
 typedef uint16_t lane_codes __attribute__((vector_size(2 * LANES * sizeof(uint16_t)))); /* of twice as many pixels */
 

@@ -18,6 +18,12 @@
  * stay in a first-level cache of 48 KiB. */
 enum { LS_BLOCK = 512 };
 
+/* LANES pixels side by side: vectors of the compiler's, wide registers where the processor has them. They are handed on
+ * by address, because how they are passed by value depends on the processor. */
+enum { LANES = 16 };
+typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t lane_bits __attribute__((vector_size(LANES * sizeof(int32_t))));
+
 typedef struct ls_sums {
     float matrix[6][LS_BLOCK];   /* Σ l lᵀ: xx, xy, xz, yy, yz, zz */
     float right[3][3][LS_BLOCK]; /* Σ v l: channel, component; channels that a grey picture lacks are zero */

@@ -61,7 +61,7 @@ static float reweigh(const pst_observations *o, vec3 b, float width, float *rest
     return cost;
 }
 
-static int ascending(const void *a, const void *b)
+int pst_ascending(const void *a, const void *b)
 {
     float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
@@ -88,7 +88,7 @@ pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
         if (o->usable[i] > 0) sorted[n++] = o->value[i];
     memset(weight, 0, (size_t)o->padded * sizeof *weight);
     if (n == 0) return (pst_pixel){{0, 0, 0}, 0};
-    qsort(sorted, n, sizeof *sorted, ascending);
+    qsort(sorted, n, sizeof *sorted, pst_ascending);
     pst_pixel best = {{0, 0, 0}, HUGE_VALF};
     for (int s = 0; s < STARTS; s++) {
         float last = (float)(n - 1);

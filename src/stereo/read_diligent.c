@@ -62,15 +62,13 @@ static status read_directions(const char *path, pst_capture *c)
 status pst_read_diligent(const char *folder, pst_capture *c)
 {
     char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
-    char *intensities = file_join(folder, "light_intensities.txt");
-    status s = directions && names && intensities ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = directions && names ? OK : fail(ERROR_MEMORY, "no memory for a file name");
     c->lighting = PST_DISTANT;
     if (s == OK) s = read_directions(directions, c);
     if (s == OK) s = read_names(names, folder, c);
-    if (s == OK && file_exists(intensities)) s = pst_read_intensities(intensities, c);
+    if (s == OK) s = pst_read_intensities(folder, c);
     free(directions);
     free(names);
-    free(intensities);
     return s;
 }
 

@@ -90,7 +90,7 @@ static status set_one_intensity(const text_numbers *t, float intensity[3])
     return OK;
 }
 
-status pst_read_intensities(const char *path, pst_capture *c)
+static status read_intensities(const char *path, pst_capture *c)
 {
     char *text;
     size_t size;
@@ -110,6 +110,15 @@ status pst_read_intensities(const char *path, pst_capture *c)
     return s;
 }
 
+status pst_read_intensities(const char *folder, pst_capture *c)
+{
+    char *path = file_join(folder, "light_intensities.txt");
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = file_exists(path) ? read_intensities(path, c) : OK;
+    free(path);
+    return s;
+}
+
 static status read_listed(const char *folder, const char *lights, bool near, pst_capture *c)
 {
     light_list list;
@@ -121,21 +130,12 @@ static status read_listed(const char *folder, const char *lights, bool near, pst
     return s;
 }
 
-static status read_intensities_if_any(const char *folder, pst_capture *c)
-{
-    char *path = file_join(folder, "light_intensities.txt");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    status s = file_exists(path) ? pst_read_intensities(path, c) : OK;
-    free(path);
-    return s;
-}
-
 status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c)
 {
     char *lights = NULL;
     if (options->unknown_lights) {
         status s = names_from_folder(folder, NULL, 0, c);
-        return s == OK ? read_intensities_if_any(folder, c) : s;
+        return s == OK ? pst_read_intensities(folder, c) : s;
     }
     status s = find_lights(folder, options->lights, &lights);
     if (s == OK && !lights)
@@ -144,7 +144,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
                     "with --lights, or use --method uncalibrated",
                     folder);
     if (s == OK) s = read_listed(folder, lights, options->near, c);
-    if (s == OK) s = read_intensities_if_any(folder, c);
+    if (s == OK) s = pst_read_intensities(folder, c);
     free(lights);
     return s;
 }

@@ -1,7 +1,7 @@
 /* A capture with fewer, larger pixels: what slow searches start on, and what evaluation brings large ones to.
  *
  *     pst_capture small;
- *     status s = pst_shrink(&capture, pst_blocks_of(&capture, 4), 0.98f, &small);
+ *     status s = pst_shrink(&capture, pst_blocks_of(&capture, 4), PST_SATURATED, &small);
  *     ... find its depth ...
  *     pst_enlarge(&depth, &small.mask, &capture.mask, 4, &out);
  *     pst_capture_free(&small); */

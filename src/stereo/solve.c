@@ -152,7 +152,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
     pst_problem p = {.capture = c,
                      .light = light,
                      .shadow = options->shadow,
-                     .saturation = options->saturation > 0 ? options->saturation : 0.98f,
+                     .saturation = options->saturation > 0 ? options->saturation : PST_SATURATED,
                      .iterations = options->iterations};
     s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);

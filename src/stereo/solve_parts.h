@@ -43,6 +43,17 @@ static inline vec3 pst_solve3(const float m[6], vec3 b)
                   (c2 * b.x + (xy * xz - xx * yz) * b.y + (xx * yy - xy * xy) * b.z) * inverse};
 }
 
+/* Adds a vᵀ, a multiple of v, to a symmetric matrix of that order. */
+static inline void pst_add_outer3(float m[6], vec3 a, vec3 v)
+{
+    m[0] += a.x * v.x;
+    m[1] += a.x * v.y;
+    m[2] += a.x * v.z;
+    m[3] += a.y * v.y;
+    m[4] += a.y * v.z;
+    m[5] += a.z * v.z;
+}
+
 static inline float pst_quadratic3(const float m[6], vec3 n)
 {
     return n.x * (m[0] * n.x + 2 * (m[1] * n.y + m[2] * n.z)) + n.y * (m[3] * n.y + 2 * m[4] * n.z) + m[5] * n.z * n.z;

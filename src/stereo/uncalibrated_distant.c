@@ -56,12 +56,7 @@ static void refit_lights(const pst_samples *m, lights3 *l)
             /* of equal weight whatever the albedo */
             vec3 b = m->b[i];
             float w = m->weight[i * m->padded + (size_t)k] / fmaxf(vec3_dot(b, b), 1e-12f);
-            a[0] += w * b.x * b.x;
-            a[1] += w * b.x * b.y;
-            a[2] += w * b.x * b.z;
-            a[3] += w * b.y * b.y;
-            a[4] += w * b.y * b.z;
-            a[5] += w * b.z * b.z;
+            pst_add_outer3(a, vec3_scale(b, w), b);
             right = vec3_fma(right, w * m->value[i * m->padded + (size_t)k], b);
         }
         vec3 found = pst_solve3(a, right);
@@ -324,25 +319,22 @@ static status resolve(pseudo *f, lights3 *l)
 /* The surface under the pseudo lights, at every pixel. */
 static status pseudo_surface(const pst_problem *p, const lights3 *l, pseudo *f)
 {
-    size_t size = (size_t)p->capture->width * (size_t)p->capture->height;
+    pst_field field = {.problem = p, .pixel = p->pixel, .count = p->pixel_count};
     f->problem = p;
-    f->b = malloc(p->pixel_count * sizeof *f->b);
-    f->slot = malloc(size * sizeof *f->slot);
+    f->b = field.b = malloc(p->pixel_count * sizeof *f->b);
+    f->slot = pst_field_slots(&field);
     pst_light *light = malloc((size_t)l->count * sizeof *light);
     status s = f->b && f->slot && light ? OK : fail(ERROR_MEMORY, "no memory for %zu pixels", p->pixel_count);
     if (s == OK) {
-        memset(f->slot, 0xff, size * sizeof *f->slot);
-        for (size_t i = 0; i < p->pixel_count; i++)
-            f->slot[p->pixel[i]] = (int32_t)i;
         for (int k = 0; k < l->count; k++) {
             light[k] = p->light[k];
             light[k].direction = vec3_make(l->x[k], l->y[k], l->z[k]);
         }
         pst_problem under = *p;
         under.light = light;
+        field.problem = &under;
         double cost;
-        s = pst_field_fit(&(pst_field){.problem = &under, .pixel = p->pixel, .count = p->pixel_count, .b = f->b},
-                          &cost);
+        s = pst_field_fit(&field, &cost);
     }
     free(light);
     return s;

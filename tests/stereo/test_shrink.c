@@ -23,7 +23,7 @@ static void small_pixels_are_the_objects_means(void **state)
             c.picture[0][3 * i + ch] = (uint16_t)(i % SIZE < 6 ? 100 * (i % SIZE) + ch : 9999);
     }
     c.camera.focal = 20;
-    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), 0.98f, &small), OK);
+    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), PST_SATURATED, &small), OK);
     assert_int_equal(small.width, SMALL_SIZE);
     assert_int_equal(small.height, SMALL_SIZE);
     assert_true(small.camera.focal == 5);
@@ -48,7 +48,7 @@ static void a_channel_that_holds_a_saturated_pixel_is_saturated(void **state)
         c.picture[0][3 * i + 1] = 800;
     }
     c.picture[0][3 * (SIZE + 5)] = 65000;
-    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), 0.98f, &small), OK);
+    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), PST_SATURATED, &small), OK);
     assert_int_equal(small.picture[0][0], 0);
     assert_int_equal(small.picture[0][3], 65535);
     assert_int_equal(small.picture[0][4], 800);
@@ -66,7 +66,7 @@ static void blocks_of_a_part_keep_the_camera_s_rays_and_the_objects_inside(void 
         c.mask.data[i] = i % SIZE < 8 ? 1 : 0;
     c.camera = (pst_camera){.perspective = true, .focal = 20, .center_x = 5, .center_y = 5};
     pst_blocks part = {.x = -1, .y = 1, .columns = 4, .rows = 2, .factor = 3, .whole = true};
-    assert_int_equal(pst_shrink(&c, part, 0.98f, &small), OK);
+    assert_int_equal(pst_shrink(&c, part, PST_SATURATED, &small), OK);
     assert_int_equal(small.width, 4);
     assert_int_equal(small.height, 2);
     assert_true(small.camera.center_x == 2 && fabsf(small.camera.center_y - 4.0f / 3) < 1e-6f);
@@ -86,7 +86,7 @@ static void an_enlarged_slope_is_the_slope(void **state)
     capture_new(&c, SIZE, 1, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         c.mask.data[i] = i % SIZE < 8 ? 1 : 0;
-    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), 0.98f, &small), OK);
+    assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), PST_SATURATED, &small), OK);
     assert_int_equal(img_new(&depth, SMALL_SIZE, SMALL_SIZE, 1), OK);
     assert_int_equal(img_new(&large, SIZE, SIZE, 1), OK);
     for (int i = 0; i < SMALL_SIZE * SMALL_SIZE; i++)

@@ -129,7 +129,7 @@ static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
     pst_capture c;
     double cost;
     ball_capture(&c, 0);
-    pst_problem p = {.capture = &c, .light = c.light, .saturation = 0.98f};
+    pst_problem p = {.capture = &c, .light = c.light, .saturation = PST_SATURATED};
     assert_int_equal(pst_list_pixels(&c, &p), OK);
     pst_lobe lobe = {.width = 0.04f, .shadow = PST_SHADOW_COST, .masking = 0.28f};
     pst_shading *shading = calloc(2 * p.pixel_count, sizeof *shading), *before = shading + p.pixel_count;
