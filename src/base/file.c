@@ -192,14 +192,16 @@ char *file_join(const char *folder, const char *name)
     return asprintf(&out, "%s%s%s", folder, between, name) < 0 ? NULL : out;
 }
 
-static bool has_ending(const char *name, const char *const *endings)
+bool file_ends_in(const char *name, const char *ending)
 {
-    if (!endings) return true;
-    size_t n = strlen(name);
-    for (; *endings; endings++) {
-        size_t m = strlen(*endings);
-        if (n > m && strcasecmp(name + n - m, *endings) == 0) return true;
-    }
+    size_t n = strlen(name), m = strlen(ending);
+    return n > m && strcasecmp(name + n - m, ending) == 0;
+}
+
+bool file_ends_in_any(const char *name, const char *const *endings)
+{
+    for (; *endings; endings++)
+        if (file_ends_in(name, *endings)) return true;
     return false;
 }
 
@@ -233,7 +235,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
         char *path = file_join(folder, e->d_name);
         bool below = path && file_is_folder(path);
         if (below && deep) s = list_into(path, endings, false, names, count, room);
-        if (path && (below || !has_ending(e->d_name, endings))) {
+        if (path && (below || (endings && !file_ends_in_any(e->d_name, endings)))) {
             free(path);
             continue;
         }

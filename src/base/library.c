@@ -1,17 +1,30 @@
 #include "base/library.h"
 
 #include <dlfcn.h>
+#include <pthread.h>
+#include <stdbool.h>
 #include <string.h>
 
-bool library_load(const char *file, const library_function *functions, size_t count)
+static bool load(const library *l)
 {
-    void *library = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
-    bool found = library != NULL;
-    for (size_t i = 0; found && i < count; i++) {
+    void *handle = dlopen(l->file, RTLD_LAZY | RTLD_LOCAL);
+    bool found = handle != NULL;
+    for (size_t i = 0; found && i < l->count; i++) {
         /* dlsym gives functions as objects, which C does not turn into each other */
-        void *function = dlsym(library, functions[i].name);
-        memcpy(functions[i].into, &function, sizeof function);
+        void *function = dlsym(handle, l->functions[i].name);
+        memcpy(l->functions[i].into, &function, sizeof function);
         found = function != NULL;
     }
     return found;
+}
+
+status library_need(library *l)
+{
+    static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+    if (atomic_load(&l->loaded)) return OK;
+    pthread_mutex_lock(&one_at_a_time);
+    bool found = atomic_load(&l->loaded) || load(l);
+    atomic_store(&l->loaded, found);
+    pthread_mutex_unlock(&one_at_a_time);
+    return found ? OK : fail(ERROR_DEVICE, "the library %s cannot be loaded: is it installed?", l->file);
 }

@@ -3,20 +3,33 @@
  *
  *     static struct { __typeof__(cbrt) *cbrt; } maths;
  *     static const library_function wanted[] = {{"cbrt", &maths.cbrt}};
- *     if (library_load("libm.so.6", wanted, 1)) printf("%g\n", maths.cbrt(8));
+ *     static library libm = {.file = "libm.so.6", .functions = wanted, .count = 1};
+ *
+ *     status s = library_need(&libm);
+ *     if (s == OK) printf("%g\n", maths.cbrt(8));
  */
 #ifndef MERLIN_BASE_LIBRARY_H
 #define MERLIN_BASE_LIBRARY_H
 
-#include <stdbool.h>
+#include <stdatomic.h>
 #include <stddef.h>
+
+#include "base/status.h"
 
 typedef struct library_function {
     const char *name;
     void *into; /* the pointer to the function */
 } library_function;
 
-/* For good; false if the library or one of the functions is not there. */
-bool library_load(const char *file, const library_function *functions, size_t count);
+typedef struct library {
+    const char *file;
+    const library_function *functions;
+    size_t count;
+    atomic_bool loaded; /* library_need's */
+} library;
+
+/* Loads it the first time, for good; from any thread, and cheap when it is there. ERROR_DEVICE if the library or one of
+ * the functions is not. */
+status library_need(library *l);
 
 #endif

@@ -4,8 +4,8 @@
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
+#include "base/file.h"
 #include "cli/cli.h"
 
 enum { FIRST_LONG = 256, LETTERS = 2 * CLI_MOST_OPTIONS + 2 };
@@ -56,12 +56,9 @@ static status take_number(const cli_option *o, const char *value)
 /* Whoever asks for one file would find a folder of that name. */
 static status take_folder(const cli_option *o, const char *value)
 {
-    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".hdr"};
-    const char *dot = strrchr(value, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++)
-        if (strcasecmp(dot, endings[i]) == 0)
-            return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name,
-                        value);
+    static const char *const pictures[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".hdr", NULL};
+    if (file_ends_in_any(value, pictures))
+        return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name, value);
     *o->folder = value;
     return OK;
 }

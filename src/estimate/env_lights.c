@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "image/color.h"
 #include "optics/octahedron.h"
 
 /* The level that is cut up: 64 × 64 cells of three degrees. */
@@ -13,17 +14,12 @@ typedef struct part {
     int x0, y0, x1, y1;
 } part;
 
-static float luminance(const float *c)
-{
-    return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
-}
-
 static double weight_of(const img *cells, const part *p, float floor)
 {
     double sum = 0;
     for (int y = p->y0; y < p->y1; y++)
         for (int x = p->x0; x < p->x1; x++)
-            sum += (double)(luminance(img_at(cells, x, y)) + floor);
+            sum += (double)(color_luminance(img_at(cells, x, y)) + floor);
     return sum;
 }
 
@@ -57,7 +53,7 @@ static env_light light_of(const env_map *e, const part *p, float floor)
         for (int x = p->x0; x < p->x1; x++) {
             const float *c = img_at(cells, x, y);
             vec3 d = octahedron_direction(((float)x + 0.5f) / SIDE, ((float)y + 0.5f) / SIDE);
-            out.direction = vec3_fma(out.direction, luminance(c) + 1e-3f * floor, d);
+            out.direction = vec3_fma(out.direction, color_luminance(c) + 1e-3f * floor, d);
             out.power = vec3_fma(out.power, angle, vec3_of(c));
         }
     vec3 d = vec3_normalize(out.direction);

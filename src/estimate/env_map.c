@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "image/color.h"
 #include "image/resize.h"
 #include "optics/latlong.h"
 #include "optics/octahedron.h"
@@ -190,7 +191,7 @@ void env_map_scale(env_map *e, float factor)
 float env_map_mean(const env_map *e)
 {
     /* band 0 is the mean times the root of the sphere's area */
-    return (0.2126f * e->sh[0][0] + 0.7152f * e->sh[0][1] + 0.0722f * e->sh[0][2]) / sqrtf(4 * pi);
+    return color_luminance(e->sh[0]) / sqrtf(4 * pi);
 }
 
 vec3 env_map_lookup(const env_map *e, vec3 d, float solid_angle)

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "image/color.h"
+
 enum { BINS = 1024 };
 /* Luminance from 2^-24 to 2^8, 32 bins a stop. */
 static const float LOWEST_STOP = -24.0f, BINS_PER_STOP = 32.0f;
@@ -10,17 +12,12 @@ static const float PERCENTILE = 0.95f;
  * leaves of its 90th. */
 static const float DARK_END = 0.34f, BRIGHT_END = 2.2f, LARGEST_CHANGE = 64.0f;
 
-static float luminance(const float rgb[3])
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
-
 static float bright_luminance(const img *color, const img *mask)
 {
     size_t bins[BINS] = {0}, count = 0, pixels = (size_t)color->width * (size_t)color->height;
     for (size_t i = 0; i < pixels; i++) {
         if (!(mask->data[i] >= 0.5f)) continue;
-        float place = (log2f(fmaxf(luminance(color->data + 3 * i), 1e-9f)) - LOWEST_STOP) * BINS_PER_STOP;
+        float place = (log2f(fmaxf(color_luminance(color->data + 3 * i), 1e-9f)) - LOWEST_STOP) * BINS_PER_STOP;
         bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
         count++;
     }

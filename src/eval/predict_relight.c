@@ -38,11 +38,11 @@ static void clip_image(img *image)
         image->data[i] = clip(image->data[i]);
 }
 
-/* out = direct + indirect, clipped; indirect may be NULL. */
-static void add_indirect(const img *direct, const float *indirect, img *out)
+/* Clipped. */
+static void add(const img *direct, const img *bounces, img *out)
 {
     for (size_t i = 0, n = (size_t)out->width * (size_t)out->height * 3; i < n; i++)
-        out->data[i] = clip(direct->data[i] + (indirect ? indirect[i] : 0));
+        out->data[i] = clip(direct->data[i] + bounces->data[i]);
 }
 
 /* The network's bounces for the four pictures in `direct`, given the maps; NULL for a variant without. */
@@ -86,7 +86,7 @@ static status add_bounces(eval_model *m, const eval_prediction *p, const img *ma
     for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
         if (indirect) memcpy(bounces.data, indirect + i * values, values * sizeof *indirect);
         s = bounce_follow(&p->flash, &direct[i], NULL, &bounces);
-        if (s == OK) add_indirect(&direct[i], bounces.data, &full[i]);
+        if (s == OK) add(&direct[i], &bounces, &full[i]);
     }
     img_free(&bounces);
     return s;

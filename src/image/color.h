@@ -1,9 +1,15 @@
-/* sRGB by table, exact: an 8-bit or 16-bit code to linear light and back. srgb_encode and srgb_decode, the formula
- * itself, are in write.h. */
+/* Luminance of linear sRGB, and its codes by table, exact: an 8-bit or 16-bit code to linear light and back.
+ * srgb_encode and srgb_decode, the formula itself, are in write.h. */
 #ifndef MERLIN_IMAGE_COLOR_H
 #define MERLIN_IMAGE_COLOR_H
 
 #include <stdint.h>
+
+/* Of the primaries' white (ITU-R BT.709). */
+static inline float color_luminance(const float rgb[3])
+{
+    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
 
 /* 256 and 65536 linear values, by code. */
 const float *srgb_decode_table8(void);

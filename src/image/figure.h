@@ -23,7 +23,8 @@ typedef struct figure_curve {
     const float *x, *y;
     int count;
 } figure_curve;
-/* Line chart with axes, ticks and a legend, as PNG; logarithmic y if asked. NaN points are left out. */
+/* Line chart with axes, ticks and a legend beside it, as PNG of 960 × 600 pixels and the legend's width; logarithmic y
+ * if asked. NaN points are left out. */
 status figure_chart(const char *path, const char *title, const char *x_label, const char *y_label, bool log_y,
                     const figure_curve *curves, int count);
 

@@ -1,13 +1,16 @@
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "image/canvas.h"
 #include "image/figure.h"
 
-enum { CHART_WIDTH = 960, CHART_HEIGHT = 600, LEFT = 88, RIGHT = 28, TOP = 56, BOTTOM = 72, MAX_TICKS = 32 };
+enum { PLOT_WIDTH = 844, CHART_HEIGHT = 600, LEFT = 88, RIGHT = 28, TOP = 56, BOTTOM = 72, MAX_TICKS = 32 };
+/* Between plot and legend, and a letter's width of the legend's font in the mean. */
+enum { LEGEND_GAP = 20, LETTER = 8 };
 
-static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663",
-                                      "#c58af9", "#78d9ec", "#fcad70", "#ff8bcb"};
+static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663", "#c58af9", "#78d9ec",
+                                      "#fcad70", "#ff8bcb", "#c6e377", "#4db6ac", "#bcaaa4", "#ffffff"};
 enum { PALETTE_SIZE = sizeof palette / sizeof *palette };
 
 /* One axis: values low..high lie on pixels first..last; a logarithmic one keeps logarithms here. */
@@ -144,25 +147,42 @@ static void draw_curve(canvas_drawing *d, const axis *x, const axis *y, const fi
     fputs("\"/>\n", d->out);
 }
 
-static void draw_legend(canvas_drawing *d, const figure_curve *curves, int count)
+/* Pixels from the top to where a curve ends; a curve that shows nothing ends at the bottom. */
+static double end_of(const axis *x, const axis *y, const figure_curve *curve)
 {
-    double x = CHART_WIDTH - RIGHT - 12, y = TOP + 22;
-    for (int i = 0; i < count; i++, y += 20) {
+    for (int i = curve->count - 1; i >= 0; i--)
+        if (is_shown(x, curve->x[i]) && is_shown(y, curve->y[i])) return place(y, curve->y[i]);
+    return y->first;
+}
+
+/* Names beside the plot, in the order in which the curves end there. */
+static void draw_legend(canvas_drawing *d, const axis *x, const axis *y, const figure_curve *curves, int count)
+{
+    for (int i = 0; i < count; i++) {
+        double end = end_of(x, y, &curves[i]), at_x = x->last + LEGEND_GAP, at_y = y->last + 12;
+        for (int k = 0; k < count; k++) {
+            double other = end_of(x, y, &curves[k]);
+            if (other < end || (other <= end && k < i)) at_y += 20;
+        }
         if (!curves[i].label) continue;
-        /* the ground's colour round the letters keeps them readable over curves */
-        draw_text(d,
-                  "font-size=\"13\" text-anchor=\"end\" stroke=\"" CANVAS_GROUND_CSS
-                  "\" stroke-width=\"4\" stroke-linejoin=\"round\"",
-                  x - 32, y, curves[i].label);
-        draw_text(d, "font-size=\"13\" text-anchor=\"end\"", x - 32, y, curves[i].label);
         fprintf(d->out, "<path stroke=\"%s\" stroke-width=\"3\" stroke-linecap=\"round\" d=\"M%.1f %.1fh20\"/>\n",
-                palette[i % PALETTE_SIZE], x - 22, y - 4.5);
+                palette[i % PALETTE_SIZE], at_x, at_y - 4.5);
+        draw_text(d, "font-size=\"13\"", at_x + 32, at_y, curves[i].label);
     }
+}
+
+/* What the names need beside the plot. */
+static int legend_width(const figure_curve *curves, int count)
+{
+    size_t longest = 0;
+    for (int i = 0; i < count; i++)
+        if (curves[i].label && strlen(curves[i].label) > longest) longest = strlen(curves[i].label);
+    return longest ? LEGEND_GAP + 32 + LETTER * (int)longest : 0;
 }
 
 static void draw_titles(canvas_drawing *d, const char *title, const char *x_label, const char *y_label)
 {
-    double middle_x = (LEFT + CHART_WIDTH - RIGHT) / 2.0, middle_y = (TOP + CHART_HEIGHT - BOTTOM) / 2.0;
+    double middle_x = LEFT + PLOT_WIDTH / 2.0, middle_y = (TOP + CHART_HEIGHT - BOTTOM) / 2.0;
     char turned[96];
     snprintf(turned, sizeof turned, "font-size=\"14\" text-anchor=\"middle\" transform=\"rotate(-90 22 %.1f)\"",
              middle_y);
@@ -174,7 +194,7 @@ static void draw_titles(canvas_drawing *d, const char *title, const char *x_labe
 status figure_chart(const char *path, const char *title, const char *x_label, const char *y_label, bool log_y,
                     const figure_curve *curves, int count)
 {
-    axis x = {.first = LEFT, .last = CHART_WIDTH - RIGHT};
+    axis x = {.first = LEFT, .last = LEFT + PLOT_WIDTH};
     axis y = {.first = CHART_HEIGHT - BOTTOM, .last = TOP, .logarithmic = log_y};
     find_range(&x, curves, count, false);
     find_range(&y, curves, count, true);
@@ -184,7 +204,7 @@ status figure_chart(const char *path, const char *title, const char *x_label, co
     else
         linear_ticks(&y, 6, true);
     canvas c;
-    status s = canvas_new(&c, CHART_WIDTH, CHART_HEIGHT);
+    status s = canvas_new(&c, LEFT + PLOT_WIDTH + RIGHT + legend_width(curves, count), CHART_HEIGHT);
     if (s != OK) return s;
     canvas_drawing d;
     s = canvas_draw_begin(&c, &d);
@@ -192,7 +212,7 @@ status figure_chart(const char *path, const char *title, const char *x_label, co
         draw_axes(&d, &x, &y);
         for (int i = 0; i < count; i++)
             draw_curve(&d, &x, &y, &curves[i], palette[i % PALETTE_SIZE]);
-        draw_legend(&d, curves, count);
+        draw_legend(&d, &x, &y, curves, count);
         draw_titles(&d, title, x_label, y_label);
         s = canvas_draw_end(&c, &d);
     }

@@ -9,8 +9,13 @@
 #include "base/library.h"
 #include "image/vips_library.h"
 
-static pthread_once_t once = PTHREAD_ONCE_INIT;
 static vips_functions functions;
+#define WANT_VIPS(name) {"vips_" #name, &functions.name},
+#define WANT_GLIB(name) {"g_" #name, &functions.g_##name},
+static const library_function wanted[] = {VIPS_FUNCTIONS(WANT_VIPS) GLIB_FUNCTIONS(WANT_GLIB)};
+static library libvips = {.file = MERLIN_VIPS, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
 static bool started;
 
 static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *message, gpointer user)
@@ -23,10 +28,6 @@ static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *mess
 
 static void start(void)
 {
-#define WANT_VIPS(name) {"vips_" #name, &functions.name},
-#define WANT_GLIB(name) {"g_" #name, &functions.g_##name},
-    static const library_function wanted[] = {VIPS_FUNCTIONS(WANT_VIPS) GLIB_FUNCTIONS(WANT_GLIB)};
-    if (!library_load(MERLIN_VIPS, wanted, sizeof wanted / sizeof *wanted)) return;
     functions.g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
     started = functions.init("merlin") == 0;
     functions.concurrency_set(1);
@@ -35,8 +36,10 @@ static void start(void)
 
 status vips_begin(void)
 {
+    status s = library_need(&libvips);
+    if (s != OK) return s;
     pthread_once(&once, start);
-    return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start: is it installed?");
+    return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start");
 }
 
 const vips_functions *vips(void)

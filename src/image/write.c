@@ -5,7 +5,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "image/codes.h"
@@ -98,18 +97,12 @@ static VipsImage *wrap(const film *f)
     return failed ? NULL : named;
 }
 
-static bool ends_in(const char *path, const char *ending)
-{
-    size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcasecmp(path + n - m, ending) == 0;
-}
-
 static status check_frames(const char *path, const img *frames, int count)
 {
-    if (!ends_in(path, ".webp") && !ends_in(path, ".gif"))
+    if (!file_ends_in(path, ".webp") && !file_ends_in(path, ".gif"))
         return fail(ERROR_USAGE, "cannot write %s: an animation's name ends in .webp or .gif", path);
     if (count < 1) return fail(ERROR_USAGE, "cannot write %s: an animation needs at least one frame", path);
-    if (ends_in(path, ".gif") && !vips()->type_find("VipsOperation", "gifsave_buffer"))
+    if (file_ends_in(path, ".gif") && !vips()->type_find("VipsOperation", "gifsave_buffer"))
         return fail(ERROR_OUTPUT, "cannot write %s: this libvips has no GIF writer, use .webp", path);
     for (int i = 0; i < count; i++)
         if (!frames[i].data || frames[i].channels != 3 || frames[i].width != frames[0].width ||
@@ -134,8 +127,8 @@ static int save_frames(const char *path, const film *f, int milliseconds, void *
     vips()->image_set_int(image, VIPS_META_PAGE_HEIGHT, f->height);
     vips()->image_set_int(image, "loop", 0);
     vips()->image_set_array_int(image, "delay", delays, f->count);
-    int failed = ends_in(path, ".gif") ? vips()->gifsave_buffer(image, data, size, NULL)
-                                       : vips()->webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
+    int failed = file_ends_in(path, ".gif") ? vips()->gifsave_buffer(image, data, size, NULL)
+                                            : vips()->webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
     vips()->g_object_unref(image);
     free(delays);
     return failed;

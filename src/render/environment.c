@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "image/color.h"
 #include "optics/brdf.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
@@ -20,11 +21,6 @@ static void place_of(const environment *env, vec3 d, float *x, float *y)
     *y = v * (float)env->map.height;
 }
 
-static float luminance(const float *c)
-{
-    return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
-}
-
 /* Solid angle of a texel of row y: latlong_solid_angle, from the stored cosines. */
 static float texel_solid_angle(const environment *env, int y)
 {
@@ -38,7 +34,7 @@ static float mean_luminance(const environment *env)
     for (int y = 0; y < map->height; y++) {
         double row = 0;
         for (int x = 0; x < map->width; x++)
-            row += luminance(img_at(map, x, y));
+            row += color_luminance(img_at(map, x, y));
         sum += row * texel_solid_angle(env, y);
     }
     return (float)(sum / (4 * 3.14159265358979));
@@ -62,7 +58,7 @@ static void fill_distribution(environment *env, float floor_luminance)
         float *row = env->columns + (size_t)y * (size_t)(w + 1);
         row[0] = 0;
         for (int x = 0; x < w; x++)
-            row[x + 1] = row[x] + luminance(img_at(&env->map, x, y)) + floor_luminance;
+            row[x + 1] = row[x] + color_luminance(img_at(&env->map, x, y)) + floor_luminance;
         env->rows[y + 1] = env->rows[y] + row[w] * texel_solid_angle(env, y);
         normalize_cumulative(row, w);
     }

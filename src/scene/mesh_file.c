@@ -3,10 +3,7 @@
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <pthread.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/library.h"
@@ -24,27 +21,15 @@ static struct {
     __typeof__(aiGetErrorString) *error;
 } assimp;
 
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-static bool loaded;
-
-static void load(void)
-{
-    static const library_function wanted[] = {
-        {"aiCreatePropertyStore", &assimp.create_settings},
-        {"aiSetImportPropertyInteger", &assimp.set_integer},
-        {"aiReleasePropertyStore", &assimp.release_settings},
-        {"aiImportFileExWithProperties", &assimp.import},
-        {"aiReleaseImport", &assimp.release},
-        {"aiGetErrorString", &assimp.error},
-    };
-    loaded = library_load(MERLIN_ASSIMP, wanted, sizeof wanted / sizeof *wanted);
-}
-
-static bool ends_in(const char *path, const char *ending)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ending) == 0;
-}
+static const library_function wanted[] = {
+    {"aiCreatePropertyStore", &assimp.create_settings},
+    {"aiSetImportPropertyInteger", &assimp.set_integer},
+    {"aiReleasePropertyStore", &assimp.release_settings},
+    {"aiImportFileExWithProperties", &assimp.import},
+    {"aiReleaseImport", &assimp.release},
+    {"aiGetErrorString", &assimp.error},
+};
+static library libassimp = {.file = MERLIN_ASSIMP, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
 static vec3 from_ai(struct aiVector3D v)
 {
@@ -119,8 +104,8 @@ static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts
 
 static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
 {
-    pthread_once(&once, load);
-    if (!loaded) return fail(ERROR_DEVICE, "the library " MERLIN_ASSIMP " cannot be loaded: is it installed?");
+    status s = library_need(&libassimp);
+    if (s != OK) return s;
     struct aiPropertyStore *settings = assimp.create_settings();
     if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");
     assimp.set_integer(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -130,16 +115,17 @@ static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
                                                 NULL, settings);
     assimp.release_settings(settings);
     if (!scene) return fail(ERROR_INPUT, "cannot read the mesh: %s", assimp.error());
-    status s = take_scene(scene, mesh, parts);
+    s = take_scene(scene, mesh, parts);
     assimp.release(scene);
     return s;
 }
 
 status mesh_read(const char *path, scn_mesh *mesh, int *parts)
 {
-    bool is_ply = ends_in(path, ".ply"), is_gltf = ends_in(path, ".gltf") || ends_in(path, ".glb");
+    static const char *const by_assimp[] = {".obj", ".gltf", ".glb", NULL};
+    bool is_ply = file_ends_in(path, ".ply");
     if (!file_exists(path)) return fail(ERROR_INPUT, "no such file");
-    if (!is_ply && !is_gltf && !ends_in(path, ".obj"))
+    if (!is_ply && !file_ends_in_any(path, by_assimp))
         return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
     *parts = 1;
     status s = is_ply ? mesh_read_ply(path, mesh) : read_by_assimp(path, mesh, parts);

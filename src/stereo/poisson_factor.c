@@ -1,5 +1,4 @@
 #include <cholmod.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,24 +18,18 @@ static struct {
     __typeof__(cholmod_free_dense) *free_dense;
 } cholmod;
 
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-static bool loaded;
-
-static void load(void)
-{
-    static const library_function wanted[] = {
-        {"cholmod_start", &cholmod.start},
-        {"cholmod_finish", &cholmod.finish},
-        {"cholmod_allocate_sparse", &cholmod.allocate_sparse},
-        {"cholmod_free_sparse", &cholmod.free_sparse},
-        {"cholmod_analyze", &cholmod.analyze},
-        {"cholmod_factorize", &cholmod.factorize},
-        {"cholmod_free_factor", &cholmod.free_factor},
-        {"cholmod_solve", &cholmod.solve},
-        {"cholmod_free_dense", &cholmod.free_dense},
-    };
-    loaded = library_load(MERLIN_CHOLMOD, wanted, sizeof wanted / sizeof *wanted);
-}
+static const library_function wanted[] = {
+    {"cholmod_start", &cholmod.start},
+    {"cholmod_finish", &cholmod.finish},
+    {"cholmod_allocate_sparse", &cholmod.allocate_sparse},
+    {"cholmod_free_sparse", &cholmod.free_sparse},
+    {"cholmod_analyze", &cholmod.analyze},
+    {"cholmod_factorize", &cholmod.factorize},
+    {"cholmod_free_factor", &cholmod.free_factor},
+    {"cholmod_solve", &cholmod.solve},
+    {"cholmod_free_dense", &cholmod.free_dense},
+};
+static library libcholmod = {.file = MERLIN_CHOLMOD, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
 struct poisson_factor {
     const poisson_grid *grid;
@@ -76,8 +69,8 @@ static void fill(poisson_factor *f)
 status poisson_factor_new(const poisson_grid *g, poisson_factor **out)
 {
     *out = NULL;
-    pthread_once(&once, load);
-    if (!loaded) return fail(ERROR_DEVICE, "the library " MERLIN_CHOLMOD " cannot be loaded: is it installed?");
+    status s = library_need(&libcholmod);
+    if (s != OK) return s;
     poisson_factor *f = calloc(1, sizeof *f);
     if (!f) return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", g->count);
     f->grid = g;
@@ -90,7 +83,7 @@ status poisson_factor_new(const poisson_grid *g, poisson_factor **out)
         f->factor = cholmod.analyze(f->matrix, &f->common);
     }
     if (!f->factor) {
-        status s = refuse(f);
+        s = refuse(f);
         poisson_factor_free(f);
         return s;
     }

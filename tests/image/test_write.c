@@ -146,12 +146,31 @@ static void chart_is_drawn_from_any_curves(void **state)
     assert_int_equal(figure_chart(scratch_path("point.png"), NULL, NULL, NULL, true, &one, 1), OK);
     assert_int_equal(figure_chart(scratch_path("empty.png"), "", "", "", false, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("log.png"), &chart, NULL), OK);
-    assert_int_equal(chart.width, 960);
+    assert_true(chart.width > 960);
     assert_int_equal(chart.height, 600);
     int blue = 0;
     for (int i = 0; i < chart.width * chart.height; i++)
         blue += chart.data[3 * i + 2] > chart.data[3 * i] + 0.3f;
     assert_true(blue > 800); /* a line across the plot, at least a pixel wide */
+    img_free(&chart);
+    assert_int_equal(img_read(scratch_path("empty.png"), &chart, NULL), OK);
+    assert_int_equal(chart.width, 960);
+    img_free(&chart);
+}
+
+/* A curve along the upper and right edge stays whole: in every row of the plot its last pixel is lit. */
+static void legend_covers_no_curve(void **state)
+{
+    (void)state;
+    const float x[] = {0, 1, 1}, y[] = {1, 1, 0};
+    const figure_curve curves[] = {{"along the edge", x, y, 3}, {"a longer name of a curve", x, y, 0}};
+    img chart = {0};
+    assert_int_equal(figure_chart(scratch_path("edge.png"), "edge", "x", "y", false, curves, 2), OK);
+    assert_int_equal(img_read(scratch_path("edge.png"), &chart, NULL), OK);
+    for (int row = 60; row < 525; row++) {
+        const float *p = img_at(&chart, 931, row);
+        assert_true(p[2] > p[0] + 0.1f);
+    }
     img_free(&chart);
 }
 
@@ -192,6 +211,7 @@ int main(void)
         cmocka_unit_test(failed_writes_leave_nothing_and_say_where),
         cmocka_unit_test(sheet_shows_its_tiles_where_they_belong),
         cmocka_unit_test(chart_is_drawn_from_any_curves),
+        cmocka_unit_test(legend_covers_no_curve),
         cmocka_unit_test(normals_and_depth_become_colours_inside_the_mask),
     };
     return cmocka_run_group_tests(tests, start, scratch_close);
