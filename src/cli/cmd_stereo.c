@@ -146,7 +146,8 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
     return s;
 }
 
-static void announce(const request *r, const char *output, const cJSON *report, double seconds)
+static void announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
+                     double seconds)
 {
     if (r->json) {
         char *text = cJSON_PrintUnformatted(report);
@@ -155,6 +156,11 @@ static void announce(const request *r, const char *output, const cJSON *report, 
     } else if (!r->quiet) {
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
     }
+    if (!r->quiet && result->strengths_unsure)
+        fprintf(stderr,
+                "merlin stereo: %s: the object is too flat to tell how strong the lights are, and normals may be many "
+                "degrees off: state the strengths in light_intensities.txt\n",
+                r->input);
 }
 
 static status work(request *r, const char *output, cJSON *report)
@@ -174,8 +180,8 @@ static status work(request *r, const char *output, cJSON *report)
         r->files.stop = cli_interrupted;
         s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&r->files, &result, report);
     }
+    if (s == OK) announce(r, output, &result, report, clock_seconds() - began);
     stereo_result_free(&result);
-    if (s == OK) announce(r, output, report, clock_seconds() - began);
     return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 

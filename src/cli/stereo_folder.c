@@ -79,6 +79,7 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     if (c->normal_true.data)
         put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
     if (s->light) put_lights(report, c, s);
+    if (s->method == PST_SEMI) cJSON_AddBoolToObject(report, "strengths_unsure", s->strengths_unsure);
     free(values);
     return OK;
 }
@@ -93,6 +94,7 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
     size_t values = 3 * (size_t)c->width * (size_t)c->height, channels = (size_t)s->albedo.channels;
     for (size_t i = 0; i < values; i++)
         r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
+    r->strengths_unsure = s->strengths_unsure;
     r->normal = s->normal;
     r->error = s->residual;
     s->normal = s->residual = (img){0};

@@ -14,6 +14,7 @@ typedef struct stereo_result {
     const char *error_name;          /* what error is: the residual, or the spread in degrees */
     float error_white;               /* shown as white */
     pst_camera camera;
+    bool strengths_unsure; /* as in solve.h */
 } stereo_result;
 
 void stereo_result_free(stereo_result *r);

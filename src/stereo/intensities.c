@@ -43,13 +43,10 @@ void pst_intensities_normalize(double *e, int count)
         e[k] /= mean;
 }
 
-double pst_intensities_typical(float *ratio, size_t count)
+double pst_intensities_about(const float *ratio, size_t count, double middle)
 {
     static const double width = 0.1;
-    if (count == 0) return 1;
-    qsort(ratio, count, sizeof *ratio, pst_ascending);
-    double middle = fmax((double)ratio[count / 2], 1e-6);
-    for (int round = 0; round < 5; round++) {
+    for (int round = 0; count > 0 && round < 5; round++) {
         double sum = 0, weights = 0;
         for (size_t i = 0; i < count; i++) {
             double r = ((double)ratio[i] / middle - 1) / width, w = 1 / ((1 + r * r) * (1 + r * r));
@@ -59,6 +56,13 @@ double pst_intensities_typical(float *ratio, size_t count)
         middle = fmax(sum / weights, 1e-6);
     }
     return middle;
+}
+
+double pst_intensities_typical(float *ratio, size_t count)
+{
+    if (count == 0) return 1;
+    qsort(ratio, count, sizeof *ratio, pst_ascending);
+    return pst_intensities_about(ratio, count, fmax((double)ratio[count / 2], 1e-6));
 }
 
 /* The pixel's surface by its weights, and the weights from what it leaves; lights that are dark, in the pixel's
@@ -218,7 +222,7 @@ static status job_new(const pst_problem *p, size_t sample, intensities_job *job)
     return OK;
 }
 
-status pst_intensities_find(const pst_problem *p, size_t sample, double *e)
+status pst_intensities_find(const pst_problem *p, size_t sample, double *e, double *told)
 {
     intensities_job job = {0};
     double moved = HUGE_VAL;
@@ -227,6 +231,7 @@ status pst_intensities_find(const pst_problem *p, size_t sample, double *e)
     status s = job_new(p, sample, &job);
     for (int round = 0; s == OK && round < ROUNDS && moved > settled; round++)
         s = improve(&job, fmaxf(narrowest, widest / (float)(1 << (round < 8 ? round : 8))), e, &moved);
+    if (s == OK) *told = job.eigenvalue[1] / fmax(job.eigenvalue[0], 1e-12);
     pst_samples_free(&job.sample);
     free(job.level);
     free(job.form);

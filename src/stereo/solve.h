@@ -25,13 +25,14 @@ typedef struct pst_options {
 } pst_options;
 
 typedef struct pst_surface {
-    img normal;        /* 3, unit, z > 0, zero outside the mask */
-    img albedo;        /* capture's channels; relative unless intensities are known */
-    img depth;         /* 1, camera distance along -z; empty unless the method finds it */
-    img residual;      /* 1, root mean square over the images used, relative to the fit */
-    pst_method method; /* the one used */
-    pst_light *light;  /* semi, uncalibrated: what was found (count entries); else NULL */
-    bool lights_near;  /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
+    img normal;            /* 3, unit, z > 0, zero outside the mask */
+    img albedo;            /* capture's channels; relative unless intensities are known */
+    img depth;             /* 1, camera distance along -z; empty unless the method finds it */
+    img residual;          /* 1, root mean square over the images used, relative to the fit */
+    pst_method method;     /* the one used */
+    pst_light *light;      /* semi, uncalibrated: what was found (count entries); else NULL */
+    bool strengths_unsure; /* semi: the object is so flat that others than what was found explain the pictures, too */
+    bool lights_near;      /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
 } pst_surface;
 
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);

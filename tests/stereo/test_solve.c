@@ -116,18 +116,25 @@ static void a_raised_black_level_is_found(void **state)
     capture_drop(&c);
 }
 
+/* Strengths of 0.5, 0.75, 1. */
+static void weaken_lights(pst_capture *c)
+{
+    for (int k = 0; k < c->count; k++)
+        for (int i = 0; i < c->width * c->height * c->channels; i++)
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.5f + 0.5f * (float)(k % 3) / 2));
+    c->intensities_known = false;
+}
+
 static void lights_of_unknown_strength_are_found_despite_highlights(void **state)
 {
     (void)state;
     pst_capture c;
     relief_capture(&glossy, &c);
-    for (int k = 0; k < c.count; k++)
-        for (int i = 0; i < c.width * c.height * 3; i++)
-            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.5f + 0.5f * (float)(k % 3) / 2));
-    c.intensities_known = false;
+    weaken_lights(&c);
     pst_surface s;
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
     assert_int_equal(s.method, PST_SEMI);
+    assert_false(s.strengths_unsure);
     double angle = mean_angle(&c, &s.normal);
     print_message("semi on the specular relief: %.2f degrees\n", angle);
     assert_true(angle < 3);
@@ -139,6 +146,59 @@ static void lights_of_unknown_strength_are_found_despite_highlights(void **state
     for (int k = 0; k < c.count; k++)
         c.light[k].intensity[0] = c.light[k].intensity[1] = c.light[k].intensity[2] = 0.3f + (float)(k % 5);
     assert_float_equal(solve_angle(&c, PST_SEMI), angle, 1e-3);
+    capture_drop(&c);
+}
+
+static bool semi_is_unsure(const pst_capture *c)
+{
+    pst_surface s;
+    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_SEMI}, &s), OK);
+    bool unsure = s.strengths_unsure;
+    print_message("semi on the flat relief: %.2f degrees\n", mean_angle(c, &s.normal));
+    pst_surface_free(&s);
+    return unsure;
+}
+
+/* Equal strengths explain equal lights at once, and nothing has to be told. */
+static void strengths_about_a_flat_object_are_unsure_unless_equal(void **state)
+{
+    (void)state;
+    relief flat = {.size = 48, .lights = 12, .channels = 1, .bump = 0.25f, .specular = 1, .roughness = 0.35f};
+    pst_capture c;
+    flat.exposure = 1;
+    relief_capture(&flat, &c);
+    c.intensities_known = false;
+    assert_false(semi_is_unsure(&c));
+    weaken_lights(&c);
+    assert_true(semi_is_unsure(&c));
+    capture_drop(&c);
+}
+
+/* To 5 percent: by so much a light that is 11 percent redder and 6 percent less blue than another is stronger in grey
+ * on the white half than on the one without red, and has one strength in grey for both. */
+static void colours_of_lights_are_told_from_those_of_the_object(void **state)
+{
+    (void)state;
+    static const float tint[3][3] = {{1, 0.9f, 0.85f}, {0.9f, 0.9f, 0.9f}, {0.85f, 0.9f, 1}};
+    pst_capture c;
+    relief_capture(&glossy, &c);
+    size_t values = (size_t)c.width * (size_t)c.height * 3;
+    for (int k = 0; k < c.count; k++)
+        for (size_t i = 0; i < values; i++) {
+            /* the left half without red */
+            float paint = i % 3 == 0 && i / 3 % (size_t)c.width < (size_t)c.width / 2 ? 0.05f : 1;
+            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * paint * tint[k % 3][i % 3]);
+        }
+    weaken_lights(&c);
+    pst_surface s;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
+    const float *base = s.light[1].intensity; /* white, as every third */
+    for (int k = 0; k < c.count; k++)
+        for (int ch = 0; ch < 3; ch++) {
+            float strength = 0.5f + 0.5f * (float)(k % 3) / 2, wanted = tint[k % 3][ch] / 0.9f * strength / 0.75f;
+            assert_float_equal(s.light[k].intensity[ch] / base[ch], wanted, 0.05f * wanted);
+        }
+    pst_surface_free(&s);
     capture_drop(&c);
 }
 
@@ -299,6 +359,8 @@ int main(void)
         cmocka_unit_test(robust_on_few_poor_lights_is_no_worse_than_least_squares),
         cmocka_unit_test(a_raised_black_level_is_found),
         cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
+        cmocka_unit_test(strengths_about_a_flat_object_are_unsure_unless_equal),
+        cmocka_unit_test(colours_of_lights_are_told_from_those_of_the_object),
         cmocka_unit_test(equal_strengths_are_recognized),
         cmocka_unit_test(unknown_lights_of_equal_strength_are_found),
         cmocka_unit_test(unknown_lights_of_unequal_strength_need_one_albedo),
