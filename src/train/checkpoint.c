@@ -8,26 +8,27 @@
 
 #include "nn/safetensors.h"
 
-enum { NAME = 128 };
-static const char *const moment_names[3] = {"", "adam.moment1.", "adam.moment2."};
+enum { NAME = 128, PARTS = 4 };
+static const char *const part_names[PARTS] = {"", "adam.moment1.", "adam.moment2.", "average."};
 
-/* A parameter's value (which 0) or one of its moments; NULL where there is none. */
-static float *part_of(nn_params *params, nn_adam *adam, size_t i, int which)
+/* A parameter's value (which 0), one of its moments or its mean; NULL where there is none. */
+static float *part_of(const trn_learner *l, size_t i, int which)
 {
-    nn_param *p = nn_params_at(params, i);
+    nn_param *p = nn_params_at(l->params, i);
     if (which == 0) return p->value;
-    return p->gradient ? nn_adam_moment(adam, i, which) : NULL;
+    if (which == 3) return l->average ? trn_average_values(l->average, i) : NULL;
+    return p->gradient ? nn_adam_moment(l->adam, i, which) : NULL;
 }
 
-static status collect(nn_params *params, nn_adam *adam, st_tensor *tensors, char (*names)[NAME], size_t *count)
+static status collect(const trn_learner *learner, st_tensor *tensors, char (*names)[NAME], size_t *count)
 {
     size_t n = 0;
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        const nn_param *p = nn_params_at(params, i);
-        for (int which = 0; which < 3; which++) {
-            const float *data = part_of(params, adam, i, which);
+    for (size_t i = 0; i < nn_params_count(learner->params); i++) {
+        const nn_param *p = nn_params_at(learner->params, i);
+        for (int which = 0; which < PARTS; which++) {
+            const float *data = part_of(learner, i, which);
             if (!data) continue;
-            if (snprintf(names[n], NAME, "%s%s", moment_names[which], p->name) >= NAME)
+            if (snprintf(names[n], NAME, "%s%s", part_names[which], p->name) >= NAME)
                 return fail(ERROR_USAGE, "parameter name %s is too long for a checkpoint", p->name);
             tensors[n] =
                 (st_tensor){.name = names[n], .type = ST_F32, .rank = p->rank, .count = p->count, .data = data};
@@ -74,15 +75,15 @@ static status write_tensors(const char *path, const st_tensor *tensors, size_t c
     return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
 }
 
-status trn_checkpoint_write(const char *path, nn_params *params, nn_adam *adam, const trn_state *state,
+status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
                             const trn_identity *identity)
 {
-    size_t most = 3 * nn_params_count(params), count = 0;
+    size_t most = PARTS * nn_params_count(learner->params), count = 0;
     st_tensor *tensors = calloc(most, sizeof *tensors);
     char(*names)[NAME] = calloc(most, sizeof *names);
     status s = tensors && names ? OK : fail(ERROR_MEMORY, "out of memory writing %s", path);
-    if (s == OK) s = collect(params, adam, tensors, names, &count);
-    if (s == OK) s = write_tensors(path, tensors, count, adam, state, identity);
+    if (s == OK) s = collect(learner, tensors, names, &count);
+    if (s == OK) s = write_tensors(path, tensors, count, learner->adam, state, identity);
     free(names);
     free(tensors);
     return s;
@@ -114,15 +115,15 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     return OK;
 }
 
-static status read_tensors(const st_file *f, const char *path, nn_params *params, nn_adam *adam)
+static status read_tensors(const st_file *f, const char *path, const trn_learner *learner)
 {
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        const nn_param *p = nn_params_at(params, i);
-        for (int which = 0; which < 3; which++) {
-            float *to = part_of(params, adam, i, which);
+    for (size_t i = 0; i < nn_params_count(learner->params); i++) {
+        const nn_param *p = nn_params_at(learner->params, i);
+        for (int which = 0; which < PARTS; which++) {
+            float *to = part_of(learner, i, which);
             if (!to) continue;
             char name[NAME];
-            snprintf(name, sizeof name, "%s%s", moment_names[which], p->name);
+            snprintf(name, sizeof name, "%s%s", part_names[which], p->name);
             const st_tensor *t = st_find(f, name);
             if (!t || t->count != p->count || t->type != ST_F32)
                 return fail(ERROR_INPUT, "%s lacks the tensor %s", path, name);
@@ -130,18 +131,17 @@ static status read_tensors(const st_file *f, const char *path, nn_params *params
             if (s != OK) return s;
         }
     }
-    nn_params_touch(params);
+    nn_params_touch(learner->params);
     return OK;
 }
 
-status trn_checkpoint_read(const char *path, nn_params *params, nn_adam *adam, trn_state *state,
-                           const trn_identity *identity)
+status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state, const trn_identity *identity)
 {
     st_file *f;
     status s = st_open(path, &f);
     if (s != OK) return s;
-    s = read_counters(f, path, adam, state, identity);
-    if (s == OK) s = read_tensors(f, path, params, adam);
+    s = read_counters(f, path, learner->adam, state, identity);
+    if (s == OK) s = read_tensors(f, path, learner);
     st_close(f);
     return s;
 }

@@ -1,8 +1,9 @@
-/* A training run on disk: parameters, Adam's moments, counters and the open row of the curves, in one safetensors file
- * written at once or not at all. */
+/* A training run on disk: parameters, Adam's moments, the weights' mean, counters and the open row of the curves, in
+ * one safetensors file written at once or not at all. */
 #ifndef MERLIN_TRAIN_CHECKPOINT_H
 #define MERLIN_TRAIN_CHECKPOINT_H
 
+#include "train/average.h"
 #include "train/config.h"
 #include "train/curves.h"
 
@@ -18,10 +19,17 @@ typedef struct trn_identity {
     size_t samples;
 } trn_identity;
 
-status trn_checkpoint_write(const char *path, nn_params *params, nn_adam *adam, const trn_state *state,
+/* What a step changes. */
+typedef struct trn_learner {
+    nn_params *params;
+    nn_adam *adam;
+    trn_average *average; /* may be NULL */
+} trn_learner;
+
+status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
                             const trn_identity *identity);
 /* Refuses a checkpoint of another configuration or data set. */
-status trn_checkpoint_read(const char *path, nn_params *params, nn_adam *adam, trn_state *state,
+status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state,
                            const trn_identity *identity);
 
 typedef struct trn_provenance {

@@ -33,35 +33,37 @@ typedef struct optional {
     size_t offset; /* in train_config */
 } optional;
 
-static const optional faults[] = {
+static const optional optionals[] = {
     {"camera_turn", 20, offsetof(train_config, camera_turn)},
     {"distance_jitter", 0.7, offsetof(train_config, distance_jitter)},
     {"background_leak", 1, offsetof(train_config, background_leak)},
     {"outline_error", 1, offsetof(train_config, outline_error)},
     {"jpeg", 1, offsetof(train_config, jpeg)},
+    {"average_decay", 0.999999, offsetof(train_config, average_decay)},
 };
-enum { FAULTS = sizeof faults / sizeof *faults };
+enum { OPTIONALS = sizeof optionals / sizeof *optionals };
 
-static status read_faults(json_object *o, train_config *c)
+static status read_optionals(json_object *o, train_config *c)
 {
     status s = OK;
-    for (int i = 0; i < FAULTS && s == OK; i++) {
+    for (int i = 0; i < OPTIONALS && s == OK; i++) {
         double value = 0;
-        s = json_number_or(o, faults[i].key, 0, faults[i].high, 0, &value);
-        memcpy((char *)c + faults[i].offset, &value, sizeof value);
+        s = json_number_or(o, optionals[i].key, 0, optionals[i].high, 0, &value);
+        memcpy((char *)c + optionals[i].offset, &value, sizeof value);
     }
     return s;
 }
 
 /* Those that are not 0, each behind a comma and a space. */
-static void write_faults(const train_config *c, char *out, size_t size)
+static void write_optionals(const train_config *c, char *out, size_t size)
 {
     size_t length = 0;
     out[0] = 0;
-    for (int i = 0; i < FAULTS; i++) {
+    for (int i = 0; i < OPTIONALS; i++) {
         double value;
-        memcpy(&value, (const char *)c + faults[i].offset, sizeof value);
-        if (value != 0) length += (size_t)snprintf(out + length, size - length, ", \"%s\": %.9g", faults[i].key, value);
+        memcpy(&value, (const char *)c + optionals[i].offset, sizeof value);
+        if (value != 0)
+            length += (size_t)snprintf(out + length, size - length, ", \"%s\": %.9g", optionals[i].key, value);
     }
 }
 
@@ -87,7 +89,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_int(o, "seed", 0, INT_MAX, &c->seed);
     if (s == OK) s = json_number(o, "exposure_jitter", 0, 2, &c->exposure_jitter);
     if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
-    if (s == OK) s = read_faults(o, c);
+    if (s == OK) s = read_optionals(o, c);
     if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)
@@ -137,8 +139,8 @@ status train_config_read(const char *path, model_config *model, train_config *tr
 
 char *train_config_write(const train_config *c)
 {
-    char *text = NULL, more[FAULTS * 40];
-    write_faults(c, more, sizeof more);
+    char *text = NULL, more[OPTIONALS * 40];
+    write_optionals(c, more, sizeof more);
     int length = asprintf(
         &text,
         "{\"size\": %d, \"batch\": %d, \"presentations\": %d, \"learning_rate\": %.9g, \"encoder_rate_scale\": %.9g, "

@@ -24,10 +24,12 @@ typedef struct train_config {
     double background_leak; /* share of photographs with a background, which shows at the outline */
     double outline_error;   /* share whose mask is a pixel too large or too small */
     double jpeg;            /* share compressed as JPEG */
-    double memory_gib;      /* samples beyond this are read from disk each time */
-    int validation_count;   /* the folder's last samples are held back; a multiple of batch */
-    int validation_steps;   /* between validations; 0: never */
-    int curve_steps;        /* a row of curves.csv is the mean over so many */
+    double
+        average_decay; /* of the mean of the weights that is validated and exported (train/average.h); optional too */
+    double memory_gib; /* samples beyond this are read from disk each time */
+    int validation_count; /* the folder's last samples are held back; a multiple of batch */
+    int validation_steps; /* between validations; 0: never */
+    int curve_steps;      /* a row of curves.csv is the mean over so many */
     double checkpoint_minutes;
 } train_config;
 

@@ -25,6 +25,7 @@ typedef struct run {
     nn_graph *graph;
     nn_params *params;
     nn_adam *adam;
+    trn_average *average;        /* NULL: the last weights are the run's result */
     nn_program *program, *judge; /* judge: the same losses by running statistics, for validation */
     trn_feed *feed, *judge_feed;
     trn_order order;
@@ -39,6 +40,7 @@ static void close_run(run *r)
     trn_feed_free(r->judge_feed);
     nn_program_free(r->program);
     nn_program_free(r->judge);
+    trn_average_free(r->average);
     nn_adam_free(r->adam);
     nn_params_free(r->params);
     nn_graph_free(r->graph);
@@ -113,6 +115,7 @@ static status build(run *r)
     if (s != OK) return s;
     nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
     s = nn_adam_new(r->params, &adam, &r->adam);
+    if (s == OK && c->average_decay > 0) s = trn_average_new(r->params, c->average_decay, &r->average);
     if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
     if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
     if (s == OK) nn_set_loss_weight(r->program, "depth", (float)c->depth_weight);
@@ -121,6 +124,11 @@ static status build(run *r)
     s = nn_compile(r->graph, r->params, &options, &r->judge);
     if (s == OK) nn_set_loss_weight(r->judge, "depth", (float)c->depth_weight);
     return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
+}
+
+static trn_learner learner_of(const run *r)
+{
+    return (trn_learner){r->params, r->adam, r->average};
 }
 
 static trn_identity identity_of(const run *r)
@@ -151,7 +159,8 @@ static status read_seconds(run *r)
 static status resume(run *r)
 {
     trn_identity identity = identity_of(r);
-    status s = trn_checkpoint_read(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
+    trn_learner learner = learner_of(r);
+    status s = trn_checkpoint_read(r->paths.checkpoint, &learner, &r->state, &identity);
     if (s == OK) s = trn_curve_truncate(r->paths.curves, r->state.step);
     if (s == OK) s = trn_curve_truncate(r->paths.validation, r->state.step);
     return s == OK ? read_seconds(r) : s;
@@ -190,12 +199,23 @@ static status export_weights(run *r)
     return train_export(r->paths.weights, r->params, &from);
 }
 
+/* Does it with the mean of the weights in their place, if the run keeps one. */
+static status with_average(run *r, status (*act)(run *))
+{
+    if (!r->average) return act(r);
+    trn_average_swap(r->average);
+    status s = act(r);
+    trn_average_swap(r->average);
+    return s;
+}
+
 static status save(run *r)
 {
     r->saved_at = clock_seconds();
     trn_identity identity = identity_of(r);
-    status s = trn_checkpoint_write(r->paths.checkpoint, r->params, r->adam, &r->state, &identity);
-    if (s == OK && !r->judge) s = export_weights(r);
+    trn_learner learner = learner_of(r);
+    status s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
+    if (s == OK && !r->judge) s = with_average(r, export_weights);
     if (s == OK) s = write_seconds(r);
     if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
     return s;
@@ -269,9 +289,10 @@ static status one_step(run *r)
     if (s != OK) return s;
     trn_losses_add(&r->state.open, r->program);
     r->state.step++;
+    if (r->average) trn_average_add(r->average, r->state.step);
     if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
     if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
-        s = validate(r);
+        s = with_average(r, validate);
     if (s == OK && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes) s = save(r);
     return s;
 }
@@ -305,7 +326,7 @@ static status go(run *r)
     status s = steps(r, last, &bar);
     progress_end(&bar);
     if (s != OK || finished_before) return s;
-    if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = validate(r);
+    if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
     return s == OK ? save(r) : s;
 }
 

@@ -154,6 +154,17 @@ static void resumed_training_on_faulty_photographs_is_bit_identical(void **state
                        "\"distance_jitter\": 0.3, \"background_leak\": 0.5, \"outline_error\": 0.5, \"jpeg\": 0.5");
 }
 
+/* Long enough for the mean to have moved before the run stops and after. */
+static void resumed_training_with_a_mean_of_the_weights_is_bit_identical(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 34, 2, 2, "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05, \"average_decay\": 0.9");
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    assert_int_equal(train(f, "b", false, 9), ERROR_STOPPED);
+    if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
+    same_run(f, "a", "b");
+}
+
 /* A run killed outright leaves rows behind its last checkpoint. */
 static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
 {
@@ -275,6 +286,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
         cmocka_unit_test_setup_teardown(both_lights_can_be_learned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_of_both_lights_is_bit_identical, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(resumed_training_with_a_mean_of_the_weights_is_bit_identical, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_on_faulty_photographs_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
