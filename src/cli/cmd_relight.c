@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 
@@ -139,16 +140,14 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input)) return (status)merlin_maps_read(r->input, maps);
-    merlin_image photo = {0}, mask = {0};
+    merlin_image photo;
+    photo_object object;
     photo_job job = {.photo = (char *)r->input, .mask = (char *)r->mask};
-    status s = photo_read(&job, &photo, &mask);
-    if (s == OK) {
-        s = (status)merlin_estimate(model, &photo, &mask, &r->params, maps);
-        if (s != OK) s = fail_in(s, "%s", r->input);
-    }
-    merlin_image_free(&photo);
-    merlin_image_free(&mask);
-    return s;
+    double seconds;
+    status s = photo_read_object(&job, &photo, &object, &seconds);
+    if (s != OK) return s;
+    s = estimate_object(model, &photo, &object, &r->params, maps);
+    return s == OK ? OK : fail_in(s, "%s", r->input);
 }
 
 static char *choose_output(const request *r)

@@ -98,7 +98,7 @@ static status write_light(const relight_job *job, const stage *st, const staging
     if (s == OK && all) s = sheet_add(all, &square, label);
     if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
     if (s == OK) {
-        crop_put(&square, crop_of(job->maps), &whole);
+        crop_put(&square, crop_of(job->maps), &st->full.mask, &whole);
         s = write_picture(t, p->name, p->number, &whole);
     }
     img_free(&square);

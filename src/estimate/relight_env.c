@@ -224,7 +224,7 @@ status surface_arriving_light(const surface *s, const horizon *h, const env_map 
 static void add_image(const img *part, img *sum)
 {
     for (size_t i = 0, n = 3 * (size_t)sum->width * (size_t)sum->height; i < n; i++)
-        sum->data[i] += part->data[i];
+        if (part->data[i] != 0) sum->data[i] += part->data[i]; /* zeros are left alone (image.h) */
 }
 
 status surface_add_shadowed_environment(const surface *s, const surface *coarse, const horizon *h, const env_map *env,
