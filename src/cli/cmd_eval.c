@@ -25,6 +25,7 @@ static const char help[] =
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
+    "  --environments N   relight the first N samples by environments, too (seconds each)\n"
     "  --views N          maps as merlin estimate --views N makes them (default 1)\n"
     "  --precision P      float32 (default) or bfloat16\n"
     "  --figure F.png     a picture of predictions beside the truth\n"
@@ -60,6 +61,7 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->options.weights},
         {"means-file", .text = &r->options.means},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"environments", .count = &r->options.environments, .low = 1, .high = 100000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
         {"figure", .text = &r->options.figure},

@@ -184,24 +184,6 @@ static void add_to(const img *part, img *sum)
         sum->data[i] += part->data[i];
 }
 
-/* The environment's light with its shadows and a bounce on top of `full`: nothing of it is left to the network. */
-static status add_shadowed_environment(const stage *s, img *full)
-{
-    const env_map *env = s->environment;
-    img diffuse = {0}, share = {0};
-    status result = img_new(&diffuse, full->width, full->height, 3);
-    if (result == OK) result = surface_arriving_light(&s->low, &s->horizon, env, &share);
-    if (result == OK) {
-        surface_add_ambient(&s->full, (const float(*)[3])env->sh, &diffuse);
-        shadow_darken(&share, &diffuse);
-        add_to(&diffuse, full);
-        surface_add_reflections(&s->full, env, &s->horizon, full);
-    }
-    img_free(&diffuse);
-    img_free(&share);
-    return result;
-}
-
 /* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
  * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
 static status add_environment(const stage *s, img *low, img *full, img *ambient)
@@ -264,7 +246,9 @@ static status relight(network *n, const stage *s, const vec3 *light, img *out)
     status result = light ? light_by_point(n, s, *light, out, &low) : dark(s, out, &low);
     if (result == OK && s->environment && !shadows) result = add_environment(s, &low, out, &ambient);
     if (result == OK && (light || !shadows)) result = add_indirect(n, s, &low, &ambient, out);
-    if (result == OK && shadows) result = add_shadowed_environment(s, out);
+    /* with its shadows and a bounce nothing of an environment's light is left to the network */
+    if (result == OK && shadows)
+        result = surface_add_shadowed_environment(&s->full, &s->low, &s->horizon, s->environment, out);
     if (result == OK) expose(out, s->white);
     img_free(&low);
     img_free(&ambient);

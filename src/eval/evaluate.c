@@ -78,6 +78,7 @@ static status begin(evaluation *e, const char *first_path)
     status s = sample_read_training(first_path, &first);
     if (s != OK) return s;
     e->report->size = first.mask.width;
+    e->scorer.environments = o->environments;
     sample_free(&first);
     s = eval_model_open(o->weights, e->report->size, o->type, o->views, &e->scorer.model);
     if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);

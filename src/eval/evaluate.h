@@ -31,7 +31,10 @@ typedef enum eval_row {
     EVAL_BOTH_BRDF,
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
-    EVAL_TRACED_SHADOWS, /* the maps' own cast shadows added */
+    EVAL_TRACED_SHADOWS,   /* the maps' own cast shadows added */
+    EVAL_ENVIRONMENT_BRDF, /* the maps under an environment that the model was not shown, against path-traced pictures
+                            */
+    EVAL_ENVIRONMENT_SHADOWS, /* with the shadows that they cast on themselves, and a bounce */
     EVAL_ROWS
 } eval_row;
 
@@ -71,8 +74,9 @@ typedef struct eval_report {
 
 typedef struct eval_options {
     const char *data, *weights;
-    const char *means; /* file of eval_means_write; NULL: computed from the data itself */
-    size_t count;      /* the first so many samples; 0: all */
+    const char *means;   /* file of eval_means_write; NULL: computed from the data itself */
+    size_t count;        /* the first so many samples; 0: all */
+    size_t environments; /* so many of them, from the first on, are relit by environments too */
     nn_type type;
     int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */

@@ -26,6 +26,8 @@ static const row_text rows[EVAL_ROWS] = {
     [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_SHADOWS] = {"traced_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_ENVIRONMENT_BRDF] = {"environment_brdf_ssim", "environment, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_ENVIRONMENT_SHADOWS] = {"environment_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
 };
 
 static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged", "true_maps"};
@@ -118,11 +120,17 @@ static void print_classes(const eval_report *report, FILE *stream)
     }
 }
 
+static size_t environments(const eval_report *report)
+{
+    return report->all.count[EVAL_ENVIRONMENT_BRDF][EVAL_MODEL];
+}
+
 void eval_print_table(const eval_report *report, FILE *stream)
 {
     fprintf(stream, "%s on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model, report->all.samples,
             report->size, report->size, report->means_samples,
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
+    if (environments(report)) fprintf(stream, "relit by environments: the first %zu samples\n\n", environments(report));
     print_rows(&report->all, stream);
     print_classes(report, stream);
     fprintf(stream, "\n%.1f s\n", report->seconds);
@@ -158,6 +166,7 @@ char *eval_report_json(const eval_report *report)
     cJSON_AddNumberToObject(o, "size", report->size);
     cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
     cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
+    cJSON_AddNumberToObject(o, "environments", (double)environments(report));
     add_scores(cJSON_AddObjectToObject(o, "all"), &report->all);
     cJSON *classes = cJSON_AddObjectToObject(o, "classes");
     for (int c = 0; c < report->class_count; c++)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "stereo/field_neighbours.h"
 #include "stereo/near_lights.h"
 #include "stereo/pixel_fit.h"
 
@@ -16,9 +17,9 @@ typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MEND, M
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    const int32_t *slot;   /* spread, mend: a pixel's place in the field, -1 outside */
-    const bool *news;      /* spread: whose shading has changed since the neighbours saw it; NULL: all */
+    pst_around around;     /* spread, mend */
     float limit;           /* search */
+    float contradiction;   /* mend: what it costs to differ from all neighbours */
     pst_shading *next;     /* spread, mend: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_fall_off *fall;    /* fall off */
@@ -95,67 +96,6 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
 }
 
-/* Cosines of 18 degrees off the mean and of 20. */
-static const float agreeing = 0.95f, contrary = 0.94f;
-
-static bool alike(const pst_shading *a, const pst_shading *b)
-{
-    static const float cosine = 0.9994f; /* of 2 degrees */
-    return vec3_dot(a->normal, b->normal) >= cosine;
-}
-
-/* Places in the field of the four pixels around, and how many are in it. */
-static int neighbours(const fit_job *job, size_t i, int32_t place[4])
-{
-    static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    const pst_field *f = job->field;
-    int width = f->problem->capture->width, height = f->problem->capture->height, count = 0;
-    int x = (int)(f->pixel[i] % (size_t)width), y = (int)(f->pixel[i] / (size_t)width);
-    for (int k = 0; k < 4; k++) {
-        int nx = x + step[k][0], ny = y + step[k][1];
-        if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
-        int32_t other = job->slot[(size_t)ny * (size_t)width + (size_t)nx];
-        if (other >= 0) place[count++] = other;
-    }
-    return count;
-}
-
-/* Neighbours that differ from the pixel and from each other and cost less; returns how many. */
-static int better_neighbours(const fit_job *job, size_t i, const pst_shading *found[4])
-{
-    const pst_shading *own = &job->field->shading[i];
-    int32_t place[4];
-    int around = neighbours(job, i, place), count = 0;
-    for (int k = 0; k < around; k++) {
-        if (job->news && !job->news[place[k]]) continue;
-        const pst_shading *from = &job->field->shading[place[k]];
-        bool known = alike(from, own) || from->cost >= own->cost - PST_FAR_LESS;
-        for (int m = 0; m < count; m++)
-            known |= alike(from, found[m]);
-        if (!known) found[count++] = from;
-    }
-    return count;
-}
-
-/* The best fitted of at least three neighbours that agree with each other and not with the pixel; else NULL. */
-static const pst_shading *contradiction(const fit_job *job, size_t i)
-{
-    const pst_shading *shading = job->field->shading, *best = NULL;
-    int32_t place[4];
-    int around = neighbours(job, i, place);
-    vec3 sum = {0, 0, 0};
-    for (int k = 0; k < around; k++)
-        sum = vec3_add(sum, shading[place[k]].normal);
-    vec3 mean = vec3_normalize(sum);
-    if (around < 3 || vec3_dot(shading[i].normal, mean) > contrary) return NULL;
-    for (int k = 0; k < around; k++) {
-        const pst_shading *one = &shading[place[k]];
-        if (vec3_dot(one->normal, mean) < agreeing) return NULL;
-        if (!best || one->cost < best->cost) best = one;
-    }
-    return best;
-}
-
 /* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
  * where a run of pixels began. Not with few lights: a wrong surface costs no more then, and would be dragged along the
  * row. */
@@ -183,7 +123,7 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
 {
     const pst_field *f = job->field;
     const pst_shading *start[4];
-    int starts = better_neighbours(job, i, start);
+    int starts = pst_better_neighbours(&job->around, i, start);
     for (int k = 0; k < starts; k++) {
         pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k]);
         if (trial.cost < job->next[i].cost) job->next[i] = trial;
@@ -193,11 +133,12 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
 /* Detail as small as a pixel costs much less than what its neighbours have, and stays. */
 static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
 {
-    const pst_field *f = job->field;
-    const pst_shading *from = contradiction(job, i);
-    pst_shading trial = pst_lobe_refine(d, lobe_of(f, from), from);
-    if (vec3_dot(trial.normal, from->normal) > contrary && trial.cost < f->shading[i].cost + PST_FAR_LESS)
-        job->next[i] = trial;
+    const pst_shading *own = &job->field->shading[i];
+    pst_majority m;
+    if (!pst_majority_against(&job->around, i, &m)) return;
+    pst_shading trial = pst_lobe_refine(d, lobe_of(job->field, m.member), m.member);
+    float less_strange = pst_strangeness(&m, own->normal) - pst_strangeness(&m, trial.normal);
+    if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
 }
 
 /* power NULL: distant. */
@@ -272,9 +213,10 @@ static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *
 static bool concerns(const fit_job *job, size_t i)
 {
     const pst_shading *start[4];
+    pst_majority m;
     if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
-    if (job->task == MEND) return contradiction(job, i) != NULL;
-    return job->task != SPREAD || better_neighbours(job, i, start) > 0;
+    if (job->task == MEND) return pst_majority_against(&job->around, i, &m);
+    return job->task != SPREAD || pst_better_neighbours(&job->around, i, start) > 0;
 }
 
 static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
@@ -431,7 +373,7 @@ status pst_field_spread(const pst_field *f, int sweeps)
     status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
     for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
-        s = run(&(fit_job){.field = f, .task = SPREAD, .slot = slot, .news = k > 0 ? news : NULL, .next = next});
+        s = run(&(fit_job){.field = f, .task = SPREAD, .around = {f, slot, k > 0 ? news : NULL}, .next = next});
         if (s == OK) moved = take(f, next, news);
     }
     free(next);
@@ -440,16 +382,28 @@ status pst_field_spread(const pst_field *f, int sweeps)
     return s;
 }
 
-status pst_field_mend(const pst_field *f)
+static float mean_cost(const pst_field *f)
+{
+    double cost = 0;
+    for (size_t i = 0; i < f->count; i++)
+        cost += (double)f->shading[i].cost;
+    return (float)(cost / (double)f->count);
+}
+
+status pst_field_mend(const pst_field *f, int sweeps)
 {
     pst_shading *next = malloc(f->count * sizeof *next);
     int32_t *slot = pst_field_slots(f);
     status s = next && slot ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
-    if (s == OK) {
+    for (int k = 0; s == OK && k < sweeps; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
-        s = run(&(fit_job){.field = f, .task = MEND, .slot = slot, .next = next});
+        s = run(&(fit_job){.field = f,
+                           .task = MEND,
+                           .around = {.field = f, .slot = slot},
+                           .contradiction = PST_FAR_LESS + mean_cost(f),
+                           .next = next});
+        if (s == OK) memcpy(f->shading, next, f->count * sizeof *next);
     }
-    if (s == OK) memcpy(f->shading, next, f->count * sizeof *next);
     free(next);
     free(slot);
     return s;

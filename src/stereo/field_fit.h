@@ -50,9 +50,10 @@ status pst_field_foretell(const pst_field *f, double *cost);
  * all pixels. */
 status pst_field_spread(const pst_field *f, int sweeps);
 
-/* Lone pixels, saturated ones often: fits those that all neighbours contradict again from these, and keeps what costs
- * little more. */
-status pst_field_mend(const pst_field *f);
+/* Lone pixels and speckles, where a wrong surface costs less than the right one: fits those that most neighbours
+ * contradict again from these. To differ from all of them costs as much as pixels of this field cost on average; so
+ * many times over all pixels. */
+status pst_field_mend(const pst_field *f, int sweeps);
 
 /* Each observation's share in the fit and what the fit makes of it (both count × pst_padded(pictures)). */
 status pst_field_model(const pst_field *f, float *weight, float *model);

@@ -298,7 +298,7 @@ static status solve(near_job *job)
     if (s == OK && factor > 1) s = fill_in(job);
     if (s == OK) s = fit_normals(job, false);
     pst_field f = whole_field(job);
-    if (s == OK) s = pst_field_mend(&f);
+    if (s == OK) s = pst_field_mend(&f, SWEEPS);
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 

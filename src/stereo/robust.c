@@ -1,5 +1,6 @@
 /* Highlights, cast shadows and light from elsewhere told from Lambert's law, under distant lights: a lobe a pixel
- * (lobe_fit.h), what pixels share from a sample (lobe_choice.h), and neighbours' results as further starts. */
+ * (lobe_fit.h), what pixels share from a sample (lobe_choice.h), and neighbours' results as further starts; pixels that
+ * most neighbours contradict take their answer if it explains the pictures about as well. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,6 +22,7 @@ static status fit_all(const pst_field *f, pst_surface *out)
     if (s == OK) s = pst_field_try_second(f);
     if (s == OK) s = pst_field_search(f, dear(f, cost));
     if (s == OK) s = pst_field_spread(f, SWEEPS);
+    if (s == OK) s = pst_field_mend(f, SWEEPS);
     return s == OK ? pst_field_store(f, out) : s;
 }
 

@@ -11,6 +11,7 @@
 #include "eval/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
+#include "render/generate.h"
 #include "scratch.h"
 #include "sphere.h"
 
@@ -113,8 +114,9 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_string_equal(r.class_names[1], "relief");
     assert_int_equal(r.classes[0].samples, 2);
     for (int row = 0; row < EVAL_ROWS; row++) {
-        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF) {
-            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's */
+        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF ||
+            row == EVAL_ENVIRONMENT_BRDF || row == EVAL_ENVIRONMENT_SHADOWS) {
+            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's, and those not asked for */
             continue;
         }
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MODEL)));
@@ -286,6 +288,47 @@ static void models_of_both_lights_are_shown_the_environment_too(void **state)
     assert_non_null(strstr(status_message(), "--no-env"));
 }
 
+/* Samples 8 and 9 of seed 4242 are folded: a block with relief and a cloth over a ball. */
+static void relighting_by_environments_is_measured_on_the_first_samples(void **state)
+{
+    const fixture *f = *state;
+    render_options made = render_options_default();
+    render_stats stats;
+    char *folder = file_join(f->folder, "folded");
+    made.folder = folder;
+    made.seed = 4242;
+    made.first = 8;
+    made.count = 2;
+    made.image.size = SIZE;
+    made.environment = false; /* its own is not what it is relit by */
+    made.quiet = true;
+    assert_int_equal(render_samples(&made, &stats), OK);
+    eval_options options = {.data = folder, .weights = f->weights, .environments = 1, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.samples, 2);
+    for (int row = EVAL_ENVIRONMENT_BRDF; row <= EVAL_ENVIRONMENT_SHADOWS; row++)
+        for (int answer = 0; answer < EVAL_ANSWERS; answer++) {
+            assert_int_equal(r.all.count[row][answer], 1);
+            assert_true(isfinite(eval_score(&r.all, (eval_row)row, (eval_answer)answer)));
+        }
+    double without = eval_score(&r.all, EVAL_ENVIRONMENT_BRDF, EVAL_TRUE_MAPS);
+    double with = eval_score(&r.all, EVAL_ENVIRONMENT_SHADOWS, EVAL_TRUE_MAPS);
+    print_message("true maps: without shadows %.4f, with %.4f\n", without, with);
+    /* what is left is the path tracer's grain and three bands for diffuse light: test_environment_truth has more */
+    assert_true(with > 0.9 && with > without);
+    free(folder);
+}
+
+static void objects_that_cannot_be_rendered_again_are_not_relit(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .environments = 1, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "cannot be relit by environments"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -296,6 +339,8 @@ int main(void)
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
         cmocka_unit_test(even_surroundings_show_the_albedo),
+        cmocka_unit_test(relighting_by_environments_is_measured_on_the_first_samples),
+        cmocka_unit_test(objects_that_cannot_be_rendered_again_are_not_relit),
         cmocka_unit_test(models_of_both_lights_are_shown_the_environment_too),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
