@@ -38,6 +38,7 @@ static void add_scores(eval_scores *to, const eval_scores *from)
         }
     }
     to->samples++;
+    to->saturated += from->saturated;
 }
 
 static status count_sample(eval_report *report, const sample *s, const eval_scores *scores)
@@ -51,6 +52,7 @@ static status count_sample(eval_report *report, const sample *s, const eval_scor
         report->class_count++;
     }
     add_scores(&report->classes[c], scores);
+    add_scores(&report->saturations[(scores->saturated >= 0.1) + (scores->saturated >= 0.4)], scores);
     add_scores(&report->all, scores);
     return OK;
 }

@@ -52,6 +52,7 @@ typedef struct eval_scores {
     double sum[EVAL_ROWS][EVAL_ANSWERS];
     size_t count[EVAL_ROWS][EVAL_ANSWERS];
     size_t samples;
+    double saturated; /* sum over samples: share of the object's values that the picture shows at its limit */
 } eval_scores;
 
 /* The mean; NAN where there is none. */
@@ -59,7 +60,7 @@ double eval_score(const eval_scores *scores, eval_row row, eval_answer answer);
 /* The better of the trivial answers; NAN where there is none. */
 double eval_best_trivial(const eval_scores *scores, eval_row row);
 
-enum { EVAL_MAX_CLASSES = 16 };
+enum { EVAL_MAX_CLASSES = 16, EVAL_SATURATIONS = 3 };
 typedef struct eval_report {
     char model[64];
     int size;             /* of the samples, pixels a side */
@@ -69,6 +70,8 @@ typedef struct eval_report {
     char class_names[EVAL_MAX_CLASSES][32]; /* the samples' shape classes, in order of appearance */
     eval_scores classes[EVAL_MAX_CLASSES];
     int class_count;
+    eval_scores
+        saturations[EVAL_SATURATIONS]; /* samples of which less than 10 %, less than 40 % and more is saturated */
     double seconds;
 } eval_report;
 

@@ -208,6 +208,17 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     return st;
 }
 
+static double saturated_share(const img *image, const img *mask)
+{
+    size_t saturated = 0, count = 0, pixels = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        if (mask->data[i / 3] <= EVAL_MASK_LEVEL) continue;
+        saturated += image->data[i] >= 1;
+        count++;
+    }
+    return count ? (double)saturated / (double)count : 0;
+}
+
 status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
 {
     eval_subject on = {.sample = s};
@@ -223,6 +234,7 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
         e->environments--;
         st = eval_score_environment(e, &on);
     }
+    if (st == OK) on.scores.saturated = saturated_share(&on.image, &on.mask);
     *scores = on.scores;
     eval_maps_free(&on.truth);
     eval_maps_free(&on.inflated);
