@@ -81,6 +81,7 @@ static status begin(evaluation *e, const char *first_path)
     if (s != OK) return s;
     e->report->size = first.mask.width;
     e->scorer.environments = o->environments;
+    e->scorer.white = e->report->white = o->white > 0 ? o->white : 1;
     sample_free(&first);
     s = eval_model_open(o->weights, e->report->size, o->type, o->views, &e->scorer.model);
     if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);

@@ -52,7 +52,7 @@ typedef struct eval_scores {
     double sum[EVAL_ROWS][EVAL_ANSWERS];
     size_t count[EVAL_ROWS][EVAL_ANSWERS];
     size_t samples;
-    double saturated; /* sum over samples: share of the object's values that the picture shows at its limit */
+    double saturated; /* sum over samples: share of the object's values that the photograph shows at its limit */
 } eval_scores;
 
 /* The mean; NAN where there is none. */
@@ -64,6 +64,7 @@ enum { EVAL_MAX_CLASSES = 16, EVAL_SATURATIONS = 3 };
 typedef struct eval_report {
     char model[64];
     int size;             /* of the samples, pixels a side */
+    float white;          /* radiance at which the photographs saturate */
     bool means_from_data; /* the mean maps are those of the evaluated samples themselves */
     size_t means_samples; /* how many samples the mean maps were taken over */
     eval_scores all;
@@ -79,6 +80,7 @@ typedef struct eval_options {
     const char *data, *weights;
     const char *means;   /* file of eval_means_write; NULL: computed from the data itself */
     size_t count;        /* the first so many samples; 0: all */
+    float white;         /* radiance at which the photograph saturates, from 1, the paper's, on; 0 counts as 1 */
     size_t environments; /* so many of them, from the first on, are relit by environments too */
     nn_type type;
     int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */

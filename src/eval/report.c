@@ -148,6 +148,8 @@ void eval_print_table(const eval_report *report, FILE *stream)
     fprintf(stream, "%s on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model, report->all.samples,
             report->size, report->size, report->means_samples,
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
+    if (report->white > 1)
+        fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
     if (environments(report)) fprintf(stream, "relit by environments: the first %zu samples\n\n", environments(report));
     print_rows(&report->all, stream);
     print_groups(report, stream);
@@ -183,6 +185,7 @@ char *eval_report_json(const eval_report *report)
     cJSON *o = cJSON_CreateObject();
     cJSON_AddStringToObject(o, "model", report->model);
     cJSON_AddNumberToObject(o, "size", report->size);
+    cJSON_AddNumberToObject(o, "white", (double)report->white);
     cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
     cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
     cJSON_AddNumberToObject(o, "environments", (double)environments(report));

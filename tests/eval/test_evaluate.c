@@ -159,6 +159,13 @@ static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
     assert_true(r.saturations[0].saturated == 0);
     assert_true(r.saturations[2].saturated > 0.95);
     assert_float_equal(r.all.saturated, r.saturations[1].saturated + r.saturations[2].saturated, 1e-12);
+    /* nothing of the middle one reaches 2: the trivial answer that inverts the shading reads more of its albedo */
+    double burnt = eval_score(&r.saturations[1], EVAL_ALBEDO, EVAL_INFLATED) +
+                   eval_score(&r.saturations[0], EVAL_ALBEDO, EVAL_INFLATED);
+    options.white = 2;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.saturations[0].samples, 2);
+    assert_true(2 * eval_score(&r.saturations[0], EVAL_ALBEDO, EVAL_INFLATED) < burnt);
     free(folder);
 }
 
