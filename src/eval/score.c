@@ -118,7 +118,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
         r.lights[i].light = eval_light(on->sample, i);
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
-    s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+    s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
     if (s == OK) {
         score_maps(on, &e->prediction.maps, EVAL_MODEL);
         score_maps(on, &e->means.maps, EVAL_MEAN);
@@ -178,7 +178,7 @@ static status score_traced_targets(eval_scorer *e, eval_subject *on)
         eval_relighting r;
         s = relight_by_tracing(on, first, &r);
         if (s != OK) return s;
-        s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+        s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
         if (s == OK)
             s = eval_score_relighting(e, on, &r, EVAL_TRACED_NETWORK, EVAL_TRACED_BRDF, e->prediction.full_by_network,
                                       e->prediction.full_by_brdf);
@@ -195,7 +195,7 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     const model_config *config = eval_model_config(e->model);
     img more = {0};
     if (config->lighting != MODEL_LIGHT_BOTH)
-        return eval_picture(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, &on->image);
+        return eval_photograph(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, e->white, &on->photo);
     if (!s->env.data)
         return fail(ERROR_INPUT, "model \"%s\" is for photographs in surroundings: render samples without --no-env",
                     config->name);
@@ -203,9 +203,20 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     if (st != OK) return st;
     for (size_t i = 0, n = 3 * (size_t)more.width * (size_t)more.height; i < n; i++)
         more.data[i] = EVAL_ENVIRONMENT_STRENGTH * more.data[i] + (config->input_global ? s->indirect.data[i] : 0);
-    st = eval_picture(&s->direct, &more, &on->mask, &on->image);
+    st = eval_photograph(&s->direct, &more, &on->mask, e->white, &on->photo);
     img_free(&more);
     return st;
+}
+
+static double saturated_share(const img *photo, const img *mask, float white)
+{
+    size_t saturated = 0, count = 0, pixels = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        if (mask->data[i / 3] <= EVAL_MASK_LEVEL) continue;
+        saturated += photo->data[i] >= white;
+        count++;
+    }
+    return count ? (double)saturated / (double)count : 0;
 }
 
 status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
@@ -213,9 +224,10 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
     eval_subject on = {.sample = s};
     status st = eval_binary_mask(&s->mask, &on.mask);
     if (st == OK) st = take_photograph(e, &on);
+    if (st == OK) st = eval_picture(&on.photo, NULL, &on.mask, &on.image);
     if (st == OK) st = eval_maps_of_sample(s, &on.truth);
-    if (st == OK) st = eval_inflate(&on.image, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
-    if (st == OK) st = eval_estimate(e->model, &on.image, &on.mask, &e->prediction);
+    if (st == OK) st = eval_inflate(&on.photo, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
+    if (st == OK) st = eval_estimate(e->model, &on.photo, &on.mask, &e->prediction);
     if (st == OK) st = score_brdf_targets(e, &on);
     if (st == OK) st = score_traced_targets(e, &on);
     if (st == OK && eval_model_config(e->model)->lighting == MODEL_LIGHT_BOTH) st = eval_score_both_lights(e, &on);
@@ -223,9 +235,11 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
         e->environments--;
         st = eval_score_environment(e, &on);
     }
+    if (st == OK) on.scores.saturated = saturated_share(&on.photo, &on.mask, e->white);
     *scores = on.scores;
     eval_maps_free(&on.truth);
     eval_maps_free(&on.inflated);
+    img_free(&on.photo);
     img_free(&on.image);
     img_free(&on.mask);
     return st;

@@ -13,6 +13,7 @@ typedef struct eval_scorer {
     eval_means means;
     eval_prediction prediction;
     eval_sheet *sheet;   /* NULL: no picture wanted */
+    float white;         /* radiance at which the photograph saturates */
     size_t environments; /* samples that are still to be relit by environments */
 } eval_scorer;
 
@@ -20,7 +21,8 @@ typedef struct eval_scorer {
 typedef struct eval_subject {
     const sample *sample;
     img mask;  /* binary */
-    img image; /* the network's input before encoding */
+    img photo; /* the network's input before encoding */
+    img image; /* the same, saturated at radiance 1 as everything that is compared */
     eval_maps truth, inflated;
     eval_scores scores;
 } eval_subject;
