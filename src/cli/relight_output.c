@@ -1,5 +1,6 @@
 #include "cli/relight_output.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,10 +34,16 @@ static void sheet_free(sheet *s)
 }
 
 /* light NULL: the environment alone. */
+/* In hundredths, and never as "-0.00". */
+static double shown(float x)
+{
+    return round(100 * (double)x) / 100 + 0.0;
+}
+
 static void label_light(const vec3 *light, char *label)
 {
     if (light)
-        snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", (double)light->x, (double)light->y, (double)light->z);
+        snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", shown(light->x), shown(light->y), shown(light->z));
     else
         snprintf(label, LABEL_SIZE, "environment");
 }
