@@ -10,8 +10,8 @@ _merlin() {
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
-        [eval]="--data --model --means-file --count --views --precision --figure --figure-rows --means --output --json --quiet
-            --help"
+        [eval]="--data --model --means-file --count --white --environments --views --precision --figure --figure-rows --means --output
+            --json --quiet --help"
         [bench]="--model --config --batch --stereo --quick --json --quiet --help"
         [info]="--tensors --json --help"
     )

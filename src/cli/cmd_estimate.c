@@ -104,7 +104,7 @@ static double lap(double *clock)
     return passed;
 }
 
-/* From the photograph in memory to files; photograph and object are freed. */
+/* From the photograph in memory to files; photograph and object are taken over. */
 static status take_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
                          lap_times *laps)
 {
@@ -112,7 +112,6 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     merlin_maps maps = {0};
     status s = estimate_object(r->model, photo, object, &r->params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
-    merlin_image_free(photo);
     lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
     laps->write = lap(&clock);

@@ -25,6 +25,8 @@ static const char help[] =
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
+    "  --white W          the photograph is exposed so that radiance W saturates (default 1, as in the paper)\n"
+    "  --environments N   relight the first N samples by environments, too (seconds each)\n"
     "  --views N          maps as merlin estimate --views N makes them (default 1)\n"
     "  --precision P      float32 (default) or bfloat16\n"
     "  --figure F.png     a picture of predictions beside the truth\n"
@@ -60,6 +62,8 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->options.weights},
         {"means-file", .text = &r->options.means},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"environments", .count = &r->options.environments, .low = 1, .high = 100000000},
+        {"white", .real = &r->options.white, .low = 1, .high = 16},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
         {"figure", .text = &r->options.figure},
@@ -114,7 +118,7 @@ int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
-    request r = {.options = {.views = 1, .figure_rows = 8, .stopped = cli_interrupted}};
+    request r = {.options = {.white = 1, .views = 1, .figure_rows = 8, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();

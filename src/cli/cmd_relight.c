@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 
@@ -17,23 +18,22 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --orbit N [options]\n"
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
-    "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by merlin "
-    "estimate; a PHOTO is\n"
-    "estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop\n"
-    "around the object counts as a frame 60 degrees wide.\n\n"
+    "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by\n"
+    "merlin estimate; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the "
+    "object\n"
+    "is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
     "      --light x,y,z    a light's position; may be given again\n"
     "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
     "      --orbit N        N frames with the light on a circle in front of the object, also as orbit.webp and "
     "orbit.gif\n"
-    "      --dome N         N pictures, dome_000.png and on, under lights spread evenly over the frontal hemisphere, "
-    "and "
-    "mask.png\n"
+    "      --dome N         N pictures, dome_000.png and on, under lights spread evenly over the frontal hemisphere,\n"
+    "                       and mask.png\n"
     "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo\n"
     "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each light\n"
+    "                       with --orbit they go round once, and the light stays\n"
     "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
     "      --env-exposure EV\n"
     "                       makes them brighter or darker (default 0: mean luminance 1)\n"
-    "                       with --orbit they go round once, and the light stays\n"
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
     "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
     "      --no-shadows     brdf without cast shadows (lights and surroundings), as in the paper\n"
@@ -139,16 +139,14 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input)) return (status)merlin_maps_read(r->input, maps);
-    merlin_image photo = {0}, mask = {0};
+    merlin_image photo;
+    photo_object object;
     photo_job job = {.photo = (char *)r->input, .mask = (char *)r->mask};
-    status s = photo_read(&job, &photo, &mask);
-    if (s == OK) {
-        s = (status)merlin_estimate(model, &photo, &mask, &r->params, maps);
-        if (s != OK) s = fail_in(s, "%s", r->input);
-    }
-    merlin_image_free(&photo);
-    merlin_image_free(&mask);
-    return s;
+    double seconds;
+    status s = photo_read_object(&job, &photo, &object, &seconds);
+    if (s != OK) return s;
+    s = estimate_object(model, &photo, &object, &r->params, maps);
+    return s == OK ? OK : fail_in(s, "%s", r->input);
 }
 
 static char *choose_output(const request *r)

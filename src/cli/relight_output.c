@@ -1,5 +1,6 @@
 #include "cli/relight_output.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,10 +34,16 @@ static void sheet_free(sheet *s)
 }
 
 /* light NULL: the environment alone. */
+/* In hundredths, and never as "-0.00". */
+static double shown(float x)
+{
+    return round(100 * (double)x) / 100 + 0.0;
+}
+
 static void label_light(const vec3 *light, char *label)
 {
     if (light)
-        snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", (double)light->x, (double)light->y, (double)light->z);
+        snprintf(label, LABEL_SIZE, "%.2f, %.2f, %.2f", shown(light->x), shown(light->y), shown(light->z));
     else
         snprintf(label, LABEL_SIZE, "environment");
 }
@@ -98,7 +105,7 @@ static status write_light(const relight_job *job, const stage *st, const staging
     if (s == OK && all) s = sheet_add(all, &square, label);
     if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
     if (s == OK) {
-        crop_put(&square, crop_of(job->maps), &whole);
+        crop_put(&square, crop_of(job->maps), &st->full.mask, &whole);
         s = write_picture(t, p->name, p->number, &whole);
     }
     img_free(&square);

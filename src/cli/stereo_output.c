@@ -131,7 +131,7 @@ static status write_error(const stereo_result *r, const char *path)
 static status crop_tile(crop_square c, img *tile)
 {
     img part = {0};
-    status s = crop_take(tile, c, &part);
+    status s = crop_take(tile, c, NULL, &part);
     if (s != OK) return s;
     img_free(tile);
     *tile = part;
@@ -146,10 +146,10 @@ static status write_overview(const stereo_result *r, const char *path)
     if (s != OK) c = (crop_square){0, 0, r->mask.width > r->mask.height ? r->mask.width : r->mask.height};
     s = figure_normals(&r->normal, &r->mask, &tile[0]);
     if (s == OK) s = crop_tile(c, &tile[0]);
-    if (s == OK) s = crop_take(&r->albedo, c, &tile[1]);
+    if (s == OK) s = crop_take(&r->albedo, c, NULL, &tile[1]);
     if (s == OK) s = figure_depth(&r->depth, &r->mask, &tile[2]);
     if (s == OK) s = crop_tile(c, &tile[2]);
-    if (s == OK) s = crop_take(&r->mask, c, &tile[3]);
+    if (s == OK) s = crop_take(&r->mask, c, NULL, &tile[3]);
     if (s == OK) s = error_picture(r, &tile[4]);
     if (s == OK) s = crop_tile(c, &tile[4]);
     if (s == OK) s = stereo_side_view(r, TILE_SIZE, &tile[5]);

@@ -53,11 +53,12 @@ typedef struct photo_object {
 } photo_object;
 
 /* merlin_estimate in two steps, so that the object can be searched for while the model is still being read. given may
- * be NULL or empty; estimate_object takes the mask over, whatever it returns. */
+ * be NULL or empty; estimate_object takes the mask and the photograph over, whatever it returns, and frees them as soon
+ * as it can. */
 status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out);
 void photo_object_free(photo_object *object);
-status estimate_object(merlin_model *model, const merlin_image *photo, photo_object *object,
-                       const merlin_params *params, merlin_maps *maps);
+status estimate_object(merlin_model *model, merlin_image *photo, photo_object *object, const merlin_params *params,
+                       merlin_maps *maps);
 
 /* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
 typedef struct stage {

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "image/resize.h"
-
 enum { FEWEST_PIXELS = 64 };
 static const float WANTED_SHARE = 0.8f, LEAST_SHARE_OF_WHOLE = 0.6f;
 
@@ -46,17 +44,26 @@ status crop_around(const img *mask, crop_square *out)
     return OK;
 }
 
-status crop_take(const img *from, crop_square c, img *out)
+/* One row's part that is covered and lies in both images; shift: columns from `from` to `to`. */
+static void copy_row(const img *from, int y, const img *cover, int shift, img *to, int to_y)
 {
-    return img_crop(from, c.x, c.y, c.side, c.side, out);
+    img_span s = cover ? img_row_span(cover, y) : (img_span){0, from->width};
+    int first = s.first + shift > 0 ? s.first + shift : 0, end = s.end + shift < to->width ? s.end + shift : to->width;
+    if (first >= end) return;
+    memcpy(img_at(to, first, to_y), img_at(from, first - shift, y),
+           (size_t)(end - first) * (size_t)to->channels * sizeof(float));
 }
 
-void crop_put(const img *from, crop_square c, img *to)
+status crop_take(const img *from, crop_square c, const img *cover, img *out)
 {
-    int left = c.x > 0 ? c.x : 0, right = c.x + c.side < to->width ? c.x + c.side : to->width;
-    int top = c.y > 0 ? c.y : 0, bottom = c.y + c.side < to->height ? c.y + c.side : to->height;
-    if (left >= right) return;
-    size_t row = (size_t)(right - left) * (size_t)to->channels * sizeof(float);
-    for (int y = top; y < bottom; y++)
-        memcpy(img_at(to, left, y), img_at(from, left - c.x, y - c.y), row);
+    status s = img_new(out, c.side, c.side, from->channels);
+    for (int y = c.y > 0 ? c.y : 0; s == OK && y < from->height && y < c.y + c.side; y++)
+        copy_row(from, y, cover, -c.x, out, y - c.y);
+    return s;
+}
+
+void crop_put(const img *from, crop_square c, const img *cover, img *to)
+{
+    for (int y = c.y > 0 ? c.y : 0; y < to->height && y < c.y + c.side; y++)
+        copy_row(from, y - c.y, cover, c.x, to, y);
 }

@@ -15,8 +15,9 @@ typedef struct crop_square {
 status crop_around(const img *mask, crop_square *out);
 
 /* The crop out of an image of the photograph's size, zero where it hangs over; and back into a zeroed image of that
- * size (`to` has from's channels). */
-status crop_take(const img *from, crop_square c, img *out);
-void crop_put(const img *from, crop_square c, img *to);
+ * size (`to` has from's channels). cover: a mask of from's size; what is beside its rows' spans (img_row_span) stays
+ * zero. NULL: all of it is taken. */
+status crop_take(const img *from, crop_square c, const img *cover, img *out);
+void crop_put(const img *from, crop_square c, const img *cover, img *to);
 
 #endif

@@ -15,7 +15,8 @@ enum { LEAST_SIDE = 16, MOST_PIXELS = 64 * 1000 * 1000 };
 /* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's. */
 typedef struct work {
     const merlin_params *params;
-    img photo, mask;
+    img photo, mask;     /* the photograph has no pixels any more once the object is taken out of it */
+    merlin_image *owned; /* the photograph, if it is ours to free; else NULL */
     crop_square crop;
     img crop_photo, crop_mask;
     img low_photo, low_mask;
@@ -92,71 +93,6 @@ static void take_object(work *w, photo_object *object, merlin_maps *maps)
     maps->timing.mask = object->seconds;
 }
 
-/* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
- * area-averaged, the mask hard. */
-static status make_input(work *w, float *gain)
-{
-    int size = w->params->size;
-    status s = crop_take(&w->photo, w->crop, &w->crop_photo);
-    if (s == OK) s = crop_take(&w->mask, w->crop, &w->crop_mask);
-    img_free(&w->mask);
-    if (s == OK) s = img_resize_masked(&w->crop_photo, &w->crop_mask, size, size, &w->low_photo);
-    if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
-    if (s != OK) return s;
-    harden_mask(&w->low_photo, &w->low_mask);
-    *gain =
-        w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
-    size_t count = 3 * (size_t)size * (size_t)size;
-    for (size_t i = 0; i < count; i++)
-        w->low_photo.data[i] *= *gain;
-    return OK;
-}
-
-/* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
-static status refine(work *w, float gain, bool in_environment)
-{
-    surface_encode_guide(&w->crop_photo);
-    status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
-    img_free(&w->crop_photo);
-    img *picture = &w->reconstruction;
-    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, w->crop.side, w->crop.side, picture);
-    if (s != OK) return s;
-    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
-    for (size_t i = 0; i < count; i++)
-        picture->data[i] *= w->crop_mask.data[i / 3];
-    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
-    if (in_environment) {
-        const float(*sh)[3] = (const float(*)[3])w->low.environment;
-        surface_add_ambient(&w->full, sh, picture);
-        surface_add_ambient_highlights(&w->full, sh, picture);
-    }
-    for (size_t i = 0; i < count; i++)
-        picture->data[i] = fminf(fmaxf(picture->data[i] / gain, 0), 1);
-    return OK;
-}
-
-static bool is_whole(const work *w)
-{
-    return w->crop.x == 0 && w->crop.y == 0 && w->crop.side == w->photo.width && w->crop.side == w->photo.height;
-}
-
-/* From the crop to the photograph's frame; frees the crop's. */
-static status place(const work *w, img *from, merlin_image *to)
-{
-    img whole = {0};
-    if (is_whole(w)) {
-        *to = image_of(from);
-        *from = whole;
-        return OK;
-    }
-    status s = img_new(&whole, w->photo.width, w->photo.height, from->channels);
-    if (s != OK) return s;
-    crop_put(from, w->crop, &whole);
-    img_free(from);
-    *to = image_of(&whole);
-    return OK;
-}
-
 /* The object alone. */
 static status place_photo(const work *w, merlin_image *to)
 {
@@ -176,6 +112,82 @@ static status place_photo(const work *w, merlin_image *to)
     return s;
 }
 
+/* The crop of photograph and mask, and the object alone in the photograph's frame. */
+static status take_out(work *w, merlin_image *object)
+{
+    status s = crop_take(&w->photo, w->crop, &w->mask, &w->crop_photo);
+    if (s == OK) s = crop_take(&w->mask, w->crop, &w->mask, &w->crop_mask);
+    if (s == OK) s = place_photo(w, object);
+    img_free(&w->mask);
+    if (w->owned) merlin_image_free(w->owned);
+    w->photo.data = NULL;
+    return s;
+}
+
+/* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
+ * area-averaged, the mask hard. */
+static status make_input(work *w, merlin_maps *maps)
+{
+    int size = w->params->size;
+    float *gain = &maps->gain;
+    status s = take_out(w, &maps->photo);
+    if (s == OK) s = img_resize_masked(&w->crop_photo, &w->crop_mask, size, size, &w->low_photo);
+    if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
+    if (s != OK) return s;
+    harden_mask(&w->low_photo, &w->low_mask);
+    *gain =
+        w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
+    size_t count = 3 * (size_t)size * (size_t)size;
+    for (size_t i = 0; i < count; i++)
+        w->low_photo.data[i] *= *gain;
+    return OK;
+}
+
+/* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
+static status refine(work *w, float gain, bool in_environment)
+{
+    surface_encode_guide(&w->crop_photo);
+    status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
+    img_free(&w->crop_photo);
+    img *picture = &w->reconstruction;
+    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, &w->crop_mask, picture);
+    if (s != OK) return s;
+    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
+    for (size_t i = 0; i < count; i++)
+        if (picture->data[i] != 0) picture->data[i] *= w->crop_mask.data[i / 3];
+    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
+    if (in_environment) {
+        const float(*sh)[3] = (const float(*)[3])w->low.environment;
+        surface_add_ambient(&w->full, sh, picture);
+        surface_add_ambient_highlights(&w->full, sh, picture);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / gain, 0), 1);
+    return OK;
+}
+
+static bool is_whole(const work *w)
+{
+    return w->crop.x == 0 && w->crop.y == 0 && w->crop.side == w->photo.width && w->crop.side == w->photo.height;
+}
+
+/* From the crop to the photograph's frame; frees the crop's. */
+static status place(const work *w, img *from, merlin_image *to)
+{
+    img whole = {0};
+    if (is_whole(w)) {
+        *to = image_of(from);
+        *from = whole;
+        return OK;
+    }
+    status s = img_new(&whole, w->photo.width, w->photo.height, from->channels);
+    if (s != OK) return s;
+    crop_put(from, w->crop, &w->crop_mask, &whole);
+    img_free(from);
+    *to = image_of(&whole);
+    return OK;
+}
+
 static status place_all(work *w, merlin_maps *maps)
 {
     status s = place(w, &w->full.albedo, &maps->albedo);
@@ -183,8 +195,7 @@ static status place_all(work *w, merlin_maps *maps)
     if (s == OK) s = place(w, &w->full.roughness, &maps->roughness);
     if (s == OK) s = place(w, &w->full.depth, &maps->depth);
     if (s == OK) s = place(w, &w->full.mask, &maps->mask);
-    if (s == OK) s = place(w, &w->reconstruction, &maps->reconstruction);
-    return s == OK ? place_photo(w, &maps->photo) : s;
+    return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
 }
 
 static status estimate(merlin_model *model, work *w, merlin_maps *maps)
@@ -196,7 +207,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);
-    if (s == OK) s = make_input(w, &maps->gain);
+    if (s == OK) s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, w->params->views, w->params->stop, &w->low);
     if (s == OK) s = lap(w, &t->network);
@@ -208,19 +219,27 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     return s;
 }
 
-status estimate_object(merlin_model *model, const merlin_image *photo, photo_object *object,
-                       const merlin_params *params, merlin_maps *maps)
+/* owned: photo, if it is to be freed; or NULL. */
+static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, photo_object *object,
+                             const merlin_params *params, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
-    work w = {.params = params ? params : &defaults, .photo = img_of(photo)};
+    work w = {.params = params ? params : &defaults, .photo = img_of(photo), .owned = owned};
     maps->size = w.params->size;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
     take_object(&w, object, maps);
     status s = estimate(model, &w, maps);
     work_free(&w);
+    if (owned) merlin_image_free(owned);
     if (s != OK) merlin_maps_free(maps);
     return s;
+}
+
+status estimate_object(merlin_model *model, merlin_image *photo, photo_object *object, const merlin_params *params,
+                       merlin_maps *maps)
+{
+    return estimate_photo(model, photo, photo, object, params, maps);
 }
 
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
@@ -230,7 +249,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     *maps = (merlin_maps){0};
     status s = photo_object_choose(photo, mask, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
-    if (s == OK) s = estimate_object(model, photo, &object, params, maps);
+    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
     photo_object_free(&object);
     return result_of(s);
 }

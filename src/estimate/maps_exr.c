@@ -103,7 +103,7 @@ static void tidy(merlin_maps *maps)
     size_t count = 3 * (size_t)maps->photo.width * (size_t)maps->photo.height;
     for (size_t i = 0; i < count; i++) {
         float x = maps->photo.data[i];
-        maps->photo.data[i] = isfinite(x) && x > 0 ? x : 0;
+        if (!(isfinite(x) && x >= 0)) maps->photo.data[i] = 0;
     }
 }
 

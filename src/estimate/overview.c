@@ -30,8 +30,8 @@ static status show_values(const img *values, img *out)
 /* In the photograph's size and exposure beside it. */
 static status show_reconstruction(const merlin_maps *maps, img *out)
 {
-    img whole = img_of(&maps->reconstruction), part = {0};
-    status s = crop_take(&whole, crop_of(maps), &part);
+    img whole = img_of(&maps->reconstruction), mask = img_of(&maps->mask), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &mask, &part);
     if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
     img_free(&part);
     size_t count = s == OK ? 3 * (size_t)maps->size * (size_t)maps->size : 0;

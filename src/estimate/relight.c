@@ -16,10 +16,11 @@ static size_t value_count(const img *image)
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
 }
 
+/* Here and below zeros are left alone (image.h). */
 static void multiply_mask(img *image, const img *mask)
 {
     for (size_t i = 0; i < value_count(image); i++)
-        image->data[i] *= mask->data[i / 3];
+        if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
 }
 
 /* ---- the stage ---- */
@@ -51,9 +52,10 @@ static status crop_surface(const merlin_maps *maps, surface *out)
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
     img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
     status s = OK;
+    img mask = img_of(&maps->mask);
     for (int i = 0; i < 5 && s == OK; i++) {
         img whole = img_of(from[i]);
-        s = crop_take(&whole, crop_of(maps), to[i]);
+        s = crop_take(&whole, crop_of(maps), &mask, to[i]);
     }
     return s;
 }
@@ -75,10 +77,11 @@ static status take_surface(const merlin_maps *maps, const img *mask, int side, b
     img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
     status s = img_resize(mask, side, side, &out->mask);
     if (s == OK && hard) harden_mask(NULL, &out->mask);
+    img cover = img_of(&maps->mask);
     for (int i = 0; i < 4 && s == OK; i++) {
         img whole = img_of(from[i]), part = {0};
-        s = crop_take(&whole, crop_of(maps), &part);
-        if (s == OK) s = surface_resize_image(&part, mask, side, side, to[i]);
+        s = crop_take(&whole, crop_of(maps), &cover, &part);
+        if (s == OK) s = surface_resize_image(&part, mask, &out->mask, to[i]);
         img_free(&part);
     }
     if (s == OK) surface_tidy(out);
@@ -88,8 +91,8 @@ static status take_surface(const merlin_maps *maps, const img *mask, int side, b
 /* The photograph as the network saw it. */
 static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
-    img whole = img_of(&maps->photo), part = {0};
-    status s = crop_take(&whole, crop_of(maps), &part);
+    img whole = img_of(&maps->photo), cover = img_of(&maps->mask), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &cover, &part);
     if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
     img_free(&part);
     if (s != OK) return s;
@@ -117,7 +120,7 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
     img mask = {0};
     status s = maps_check(maps);
     img whole = img_of(&maps->mask);
-    if (s == OK) s = crop_take(&whole, crop_of(maps), &mask);
+    if (s == OK) s = crop_take(&whole, crop_of(maps), &whole, &mask);
     if (s == OK) s = take_surface(maps, &mask, maps->size, true, &out->low);
     if (s == OK && side != 0 && side != maps->crop.side)
         s = take_surface(maps, &mask, side, false, &out->full);
@@ -170,36 +173,17 @@ static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
 
 static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
 {
-    int side = s->full.mask.width;
     network_light both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, &s->low_photo, &s->low.mask, &both, low);
-    if (result == OK) result = surface_resize_image(low, &s->low.mask, side, side, full);
-    if (result == OK && side != low->width) multiply_mask(full, &s->full.mask);
+    if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
+    if (result == OK && full->width != low->width) multiply_mask(full, &s->full.mask);
     return result;
 }
 
 static void add_to(const img *part, img *sum)
 {
     for (size_t i = 0; i < value_count(sum); i++)
-        sum->data[i] += part->data[i];
-}
-
-/* The environment's light with its shadows and a bounce on top of `full`: nothing of it is left to the network. */
-static status add_shadowed_environment(const stage *s, img *full)
-{
-    const env_map *env = s->environment;
-    img diffuse = {0}, share = {0};
-    status result = img_new(&diffuse, full->width, full->height, 3);
-    if (result == OK) result = surface_arriving_light(&s->low, &s->horizon, env, &share);
-    if (result == OK) {
-        surface_add_ambient(&s->full, (const float(*)[3])env->sh, &diffuse);
-        shadow_darken(&share, &diffuse);
-        add_to(&diffuse, full);
-        surface_add_reflections(&s->full, env, &s->horizon, full);
-    }
-    img_free(&diffuse);
-    img_free(&share);
-    return result;
+        if (part->data[i] != 0) sum->data[i] += part->data[i];
 }
 
 /* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
@@ -228,7 +212,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
     const img *more = ambient->data ? ambient : NULL;
     status result = network_indirect(n, &s->low, low, more, &indirect);
     if (result == OK) result = bounce_follow(&s->flash, low, more, &indirect);
-    if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, full->width, full->height, &large);
+    if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, &s->full.mask, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
         add_to(&large, full);
@@ -241,7 +225,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
 static void expose(img *radiance, float white)
 {
     for (size_t i = 0; i < value_count(radiance); i++)
-        radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
+        if (radiance->data[i] != 0) radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
 }
 
 static status light_by_point(network *n, const stage *s, vec3 light, img *full, img *low)
@@ -264,7 +248,9 @@ static status relight(network *n, const stage *s, const vec3 *light, img *out)
     status result = light ? light_by_point(n, s, *light, out, &low) : dark(s, out, &low);
     if (result == OK && s->environment && !shadows) result = add_environment(s, &low, out, &ambient);
     if (result == OK && (light || !shadows)) result = add_indirect(n, s, &low, &ambient, out);
-    if (result == OK && shadows) result = add_shadowed_environment(s, out);
+    /* with its shadows and a bounce nothing of an environment's light is left to the network */
+    if (result == OK && shadows)
+        result = surface_add_shadowed_environment(&s->full, &s->low, &s->horizon, s->environment, out);
     if (result == OK) expose(out, s->white);
     img_free(&low);
     img_free(&ambient);
@@ -296,9 +282,12 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const v
     if (s == OK)
         s = light ? stage_relight(model->network, &st, *light, &part)
                   : stage_relight_environment(model->network, &st, &part);
+    img mask = st.full.mask;
+    st.full.mask = (img){0};
     stage_free(&st);
     if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
-    if (s == OK) crop_put(&part, crop_of(maps), &whole);
+    if (s == OK) crop_put(&part, crop_of(maps), &mask, &whole);
+    img_free(&mask);
     img_free(&part);
     *out = image_of(&whole);
     return s;

@@ -220,3 +220,26 @@ status surface_arriving_light(const surface *s, const horizon *h, const env_map 
     result = add_bounce(s, (const float(*)[3])env->sh, share);
     return result == OK ? fill_outside(share, &s->mask) : result;
 }
+
+static void add_image(const img *part, img *sum)
+{
+    for (size_t i = 0, n = 3 * (size_t)sum->width * (size_t)sum->height; i < n; i++)
+        if (part->data[i] != 0) sum->data[i] += part->data[i]; /* zeros are left alone (image.h) */
+}
+
+status surface_add_shadowed_environment(const surface *s, const surface *coarse, const horizon *h, const env_map *env,
+                                        img *image)
+{
+    img diffuse = {0}, share = {0};
+    status result = img_new(&diffuse, image->width, image->height, 3);
+    if (result == OK) result = surface_arriving_light(coarse, h, env, &share);
+    if (result == OK) {
+        surface_add_ambient(s, (const float(*)[3])env->sh, &diffuse);
+        shadow_darken(&share, &diffuse);
+        add_image(&diffuse, image);
+        surface_add_reflections(s, env, h, image);
+    }
+    img_free(&diffuse);
+    img_free(&share);
+    return result;
+}

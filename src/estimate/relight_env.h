@@ -7,9 +7,7 @@
  * All of it is times coverage and before clipping. image: 3 channels of the surface's size. The surface shades itself
  * if its horizon is given:
  *
- *     surface_arriving_light(&maps, &horizon, &env, &share);
- *     shadow_darken(&share, &ambient);
- *     surface_add_reflections(&maps, &env, &horizon, &image); */
+ *     status s = surface_add_shadowed_environment(&maps, &maps, &horizon, &env, &image); */
 #ifndef MERLIN_ESTIMATE_RELIGHT_ENV_H
 #define MERLIN_ESTIMATE_RELIGHT_ENV_H
 
@@ -29,6 +27,11 @@ void surface_add_reflections(const surface *s, const env_map *env, const horizon
  * it, and by one bounce from nearby; in [0, 1], continued off the surface. share is made here, of the surface's size.
  */
 status surface_arriving_light(const surface *s, const horizon *h, const env_map *env, img *share);
+
+/* Ambient light times that share, and reflections past the horizon. coarse: the same surface at the size for which the
+ * share is worked out. */
+status surface_add_shadowed_environment(const surface *s, const surface *coarse, const horizon *h, const env_map *env,
+                                        img *image);
 
 /* optics/ambient.h. */
 void surface_add_ambient_highlights(const surface *s, const float sh[9][3], img *image);

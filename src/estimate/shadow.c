@@ -195,7 +195,7 @@ static void darken_rows(void *context, size_t begin, size_t end)
                 corners_of(d->seen, ((float)x + 0.5f) * scale_x - 0.5f, ((float)row + 0.5f) * scale_y - 0.5f);
             float *pixel = img_at(d->image, x, (int)row);
             for (int c = 0; c < d->image->channels; c++)
-                pixel[c] *= value_at(d->seen, &around, c % d->seen->channels);
+                if (pixel[c] != 0) pixel[c] *= value_at(d->seen, &around, c % d->seen->channels);
         }
     }
 }

@@ -48,15 +48,24 @@ static void tidy_normal(float n[3])
     vec3_put(v, n);
 }
 
+/* Zeros are left alone (image.h). */
+static void clear(float *values, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (values[i] != 0) values[i] = 0;
+}
+
 static void tidy_pixels(void *context, size_t begin, size_t end)
 {
     surface *s = context;
     for (size_t i = begin; i < end; i++) {
         float *albedo = s->albedo.data + 3 * i, *normal = s->normal.data + 3 * i;
         if (!(s->mask.data[i] > 0)) {
-            memset(albedo, 0, 3 * sizeof(float));
-            memset(normal, 0, 3 * sizeof(float));
-            s->roughness.data[i] = s->depth.data[i] = s->mask.data[i] = 0;
+            clear(albedo, 3);
+            clear(normal, 3);
+            clear(&s->roughness.data[i], 1);
+            clear(&s->depth.data[i], 1);
+            clear(&s->mask.data[i], 1);
             continue;
         }
         s->mask.data[i] = clamp(s->mask.data[i], 0, 1);
@@ -101,8 +110,9 @@ static status shrink(const img *from, const img *mask, int width, int height, im
     return s;
 }
 
-status surface_resize_image(const img *from, const img *mask, int width, int height, img *out)
+status surface_resize_image(const img *from, const img *mask, const img *cover, img *out)
 {
+    int width = cover->width, height = cover->height;
     if (width < from->width && height < from->height) return shrink(from, mask, width, height, out);
     img filled = {0};
     status s = img_copy(&filled, from);
@@ -111,18 +121,18 @@ status surface_resize_image(const img *from, const img *mask, int width, int hei
         *out = filled;
         return OK;
     }
-    if (s == OK) s = img_resize(&filled, width, height, out);
+    if (s == OK) s = img_resize_covered(&filled, cover, out);
     img_free(&filled);
     return s;
 }
 
-status surface_resize_indirect(const img *from, const img *mask, int width, int height, img *out)
+status surface_resize_indirect(const img *from, const img *mask, const img *cover, img *out)
 {
     img filled = {0}, half = {0};
     status s = img_copy(&filled, from);
     if (s == OK) s = fill_outside(&filled, mask);
     if (s == OK) s = img_resize(&filled, from->width / 2, from->height / 2, &half);
-    if (s == OK) s = img_resize(&half, width, height, out);
+    if (s == OK) s = img_resize_covered(&half, cover, out);
     img_free(&filled);
     img_free(&half);
     return s;
@@ -131,12 +141,11 @@ status surface_resize_indirect(const img *from, const img *mask, int width, int 
 status surface_resize(const surface *from, const img *mask, surface *out)
 {
     *out = (surface){0};
-    int w = mask->width, h = mask->height;
-    status s = img_copy(&out->mask, mask);
-    if (s == OK) s = surface_resize_image(&from->albedo, &from->mask, w, h, &out->albedo);
-    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, w, h, &out->normal);
-    if (s == OK) s = surface_resize_image(&from->roughness, &from->mask, w, h, &out->roughness);
-    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, w, h, &out->depth);
+    status s = img_resize_covered(mask, mask, &out->mask);
+    if (s == OK) s = surface_resize_image(&from->albedo, &from->mask, mask, &out->albedo);
+    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask, &out->normal);
+    if (s == OK) s = surface_resize_image(&from->roughness, &from->mask, mask, &out->roughness);
+    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, mask, &out->depth);
     if (s != OK)
         surface_free(out);
     else
@@ -164,7 +173,7 @@ static void encode_values(void *context, size_t begin, size_t end)
 {
     float *value = context;
     for (size_t i = begin; i < end; i++)
-        value[i] = sqrtf(clamp(value[i], 0, 1));
+        if (value[i] != 0) value[i] = sqrtf(clamp(value[i], 0, 1));
 }
 
 void surface_encode_guide(img *photo)
@@ -178,11 +187,11 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
     if (guide->width < from->mask.width) return surface_resize(from, mask, out);
     *out = (surface){0};
     refinement r = {&from->mask, guide, mask};
-    status s = img_copy(&out->mask, mask);
+    status s = img_resize_covered(mask, mask, &out->mask);
     if (s == OK) s = refine(&r, &from->albedo, albedo_epsilon, &out->albedo);
-    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask->width, mask->height, &out->normal);
+    if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask, &out->normal);
     if (s == OK) s = refine(&r, &from->roughness, roughness_epsilon, &out->roughness);
-    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, mask->width, mask->height, &out->depth);
+    if (s == OK) s = surface_resize_image(&from->depth, &from->mask, mask, &out->depth);
     if (s != OK)
         surface_free(out);
     else

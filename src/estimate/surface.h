@@ -53,12 +53,13 @@ status surface_shade(const surface *s, vec3 light, img *out);
 /* The same, added to what out holds already. */
 void surface_add_light(const surface *s, vec3 light, img *out);
 
-/* Light of bounces 2 and up from the network's size to another: smooth by nature, so that the pattern of the network's
- * last layer, two pixels wide, is averaged away. */
-status surface_resize_indirect(const img *from, const img *mask, int width, int height, img *out);
+/* Light of bounces 2 and up from the network's size to cover's, and under it alone: smooth by nature, so that the
+ * pattern of the network's last layer, two pixels wide, is averaged away. */
+status surface_resize_indirect(const img *from, const img *mask, const img *cover, img *out);
 
 /* Any image that belongs to a surface, resized without letting its outside in: shrunk, it is weighted by the mask;
- * enlarged, values where mask < 0.5 are replaced by their neighbours' first. */
-status surface_resize_image(const img *from, const img *mask, int width, int height, img *out);
+ * enlarged, values where mask < 0.5 are replaced by their neighbours' first. cover: the new size's mask, beside which
+ * an enlarged image may be zero (img_resize_covered). */
+status surface_resize_image(const img *from, const img *mask, const img *cover, img *out);
 
 #endif

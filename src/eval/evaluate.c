@@ -38,6 +38,7 @@ static void add_scores(eval_scores *to, const eval_scores *from)
         }
     }
     to->samples++;
+    to->saturated += from->saturated;
 }
 
 static status count_sample(eval_report *report, const sample *s, const eval_scores *scores)
@@ -51,6 +52,7 @@ static status count_sample(eval_report *report, const sample *s, const eval_scor
         report->class_count++;
     }
     add_scores(&report->classes[c], scores);
+    add_scores(&report->saturations[(scores->saturated >= 0.1) + (scores->saturated >= 0.4)], scores);
     add_scores(&report->all, scores);
     return OK;
 }
@@ -78,6 +80,8 @@ static status begin(evaluation *e, const char *first_path)
     status s = sample_read_training(first_path, &first);
     if (s != OK) return s;
     e->report->size = first.mask.width;
+    e->scorer.environments = o->environments;
+    e->scorer.white = e->report->white = o->white > 0 ? o->white : 1;
     sample_free(&first);
     s = eval_model_open(o->weights, e->report->size, o->type, o->views, &e->scorer.model);
     if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);

@@ -31,7 +31,10 @@ typedef enum eval_row {
     EVAL_BOTH_BRDF,
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
-    EVAL_TRACED_SHADOWS, /* the maps' own cast shadows added */
+    EVAL_TRACED_SHADOWS,   /* the maps' own cast shadows added */
+    EVAL_ENVIRONMENT_BRDF, /* the maps under an environment that the model was not shown, against path-traced pictures
+                            */
+    EVAL_ENVIRONMENT_SHADOWS, /* with the shadows that they cast on themselves, and a bounce */
     EVAL_ROWS
 } eval_row;
 
@@ -49,6 +52,7 @@ typedef struct eval_scores {
     double sum[EVAL_ROWS][EVAL_ANSWERS];
     size_t count[EVAL_ROWS][EVAL_ANSWERS];
     size_t samples;
+    double saturated; /* sum over samples: share of the object's values that the photograph shows at its limit */
 } eval_scores;
 
 /* The mean; NAN where there is none. */
@@ -56,23 +60,28 @@ double eval_score(const eval_scores *scores, eval_row row, eval_answer answer);
 /* The better of the trivial answers; NAN where there is none. */
 double eval_best_trivial(const eval_scores *scores, eval_row row);
 
-enum { EVAL_MAX_CLASSES = 16 };
+enum { EVAL_MAX_CLASSES = 16, EVAL_SATURATIONS = 3 };
 typedef struct eval_report {
     char model[64];
     int size;             /* of the samples, pixels a side */
+    float white;          /* radiance at which the photographs saturate */
     bool means_from_data; /* the mean maps are those of the evaluated samples themselves */
     size_t means_samples; /* how many samples the mean maps were taken over */
     eval_scores all;
     char class_names[EVAL_MAX_CLASSES][32]; /* the samples' shape classes, in order of appearance */
     eval_scores classes[EVAL_MAX_CLASSES];
     int class_count;
+    eval_scores
+        saturations[EVAL_SATURATIONS]; /* samples of which less than 10 %, less than 40 % and more is saturated */
     double seconds;
 } eval_report;
 
 typedef struct eval_options {
     const char *data, *weights;
-    const char *means; /* file of eval_means_write; NULL: computed from the data itself */
-    size_t count;      /* the first so many samples; 0: all */
+    const char *means;   /* file of eval_means_write; NULL: computed from the data itself */
+    size_t count;        /* the first so many samples; 0: all */
+    float white;         /* radiance at which the photograph saturates, from 1, the paper's, on; 0 counts as 1 */
+    size_t environments; /* so many of them, from the first on, are relit by environments too */
     nn_type type;
     int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */

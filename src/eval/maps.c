@@ -124,10 +124,15 @@ status eval_binary_mask(const img *coverage, img *out)
 
 status eval_picture(const img *a, const img *b, const img *mask, img *out)
 {
+    return eval_photograph(a, b, mask, 1, out);
+}
+
+status eval_photograph(const img *a, const img *b, const img *mask, float white, img *out)
+{
     status s = img_copy(out, a);
     if (s != OK) return s;
     for (size_t i = 0, n = value_count(out); i < n; i++)
-        out->data[i] = brdf_clamp(a->data[i] + (b ? b->data[i] : 0), 0, 1) * mask->data[i / 3];
+        out->data[i] = brdf_clamp(a->data[i] + (b ? b->data[i] : 0), 0, white) * mask->data[i / 3];
     return OK;
 }
 

@@ -41,6 +41,8 @@ status eval_binary_mask(const img *coverage, img *out);
 
 /* A picture: a + b clipped to [0, 1], zero outside the mask; b may be NULL. Made here, 3 channels. */
 status eval_picture(const img *a, const img *b, const img *mask, img *out);
+/* The same, clipped to [0, white]. */
+status eval_photograph(const img *a, const img *b, const img *mask, float white, img *out);
 
 /* The sample's target light number i, drawn from its seed and index: the same in every evaluation. */
 vec3 eval_light(const sample *s, int i);

@@ -26,6 +26,8 @@ static const row_text rows[EVAL_ROWS] = {
     [EVAL_TRACED_NETWORK] = {"traced_network_ssim", "path traced, by network", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_BRDF] = {"traced_brdf_ssim", "path traced, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
     [EVAL_TRACED_SHADOWS] = {"traced_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_ENVIRONMENT_BRDF] = {"environment_brdf_ssim", "environment, by BRDF", 1, EVAL_NO_GOAL, 0, 0},
+    [EVAL_ENVIRONMENT_SHADOWS] = {"environment_shadows_ssim", "  and cast shadows", 1, EVAL_NO_GOAL, 0, 0},
 };
 
 static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged", "true_maps"};
@@ -86,36 +88,59 @@ static void print_rows(const eval_scores *scores, FILE *stream)
     }
 }
 
-/* A line a class: the model's figure, and behind it the ratio to the better trivial answer or the margin over it. */
-static void print_classes(const eval_report *report, FILE *stream)
+static const struct {
+    eval_row row;
+    const char *label;
+} shown[] = {{EVAL_ALBEDO, "albedo"},       {EVAL_NORMAL, "normal"},           {EVAL_DEPTH, "depth"},
+             {EVAL_ROUGHNESS, "roughness"}, {EVAL_RECONSTRUCTION, "reconst."}, {EVAL_RELIT_NETWORK, "network"},
+             {EVAL_RELIT_BRDF, "BRDF"},     {EVAL_TRACED_SHADOWS, "traced"}};
+enum { SHOWN = sizeof shown / sizeof shown[0] };
+
+static void print_group_heads(const char *groups, FILE *stream)
 {
-    static const struct {
-        eval_row row;
-        const char *label;
-    } shown[] = {{EVAL_ALBEDO, "albedo"},       {EVAL_NORMAL, "normal"},           {EVAL_DEPTH, "depth"},
-                 {EVAL_ROUGHNESS, "roughness"}, {EVAL_RECONSTRUCTION, "reconst."}, {EVAL_RELIT_NETWORK, "network"},
-                 {EVAL_RELIT_BRDF, "BRDF"},     {EVAL_TRACED_SHADOWS, "traced"}};
-    enum { SHOWN = sizeof shown / sizeof shown[0] };
-    fprintf(stream, "\n%-14s%8s", "class", "samples");
+    fprintf(stream, "\n%-14s%8s", groups, "samples");
     for (int i = 0; i < SHOWN; i++)
         fprintf(stream, "%16s", shown[i].label);
     fputc('\n', stream);
-    for (int c = 0; c < report->class_count; c++) {
-        const eval_scores *scores = &report->classes[c];
-        fprintf(stream, "%-14s%8zu", report->class_names[c], scores->samples);
-        for (int i = 0; i < SHOWN; i++) {
-            eval_row row = shown[i].row;
-            eval_verdict v = eval_judge(scores, row);
-            double model = rows[row].scale * eval_score(scores, row, EVAL_MODEL);
-            if (isnan(model))
-                fprintf(stream, "%16s", "-");
-            else if (row >= EVAL_RECONSTRUCTION)
-                fprintf(stream, "%7.3f (%+.3f)", model, v.margin);
-            else
-                fprintf(stream, "%8.3f (%.3f)", model, v.ratio);
-        }
-        fputc('\n', stream);
+}
+
+/* The model's figures, and behind each the ratio to the better trivial answer or the margin over it. */
+static void print_group(const char *name, const eval_scores *scores, FILE *stream)
+{
+    if (!scores->samples) return;
+    fprintf(stream, "%-14s%8zu", name, scores->samples);
+    for (int i = 0; i < SHOWN; i++) {
+        eval_row row = shown[i].row;
+        eval_verdict v = eval_judge(scores, row);
+        double model = rows[row].scale * eval_score(scores, row, EVAL_MODEL);
+        if (isnan(model))
+            fprintf(stream, "%16s", "-");
+        else if (row >= EVAL_RECONSTRUCTION)
+            fprintf(stream, "%7.3f (%+.3f)", model, v.margin);
+        else
+            fprintf(stream, "%8.3f (%.3f)", model, v.ratio);
     }
+    fputc('\n', stream);
+}
+
+static const struct {
+    const char *label, *key;
+} saturations[EVAL_SATURATIONS] = {
+    {"below 10 %", "below_10_percent"}, {"10 to 40 %", "10_to_40_percent"}, {"from 40 %", "from_40_percent"}};
+
+static void print_groups(const eval_report *report, FILE *stream)
+{
+    print_group_heads("class", stream);
+    for (int c = 0; c < report->class_count; c++)
+        print_group(report->class_names[c], &report->classes[c], stream);
+    print_group_heads("saturated", stream);
+    for (int i = 0; i < EVAL_SATURATIONS; i++)
+        print_group(saturations[i].label, &report->saturations[i], stream);
+}
+
+static size_t environments(const eval_report *report)
+{
+    return report->all.count[EVAL_ENVIRONMENT_BRDF][EVAL_MODEL];
 }
 
 void eval_print_table(const eval_report *report, FILE *stream)
@@ -123,8 +148,11 @@ void eval_print_table(const eval_report *report, FILE *stream)
     fprintf(stream, "%s on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model, report->all.samples,
             report->size, report->size, report->means_samples,
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
+    if (report->white > 1)
+        fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
+    if (environments(report)) fprintf(stream, "relit by environments: the first %zu samples\n\n", environments(report));
     print_rows(&report->all, stream);
-    print_classes(report, stream);
+    print_groups(report, stream);
     fprintf(stream, "\n%.1f s\n", report->seconds);
 }
 
@@ -136,6 +164,7 @@ static void add_number(cJSON *o, const char *key, double value)
 static void add_scores(cJSON *o, const eval_scores *scores)
 {
     cJSON_AddNumberToObject(o, "samples", (double)scores->samples);
+    cJSON_AddNumberToObject(o, "saturated_share", scores->saturated / (double)scores->samples);
     for (int row = 0; row < EVAL_ROWS; row++) {
         if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
         cJSON *r = cJSON_AddObjectToObject(o, rows[row].key);
@@ -156,12 +185,18 @@ char *eval_report_json(const eval_report *report)
     cJSON *o = cJSON_CreateObject();
     cJSON_AddStringToObject(o, "model", report->model);
     cJSON_AddNumberToObject(o, "size", report->size);
+    cJSON_AddNumberToObject(o, "white", (double)report->white);
     cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
     cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
+    cJSON_AddNumberToObject(o, "environments", (double)environments(report));
     add_scores(cJSON_AddObjectToObject(o, "all"), &report->all);
     cJSON *classes = cJSON_AddObjectToObject(o, "classes");
     for (int c = 0; c < report->class_count; c++)
         add_scores(cJSON_AddObjectToObject(classes, report->class_names[c]), &report->classes[c]);
+    cJSON *by_saturation = cJSON_AddObjectToObject(o, "saturated");
+    for (int i = 0; i < EVAL_SATURATIONS; i++)
+        if (report->saturations[i].samples)
+            add_scores(cJSON_AddObjectToObject(by_saturation, saturations[i].key), &report->saturations[i]);
     char *text = cJSON_Print(o);
     cJSON_Delete(o);
     return text;

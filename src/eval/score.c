@@ -9,8 +9,7 @@ void eval_note(eval_scores *scores, eval_row row, eval_answer answer, double val
     scores->count[row][answer]++;
 }
 
-static status note_similarity(eval_scores *scores, eval_row row, eval_answer answer, const img *image,
-                              const img *target)
+status eval_note_similarity(eval_scores *scores, eval_row row, eval_answer answer, const img *image, const img *target)
 {
     double similarity = 0;
     status s = eval_ssim(image, target, &similarity);
@@ -36,7 +35,7 @@ static status score_trivial_picture(eval_subject *on, const eval_maps *maps, eva
     const sample *s = on->sample;
     status st = eval_render(maps, &on->mask, s->fov, s->light_power, light, &lit);
     if (st != OK) return st;
-    st = note_similarity(&on->scores, row, answer, &lit, target);
+    st = eval_note_similarity(&on->scores, row, answer, &lit, target);
     img_free(&lit);
     return st;
 }
@@ -45,14 +44,14 @@ static status score_reconstruction(eval_scorer *e, eval_subject *on)
 {
     float sh[9][3];
     eval_lighting flash = {on->sample->light, eval_mean_surroundings(e, sh)};
-    status s = note_similarity(&on->scores, EVAL_RECONSTRUCTION, EVAL_MODEL, &e->prediction.reconstruction, &on->image);
+    status s =
+        eval_note_similarity(&on->scores, EVAL_RECONSTRUCTION, EVAL_MODEL, &e->prediction.reconstruction, &on->image);
     if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, EVAL_RECONSTRUCTION, &flash, &on->image);
     if (s == OK) s = score_trivial_picture(on, &on->inflated, EVAL_INFLATED, EVAL_RECONSTRUCTION, &flash, &on->image);
     return s;
 }
 
-/* The trivial answers relight by rendering alone, so all of the model's ways are held against the same figures. */
-static void repeat_trivial(eval_scores *scores, eval_row from, eval_row to)
+void eval_repeat_trivial(eval_scores *scores, eval_row from, eval_row to)
 {
     for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++) {
         scores->sum[to][answer] = scores->sum[from][answer];
@@ -68,13 +67,13 @@ status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_religh
         const img *target = &r->targets[i];
         const eval_lighting *light = &r->lights[i];
         if (eval_model_relights(e->model))
-            s = note_similarity(&on->scores, network, EVAL_MODEL, &by_network[i], target);
-        if (s == OK) s = note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
+            s = eval_note_similarity(&on->scores, network, EVAL_MODEL, &by_network[i], target);
+        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
         if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, brdf, light, target);
         if (s == OK) s = score_trivial_picture(on, &on->inflated, EVAL_INFLATED, brdf, light, target);
-        if (s == OK) s = note_similarity(&on->scores, brdf, EVAL_UNCHANGED, &on->image, target);
+        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_UNCHANGED, &on->image, target);
     }
-    repeat_trivial(&on->scores, brdf, network);
+    eval_repeat_trivial(&on->scores, brdf, network);
     return s;
 }
 
@@ -119,7 +118,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
         r.lights[i].light = eval_light(on->sample, i);
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
-    s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+    s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
     if (s == OK) {
         score_maps(on, &e->prediction.maps, EVAL_MODEL);
         score_maps(on, &e->means.maps, EVAL_MEAN);
@@ -147,7 +146,7 @@ static status score_true_maps(eval_subject *on, const sample_target *t, const sh
         img full = {0};
         if (i == 1) shadow_darken(&seen, &lit);
         st = eval_picture(&lit, &t->indirect, &on->mask, &full);
-        if (st == OK) st = note_similarity(&on->scores, rows[i], EVAL_TRUE_MAPS, &full, target);
+        if (st == OK) st = eval_note_similarity(&on->scores, rows[i], EVAL_TRUE_MAPS, &full, target);
         img_free(&full);
     }
     img_free(&lit);
@@ -164,10 +163,10 @@ static status score_shadows(eval_scorer *e, eval_subject *on, int first, const e
     if (s != OK) return s;
     for (int i = 0; s == OK && i < r->count; i++) {
         const img *target = &r->targets[i];
-        s = note_similarity(&on->scores, EVAL_TRACED_SHADOWS, EVAL_MODEL, &e->prediction.shadowed[i], target);
+        s = eval_note_similarity(&on->scores, EVAL_TRACED_SHADOWS, EVAL_MODEL, &e->prediction.shadowed[i], target);
         if (s == OK) s = score_true_maps(on, &on->sample->targets[first + i], &caster, target);
     }
-    repeat_trivial(&on->scores, EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS);
+    eval_repeat_trivial(&on->scores, EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS);
     shadow_caster_free(&caster);
     return s;
 }
@@ -179,7 +178,7 @@ static status score_traced_targets(eval_scorer *e, eval_subject *on)
         eval_relighting r;
         s = relight_by_tracing(on, first, &r);
         if (s != OK) return s;
-        s = eval_relight(e->model, &on->image, &on->mask, r.lights, &e->prediction);
+        s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
         if (s == OK)
             s = eval_score_relighting(e, on, &r, EVAL_TRACED_NETWORK, EVAL_TRACED_BRDF, e->prediction.full_by_network,
                                       e->prediction.full_by_brdf);
@@ -196,7 +195,7 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     const model_config *config = eval_model_config(e->model);
     img more = {0};
     if (config->lighting != MODEL_LIGHT_BOTH)
-        return eval_picture(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, &on->image);
+        return eval_photograph(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, e->white, &on->photo);
     if (!s->env.data)
         return fail(ERROR_INPUT, "model \"%s\" is for photographs in surroundings: render samples without --no-env",
                     config->name);
@@ -204,9 +203,20 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     if (st != OK) return st;
     for (size_t i = 0, n = 3 * (size_t)more.width * (size_t)more.height; i < n; i++)
         more.data[i] = EVAL_ENVIRONMENT_STRENGTH * more.data[i] + (config->input_global ? s->indirect.data[i] : 0);
-    st = eval_picture(&s->direct, &more, &on->mask, &on->image);
+    st = eval_photograph(&s->direct, &more, &on->mask, e->white, &on->photo);
     img_free(&more);
     return st;
+}
+
+static double saturated_share(const img *photo, const img *mask, float white)
+{
+    size_t saturated = 0, count = 0, pixels = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        if (mask->data[i / 3] <= EVAL_MASK_LEVEL) continue;
+        saturated += photo->data[i] >= white;
+        count++;
+    }
+    return count ? (double)saturated / (double)count : 0;
 }
 
 status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
@@ -214,15 +224,22 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
     eval_subject on = {.sample = s};
     status st = eval_binary_mask(&s->mask, &on.mask);
     if (st == OK) st = take_photograph(e, &on);
+    if (st == OK) st = eval_picture(&on.photo, NULL, &on.mask, &on.image);
     if (st == OK) st = eval_maps_of_sample(s, &on.truth);
-    if (st == OK) st = eval_inflate(&on.image, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
-    if (st == OK) st = eval_estimate(e->model, &on.image, &on.mask, &e->prediction);
+    if (st == OK) st = eval_inflate(&on.photo, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
+    if (st == OK) st = eval_estimate(e->model, &on.photo, &on.mask, &e->prediction);
     if (st == OK) st = score_brdf_targets(e, &on);
     if (st == OK) st = score_traced_targets(e, &on);
     if (st == OK && eval_model_config(e->model)->lighting == MODEL_LIGHT_BOTH) st = eval_score_both_lights(e, &on);
+    if (st == OK && e->environments) {
+        e->environments--;
+        st = eval_score_environment(e, &on);
+    }
+    if (st == OK) on.scores.saturated = saturated_share(&on.photo, &on.mask, e->white);
     *scores = on.scores;
     eval_maps_free(&on.truth);
     eval_maps_free(&on.inflated);
+    img_free(&on.photo);
     img_free(&on.image);
     img_free(&on.mask);
     return st;

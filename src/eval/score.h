@@ -12,14 +12,17 @@ typedef struct eval_scorer {
     eval_model *model;
     eval_means means;
     eval_prediction prediction;
-    eval_sheet *sheet; /* NULL: no picture wanted */
+    eval_sheet *sheet;   /* NULL: no picture wanted */
+    float white;         /* radiance at which the photograph saturates */
+    size_t environments; /* samples that are still to be relit by environments */
 } eval_scorer;
 
 /* One sample on its way through. */
 typedef struct eval_subject {
     const sample *sample;
     img mask;  /* binary */
-    img image; /* the network's input before encoding */
+    img photo; /* the network's input before encoding */
+    img image; /* the same, saturated at radiance 1 as everything that is compared */
     eval_maps truth, inflated;
     eval_scores scores;
 } eval_subject;
@@ -42,7 +45,13 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores);
 status eval_score_both_lights(eval_scorer *e, eval_subject *on);
 const float (*eval_mean_surroundings(const eval_scorer *e, float sh[9][3]))[3];
 
+/* Rows of relighting by environments. */
+status eval_score_environment(eval_scorer *e, eval_subject *on);
+
 void eval_note(eval_scores *scores, eval_row row, eval_answer answer, double value);
+status eval_note_similarity(eval_scores *scores, eval_row row, eval_answer answer, const img *image, const img *target);
+/* The trivial answers know nothing of what sets the rows apart. */
+void eval_repeat_trivial(eval_scores *scores, eval_row from, eval_row to);
 /* The model's pictures (by_network may be NULL) and the trivial answers' against the targets. */
 status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row network,
                              eval_row brdf, const img *by_network, const img *by_brdf);

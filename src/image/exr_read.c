@@ -117,21 +117,41 @@ const char *exr_channel_name(const exr_file *f, int index)
     return index >= 0 && index < f->channels->num_channels ? f->channels->entries[index].name.str : NULL;
 }
 
-static void convert_line(const uint8_t *from, exr_pixel_type_t type, int count, float *to, int stride)
+static void convert_values(const uint8_t *from, exr_pixel_type_t type, int first, int end, float *to, int stride)
 {
     if (type == EXR_PIXEL_HALF) {
-        for (int i = 0; i < count; i++) {
+        for (int i = first; i < end; i++) {
             uint16_t half;
             memcpy(&half, from + 2 * (size_t)i, sizeof half);
             to[(size_t)i * (size_t)stride] = half_to_float(half);
         }
         return;
     }
-    for (int i = 0; i < count; i++) {
+    for (int i = first; i < end; i++) {
         uint32_t bits;
         memcpy(&bits, from + 4 * (size_t)i, sizeof bits);
         to[(size_t)i * (size_t)stride] = type == EXR_PIXEL_FLOAT ? bits_float(bits) : (float)bits;
     }
+}
+
+static void clear_values(int first, int end, float *to, int stride)
+{
+    for (int i = first; i < end; i++)
+        if (to[(size_t)i * (size_t)stride] != 0) to[(size_t)i * (size_t)stride] = 0;
+}
+
+/* Zeros beside what a line shows are not written where they are already (image.h). */
+static void convert_line(const uint8_t *from, exr_pixel_type_t type, int count, float *to, int stride)
+{
+    size_t bytes = type == EXR_PIXEL_HALF ? 2 : 4, first = 0, end = (size_t)count * bytes;
+    while (end > 0 && from[end - 1] == 0)
+        end--;
+    while (first < end && from[first] == 0)
+        first++;
+    int begin = (int)(first / bytes), stop = (int)((end + bytes - 1) / bytes);
+    clear_values(0, begin, to, stride);
+    convert_values(from, type, begin, stop, to, stride);
+    clear_values(stop, count, to, stride);
 }
 
 typedef struct reader {

@@ -47,3 +47,14 @@ status img_copy(img *out, const img *from)
     memcpy(out->data, from->data, count * sizeof(float));
     return OK;
 }
+
+img_span img_row_span(const img *mask, int y)
+{
+    const float *row = img_at(mask, 0, y);
+    img_span s = {0, mask->width};
+    while (s.end > 0 && row[s.end - 1] == 0)
+        s.end--;
+    while (s.first < s.end && row[s.first] == 0)
+        s.first++;
+    return s;
+}

@@ -1,4 +1,7 @@
-/* Float images, interleaved, rows from the top, linear sRGB primaries unless a name says otherwise. */
+/* Float images, interleaved, rows from the top, linear sRGB primaries unless a name says otherwise.
+ *
+ * A large new image takes memory only where something was written: what is done to the pictures of an object leaves the
+ * zeros beside it alone. */
 #ifndef MERLIN_IMAGE_IMAGE_H
 #define MERLIN_IMAGE_IMAGE_H
 
@@ -15,6 +18,12 @@ typedef struct img {
 status img_new(img *out, int width, int height, int channels);
 void img_free(img *image);
 status img_copy(img *out, const img *from);
+
+/* Where a row of a mask (1 channel) is not zero: from its first such pixel to before `end`; 0 to 0 if nowhere. */
+typedef struct img_span {
+    int first, end;
+} img_span;
+img_span img_row_span(const img *mask, int y);
 
 static inline float *img_at(const img *image, int x, int y)
 {

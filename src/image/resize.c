@@ -109,22 +109,25 @@ static status resize_rows(const img *from, const img *mask, const kernel *k, img
     return failed ? fail(ERROR_MEMORY, "no memory to resize an image") : OK;
 }
 
-static void resize_columns(const img *from, const kernel *k, img *to)
+/* cover may be NULL. */
+static void resize_columns(const img *from, const img *cover, const kernel *k, img *to)
 {
-    int line = from->width * from->channels;
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < to->height; y++) {
+        img_span span = cover ? img_row_span(cover, y) : (img_span){0, to->width};
+        int begin = span.first * to->channels, end = span.end * to->channels;
         float *out = img_at(to, 0, y);
         for (int t = 0; t < k->taps; t++) {
             const float *in = img_at(from, 0, k->first[y] + t);
             float w = k->weights[(size_t)y * (size_t)k->taps + (size_t)t];
-            for (int i = 0; i < line; i++)
+            for (int i = begin; i < end; i++)
                 out[i] += w * in[i];
         }
     }
 }
 
-static status resize(const img *from, const img *mask, int width, int height, img *out)
+/* mask weighs what goes in, cover is where anything comes out; either may be NULL. */
+static status resize(const img *from, const img *mask, const img *cover, int width, int height, img *out)
 {
     *out = (img){0};
     if (!from->data || width < 1 || height < 1)
@@ -138,7 +141,7 @@ static status resize(const img *from, const img *mask, int width, int height, im
     if (s == OK) s = img_new(out, width, height, from->channels);
     if (s == OK) {
         s = resize_rows(from, mask, &across, &wide);
-        if (s == OK) resize_columns(&wide, &down, out);
+        if (s == OK) resize_columns(&wide, cover, &down, out);
     }
     if (s != OK) img_free(out);
     kernel_free(&across);
@@ -150,7 +153,20 @@ static status resize(const img *from, const img *mask, int width, int height, im
 status img_resize(const img *from, int width, int height, img *out)
 {
     if (from->data && width == from->width && height == from->height) return img_copy(out, from);
-    return resize(from, NULL, width, height, out);
+    return resize(from, NULL, NULL, width, height, out);
+}
+
+status img_resize_covered(const img *from, const img *cover, img *out)
+{
+    int width = cover->width, height = cover->height;
+    if (from->width != width || from->height != height) return resize(from, NULL, cover, width, height, out);
+    status s = img_new(out, width, height, from->channels);
+    for (int y = 0; s == OK && y < height; y++) {
+        img_span k = img_row_span(cover, y);
+        memcpy(img_at(out, k.first, y), img_at(from, k.first, y),
+               (size_t)(k.end - k.first) * (size_t)from->channels * sizeof(float));
+    }
+    return s;
 }
 
 status img_resize_masked(const img *from, const img *mask, int width, int height, img *out)
@@ -158,7 +174,7 @@ status img_resize_masked(const img *from, const img *mask, int width, int height
     if (!mask->data || mask->channels != 1 || mask->width != from->width || mask->height != from->height)
         return fail(ERROR_USAGE, "an image of %d x %d pixels cannot be masked by one of %d x %d", from->width,
                     from->height, mask->width, mask->height);
-    if (width != from->width || height != from->height) return resize(from, mask, width, height, out);
+    if (width != from->width || height != from->height) return resize(from, mask, NULL, width, height, out);
     status s = img_new(out, width, height, from->channels);
     for (int y = 0; s == OK && y < height; y++)
         multiply_row(from, mask, y, img_at(out, 0, y));

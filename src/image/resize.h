@@ -6,7 +6,9 @@
 
 /* Lanczos when enlarging, area-correct when shrinking. */
 status img_resize(const img *from, int width, int height, img *out);
-/* The same of image times mask (1 channel, the image's size), without that product as a whole. */
+/* To the size of `cover` (1 channel) and in its rows' spans (img_row_span) alone; zero beside them. */
+status img_resize_covered(const img *from, const img *cover, img *out);
+/* img_resize of image times mask (1 channel, the image's size), without that product as a whole. */
 status img_resize_masked(const img *from, const img *mask, int width, int height, img *out);
 /* The rectangle at (x, y), which may hang over the edges: what lies outside is zero. */
 status img_crop(const img *from, int x, int y, int width, int height, img *out);

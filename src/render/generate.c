@@ -55,21 +55,28 @@ static double expected_rays(const render_options *o)
     return (double)m->size * m->size * (m->strata + 0.5 * m->paths * layers);
 }
 
-static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *rays)
+/* env: empty, or what lights its environment image. */
+static status make_sample_under(const run *r, uint64_t index, const environment *env, sample *out, uint64_t *rays)
 {
     const render_options *o = r->options;
     scn_object object;
-    environment env;
     trace_scene scene = {0};
     status s = make_object(r, index, &object);
     if (s != OK) return s;
-    s = make_environment(r, index, &env);
-    if (s == OK) s = trace_scene_new(r->device, &object, scn_surfaces_eval, expected_rays(o), &scene);
-    if (s == OK) s = render_image(&scene, &o->image, o->seed, index, o->environment ? &env : NULL, out);
+    s = trace_scene_new(r->device, &object, scn_surfaces_eval, expected_rays(o), &scene);
+    if (s == OK) s = render_image(&scene, &o->image, o->seed, index, env->map.data ? env : NULL, out);
     *rays = scene.rays;
     trace_scene_free(&scene);
-    environment_free(&env);
     scn_object_free(&object);
+    return s;
+}
+
+static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *rays)
+{
+    environment env;
+    status s = make_environment(r, index, &env);
+    if (s == OK) s = make_sample_under(r, index, &env, out, rays);
+    environment_free(&env);
     return s;
 }
 
@@ -224,6 +231,22 @@ status render_sample(const render_options *options, uint64_t index, sample *out)
     status s = open_run(options, &r);
     if (s != OK) return s;
     s = make_sample(&r, index, out, &rays);
+    close_run(&r);
+    return s;
+}
+
+status render_sample_elsewhere(const render_options *options, uint64_t index, uint64_t place, sample *out,
+                               environment *env)
+{
+    run r;
+    uint64_t rays;
+    *out = (sample){0};
+    *env = (environment){0};
+    status s = open_run(options, &r);
+    if (s != OK) return s;
+    s = make_environment(&r, place, env);
+    if (s == OK) s = make_sample_under(&r, index, env, out, &rays);
+    if (s != OK) environment_free(env);
     close_run(&r);
     return s;
 }

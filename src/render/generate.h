@@ -46,4 +46,8 @@ status render_samples(const render_options *options, render_stats *stats);
 /* One sample of such a set, in memory. */
 status render_sample(const render_options *options, uint64_t index, sample *out);
 
+/* The same in the environment of sample number `place`, which is given as well; options must ask for environments. */
+status render_sample_elsewhere(const render_options *options, uint64_t index, uint64_t place, sample *out,
+                               environment *env);
+
 #endif

@@ -39,6 +39,7 @@ static const optional optionals[] = {
     {"background_leak", 1, offsetof(train_config, background_leak)},
     {"outline_error", 1, offsetof(train_config, outline_error)},
     {"jpeg", 1, offsetof(train_config, jpeg)},
+    {"perfect_camera", 1, offsetof(train_config, perfect_camera)},
     {"average_decay", 0.999999, offsetof(train_config, average_decay)},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };

@@ -26,10 +26,11 @@ typedef struct train_config {
     double jpeg;            /* share compressed as JPEG */
     double
         average_decay; /* of the mean of the weights that is validated and exported (train/average.h); optional too */
-    double memory_gib; /* samples beyond this are read from disk each time */
-    int validation_count; /* the folder's last samples are held back; a multiple of batch */
-    int validation_steps; /* between validations; 0: never */
-    int curve_steps;      /* a row of curves.csv is the mean over so many */
+    double perfect_camera; /* share without any of the above, saturated at radiance 1 as in the paper; optional too */
+    double memory_gib;     /* samples beyond this are read from disk each time */
+    int validation_count;  /* the folder's last samples are held back; a multiple of batch */
+    int validation_steps;  /* between validations; 0: never */
+    int curve_steps;       /* a row of curves.csv is the mean over so many */
     double checkpoint_minutes;
 } train_config;
 

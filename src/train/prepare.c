@@ -55,6 +55,7 @@ void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens)
     /* a photograph that was made smaller has lost most of what compression did to it: no very low qualities */
     lens->jpeg_settings.quality = 50 + rng_below(r, 46);
     lens->jpeg_settings.halved = rng_uniform(r) < 0.7f;
+    if (rng_uniform(r) < (float)c->perfect_camera) *lens = trn_camera_perfect();
 }
 
 vec3 trn_draw_light(rng *r)

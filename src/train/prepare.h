@@ -39,7 +39,8 @@ trn_camera trn_camera_perfect(void);
  * sensor's white lies between radiance 1, the published data's, at which two pixels in five of bright objects burn out,
  * and 2.5, where a white object keeps its shading as in a photograph exposed for it. */
 trn_camera trn_camera_draw(const train_config *c, rng *r);
-/* Adds background, errors of the outline and JPEG to the shares of photographs that the configuration says. */
+/* Adds background, errors of the outline and JPEG to the shares of photographs that the configuration says, and makes
+ * the camera perfect for the share that is to be as in the paper. */
 void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens);
 
 /* What a presentation is lit by beside the flash. */

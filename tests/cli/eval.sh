@@ -11,8 +11,11 @@ succeeds "^albedo error" "$MERLIN" eval --data "$samples" --model "$weights" --q
     --figure "$scratch/sheet.png" --figure-rows 2
 [[ -s $scratch/sheet.png ]] || complain "no figure"
 succeeds "favours that answer" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1
-OMP_NUM_THREADS=1 "$MERLIN" eval --data "$samples" --model "$weights" --quiet --json >"$scratch/a.json"
-OMP_NUM_THREADS=2 "$MERLIN" eval --data "$samples" --model "$weights" --quiet --json >"$scratch/b.json"
+succeeds "environments: the first 2 samples" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --environments 2
+succeeds "saturate at radiance 1.5" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1 --white 1.5
+options=(--data "$samples" --model "$weights" --environments 1 --quiet --json)
+OMP_NUM_THREADS=1 "$MERLIN" eval "${options[@]}" >"$scratch/a.json"
+OMP_NUM_THREADS=2 "$MERLIN" eval "${options[@]}" >"$scratch/b.json"
 cmp -s "$scratch/a.json" "$scratch/b.json" || complain "results depend on the number of threads"
 
 refuses 2 "--data DIR is missing" "$MERLIN" eval --model "$weights"
@@ -20,6 +23,8 @@ refuses 2 "--model W is missing" "$MERLIN" eval --data "$samples"
 refuses 2 "--means needs -o" "$MERLIN" eval --means "$samples"
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 0
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 3x
+refuses 2 "--white wants" "$MERLIN" eval --data "$samples" --model "$weights" --white 0.5
+refuses 2 "--environments wants" "$MERLIN" eval --data "$samples" --model "$weights" --environments none
 refuses 2 "--precision wants" "$MERLIN" eval --data "$samples" --model "$weights" --precision float16
 refuses 2 "wants a value" "$MERLIN" eval --data
 refuses 2 "unexpected argument" "$MERLIN" eval --data "$samples" --model "$weights" more

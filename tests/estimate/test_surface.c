@@ -10,7 +10,9 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -57,12 +59,68 @@ static void a_crop_put_back_lands_where_it_came_from(void **state)
     for (int i = 0; i < 30 * 20 * 2; i++)
         from.data[i] = (float)i;
     crop_square c = {-5, -3, 40}; /* hangs over every edge */
-    assert_int_equal(crop_take(&from, c, &part), OK);
-    crop_put(&part, c, &to);
+    assert_int_equal(crop_take(&from, c, NULL, &part), OK);
+    crop_put(&part, c, NULL, &to);
     assert_memory_equal(from.data, to.data, 30 * 20 * 2 * sizeof(float));
     img_free(&from);
     img_free(&part);
     img_free(&to);
+}
+
+static void a_crop_takes_and_puts_back_what_is_covered_alone(void **state)
+{
+    (void)state;
+    img from, mask, part, part_mask, to;
+    assert_int_equal(img_new(&from, 30, 20, 2), OK);
+    assert_int_equal(img_new(&to, 30, 20, 2), OK);
+    assert_int_equal(img_new(&mask, 30, 20, 1), OK);
+    box(&mask, 4, 6, 9, 5);
+    for (int i = 0; i < 30 * 20 * 2; i++)
+        from.data[i] = (float)(i + 1);
+    crop_square c = {8, -3, 12}; /* cuts the box */
+    assert_int_equal(crop_take(&from, c, &mask, &part), OK);
+    assert_int_equal(crop_take(&mask, c, &mask, &part_mask), OK);
+    crop_put(&part, c, &part_mask, &to);
+    for (int y = 0; y < 20; y++)
+        for (int x = 0; x < 30; x++) {
+            float expected = x >= 8 && y < 9 && *img_at(&mask, x, y) > 0 ? img_at(&from, x, y)[1] : 0;
+            assert_true(img_at(&to, x, y)[1] == expected);
+        }
+    img *all[] = {&from, &mask, &part, &part_mask, &to};
+    for (int i = 0; i < 5; i++)
+        img_free(all[i]);
+}
+
+static size_t resident_bytes(void)
+{
+    size_t pages = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%*u %zu", &pages) != 1) pages = 0;
+    if (f) fclose(f);
+    return pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Two images of 144 MB; the object is a hundredth of each. */
+static void memory_is_taken_for_the_object_alone(void **state)
+{
+    (void)state;
+    img low = {0}, low_mask = {0}, mask = {0}, large = {0}, whole = {0};
+    assert_int_equal(img_new(&low, 64, 48, 3), OK);
+    assert_int_equal(img_new(&low_mask, 64, 48, 1), OK);
+    assert_int_equal(img_new(&mask, 4000, 3000, 1), OK);
+    box(&low_mask, 16, 16, 6, 5);
+    box(&mask, 1000, 1000, 400, 300);
+    size_t before = resident_bytes();
+    assert_true(before > 0);
+    assert_int_equal(surface_resize_image(&low, &low_mask, &mask, &large), OK);
+    assert_int_equal(img_new(&whole, 4000, 3000, 3), OK);
+    crop_put(&large, (crop_square){0, 0, 4000}, &mask, &whole);
+    size_t taken = resident_bytes() - before;
+    print_message("%.1f MB\n", (double)taken / 1e6);
+    assert_true(taken < 36000000); /* an eighth; sanitizers keep as much again beside every block */
+    img *all[] = {&low, &low_mask, &mask, &large, &whole};
+    for (int i = 0; i < 5; i++)
+        img_free(all[i]);
 }
 
 static void filling_keeps_the_inside_and_continues_it(void **state)
@@ -295,6 +353,8 @@ int main(void)
         cmocka_unit_test(the_object_fills_four_fifths_of_the_crop),
         cmocka_unit_test(square_photographs_framed_like_the_training_data_are_taken_whole),
         cmocka_unit_test(a_crop_put_back_lands_where_it_came_from),
+        cmocka_unit_test(a_crop_takes_and_puts_back_what_is_covered_alone),
+        cmocka_unit_test(memory_is_taken_for_the_object_alone),
         cmocka_unit_test(filling_keeps_the_inside_and_continues_it),
         cmocka_unit_test(filling_without_any_inside_gives_zeros),
         cmocka_unit_test(smoothing_removes_a_pattern_of_two_pixels_and_keeps_a_slope),

@@ -92,15 +92,13 @@ static void render_folded(uint64_t index, sample *out, env_map *map)
 
 static void relight_folded(const surface *s, const env_map *map, const horizon *h, img *out)
 {
-    img share;
     assert_int_equal(img_new(out, s->mask.width, s->mask.height, 3), OK);
-    surface_add_ambient(s, (const float(*)[3])map->sh, out);
     if (h) {
-        assert_int_equal(surface_arriving_light(s, h, map, &share), OK);
-        shadow_darken(&share, out);
-        img_free(&share);
+        assert_int_equal(surface_add_shadowed_environment(s, s, h, map, out), OK);
+        return;
     }
-    surface_add_reflections(s, map, h, out);
+    surface_add_ambient(s, (const float(*)[3])map->sh, out);
+    surface_add_reflections(s, map, NULL, out);
 }
 
 static void clip(img *image)

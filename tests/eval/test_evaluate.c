@@ -11,6 +11,7 @@
 #include "eval/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
+#include "render/generate.h"
 #include "scratch.h"
 #include "sphere.h"
 
@@ -57,7 +58,8 @@ typedef struct fixture {
     char *folder, *data, *weights, *figure;
 } fixture;
 
-static void write_sphere(const char *folder, int index, int size, int targets)
+/* light: of the flash picture, times what the sphere is lit with. */
+static void write_lit_sphere(const char *folder, int index, int size, int targets, float light)
 {
     sphere of = {{0.05f * (float)index, 0, -1.2f}, 0.4f, {0.2f + 0.2f * (float)index, 0.5f, 0.4f}, 0.5f, size};
     sample s;
@@ -65,11 +67,18 @@ static void write_sphere(const char *folder, int index, int size, int targets)
     s.index = (uint64_t)index;
     for (int c = 0; c < 3; c++)
         s.sh[0][c] = (float)(index + 1); /* even surroundings, brighter from one to the next */
+    for (int i = 0; i < 3 * size * size; i++)
+        s.direct.data[i] *= light;
     strcpy(s.shape, index == 2 ? "relief" : "union");
     char *path = sample_path(folder, s.index);
     assert_int_equal(sample_write(path, &s), OK);
     free(path);
     sample_free(&s);
+}
+
+static void write_sphere(const char *folder, int index, int size, int targets)
+{
+    write_lit_sphere(folder, index, size, targets, 1);
 }
 
 static int set_up(void **state)
@@ -113,8 +122,9 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_string_equal(r.class_names[1], "relief");
     assert_int_equal(r.classes[0].samples, 2);
     for (int row = 0; row < EVAL_ROWS; row++) {
-        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF) {
-            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's */
+        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF ||
+            row == EVAL_ENVIRONMENT_BRDF || row == EVAL_ENVIRONMENT_SHADOWS) {
+            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's, and those not asked for */
             continue;
         }
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MODEL)));
@@ -130,6 +140,33 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_SHADOWS, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(file_exists(f->figure));
+}
+
+static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
+{
+    const fixture *f = *state;
+    char *folder = file_join(f->folder, "exposures");
+    assert_int_equal(file_make_folder(folder), OK);
+    write_lit_sphere(folder, 0, SIZE, 0,
+                     0.1f); /* brightest 0.15: nothing; as it is: near the middle; all but its rim */
+    write_lit_sphere(folder, 1, SIZE, 0, 1);
+    write_lit_sphere(folder, 2, SIZE, 0, 1000);
+    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    for (int i = 0; i < EVAL_SATURATIONS; i++)
+        assert_int_equal(r.saturations[i].samples, 1);
+    assert_true(r.saturations[0].saturated == 0);
+    assert_true(r.saturations[2].saturated > 0.95);
+    assert_float_equal(r.all.saturated, r.saturations[1].saturated + r.saturations[2].saturated, 1e-12);
+    /* nothing of the middle one reaches 2: the trivial answer that inverts the shading reads more of its albedo */
+    double burnt = eval_score(&r.saturations[1], EVAL_ALBEDO, EVAL_INFLATED) +
+                   eval_score(&r.saturations[0], EVAL_ALBEDO, EVAL_INFLATED);
+    options.white = 2;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.saturations[0].samples, 2);
+    assert_true(2 * eval_score(&r.saturations[0], EVAL_ALBEDO, EVAL_INFLATED) < burnt);
+    free(folder);
 }
 
 static void evaluation_is_deterministic(void **state)
@@ -286,16 +323,60 @@ static void models_of_both_lights_are_shown_the_environment_too(void **state)
     assert_non_null(strstr(status_message(), "--no-env"));
 }
 
+/* Samples 8 and 9 of seed 4242 are folded: a block with relief and a cloth over a ball. */
+static void relighting_by_environments_is_measured_on_the_first_samples(void **state)
+{
+    const fixture *f = *state;
+    render_options made = render_options_default();
+    render_stats stats;
+    char *folder = file_join(f->folder, "folded");
+    made.folder = folder;
+    made.seed = 4242;
+    made.first = 8;
+    made.count = 2;
+    made.image.size = SIZE;
+    made.environment = false; /* its own is not what it is relit by */
+    made.quiet = true;
+    assert_int_equal(render_samples(&made, &stats), OK);
+    eval_options options = {.data = folder, .weights = f->weights, .environments = 1, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.samples, 2);
+    for (int row = EVAL_ENVIRONMENT_BRDF; row <= EVAL_ENVIRONMENT_SHADOWS; row++)
+        for (int answer = 0; answer < EVAL_ANSWERS; answer++) {
+            assert_int_equal(r.all.count[row][answer], 1);
+            assert_true(isfinite(eval_score(&r.all, (eval_row)row, (eval_answer)answer)));
+        }
+    double without = eval_score(&r.all, EVAL_ENVIRONMENT_BRDF, EVAL_TRUE_MAPS);
+    double with = eval_score(&r.all, EVAL_ENVIRONMENT_SHADOWS, EVAL_TRUE_MAPS);
+    print_message("true maps: without shadows %.4f, with %.4f\n", without, with);
+    /* what is left is the path tracer's grain and three bands for diffuse light: test_environment_truth has more */
+    assert_true(with > 0.9 && with > without);
+    free(folder);
+}
+
+static void objects_that_cannot_be_rendered_again_are_not_relit(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .environments = 1, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "cannot be relit by environments"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluation_fills_every_row_and_class),
+        cmocka_unit_test(samples_are_sorted_by_how_much_of_them_is_saturated),
         cmocka_unit_test(evaluation_is_deterministic),
         cmocka_unit_test(more_views_change_the_maps),
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
         cmocka_unit_test(even_surroundings_show_the_albedo),
+        cmocka_unit_test(relighting_by_environments_is_measured_on_the_first_samples),
+        cmocka_unit_test(objects_that_cannot_be_rendered_again_are_not_relit),
         cmocka_unit_test(models_of_both_lights_are_shown_the_environment_too),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

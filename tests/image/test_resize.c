@@ -97,6 +97,34 @@ static void enlarging_follows_a_smooth_wave(void **state)
     img_free(&to);
 }
 
+static void under_a_cover_enlarging_is_the_same_and_beside_it_zero(void **state)
+{
+    (void)state;
+    img from = make(9, 7, 2), cover = make(31, 40, 1), all, some;
+    for (size_t i = 0; i < count_of(&from); i++)
+        from.data[i] = sinf((float)i);
+    for (int y = 11; y < 29; y++)
+        for (int x = 5 + y / 4; x < 20; x += 7)
+            *img_at(&cover, x, y) = 0.5f;
+    assert_int_equal(img_resize(&from, 31, 40, &all), OK);
+    assert_int_equal(img_resize_covered(&from, &cover, &some), OK);
+    for (int y = 0; y < 40; y++) {
+        img_span span = img_row_span(&cover, y);
+        assert_int_equal(span.end > span.first, y >= 11 && y < 29);
+        for (int x = 0; x < 31; x++) {
+            bool inside = x >= span.first && x < span.end;
+            assert_true(img_at(&some, x, y)[1] == (inside ? img_at(&all, x, y)[1] : 0));
+        }
+    }
+    img_free(&some);
+    assert_int_equal(img_resize_covered(&all, &cover, &some), OK);
+    assert_true(img_at(&some, 10, 20)[0] == img_at(&all, 10, 20)[0] && img_at(&some, 10, 5)[0] == 0);
+    img_free(&some);
+    img_free(&all);
+    img_free(&cover);
+    img_free(&from);
+}
+
 static void crop_beyond_the_edges_is_zero_there(void **state)
 {
     (void)state;
@@ -218,6 +246,7 @@ int main(void)
         cmocka_unit_test(shrinking_keeps_the_mean),
         cmocka_unit_test(constants_stay_constant_at_any_size),
         cmocka_unit_test(enlarging_follows_a_smooth_wave),
+        cmocka_unit_test(under_a_cover_enlarging_is_the_same_and_beside_it_zero),
         cmocka_unit_test(crop_beyond_the_edges_is_zero_there),
         cmocka_unit_test(guided_upsampling_keeps_constants),
         cmocka_unit_test(guided_upsampling_follows_the_guides_edges),

@@ -130,6 +130,30 @@ static void impossible_options_are_refused(void **state)
     assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
 }
 
+static void an_object_elsewhere_keeps_its_maps_and_flash_picture(void **state)
+{
+    (void)state;
+    render_options o = render_options_default();
+    o.image.size = 32;
+    o.image.paths = 2;
+    sample here, next, there;
+    environment env;
+    assert_int_equal(render_sample(&o, 3, &here), OK);
+    assert_int_equal(render_sample(&o, 4, &next), OK);
+    assert_int_equal(render_sample_elsewhere(&o, 3, 4, &there, &env), OK);
+    size_t pixels = 32 * 32, rgb = 3 * pixels * sizeof(float);
+    assert_memory_equal(there.albedo.data, here.albedo.data, rgb);
+    assert_memory_equal(there.indirect.data, here.indirect.data, rgb);
+    assert_memory_equal(there.mask.data, here.mask.data, pixels * sizeof(float));
+    assert_memory_not_equal(there.env.data, here.env.data, rgb);
+    assert_memory_equal(there.sh, next.sh, sizeof next.sh);
+    assert_memory_equal(env.sh, next.sh, sizeof next.sh);
+    sample_free(&here);
+    sample_free(&next);
+    sample_free(&there);
+    environment_free(&env);
+}
+
 static void maps_are_zero_outside_the_mask_and_within_their_ranges_inside(void **state)
 {
     (void)state;
@@ -218,6 +242,7 @@ int main(void)
         cmocka_unit_test(interrupted_set_is_continued_to_the_same_files),
         cmocka_unit_test(samples_of_other_options_are_not_mixed_in),
         cmocka_unit_test(impossible_options_are_refused),
+        cmocka_unit_test(an_object_elsewhere_keeps_its_maps_and_flash_picture),
         cmocka_unit_test(maps_are_zero_outside_the_mask_and_within_their_ranges_inside),
         cmocka_unit_test(direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps),
     };

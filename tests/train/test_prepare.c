@@ -265,6 +265,26 @@ static void photographs_have_no_faults_unless_asked_for(void **unused)
     }
 }
 
+/* Those of them that are to be as in the paper lose the draw of exposure, noise and white, too. */
+static void perfect_cameras_are_as_many_as_asked_for(void **unused)
+{
+    (void)unused;
+    enum { DRAWS = 2000 };
+    train_config half = {.exposure_jitter = 0.3, .colour_jitter = 0.1, .background_leak = 1, .perfect_camera = 0.5};
+    trn_camera perfect = trn_camera_perfect();
+    int count = 0;
+    for (uint64_t i = 0; i < DRAWS; i++) {
+        rng r = rng_at(1, i, 3);
+        trn_camera lens = trn_camera_draw(&half, &r);
+        trn_camera_spoil(&half, &r, &lens);
+        bool is_perfect = memcmp(lens.gain, perfect.gain, sizeof lens.gain) == 0 && lens.white == perfect.white;
+        assert_true(is_perfect != lens.background);
+        count += is_perfect;
+    }
+    /* five standard deviations of a binomial count */
+    assert_in_range(count, DRAWS / 2 - 112, DRAWS / 2 + 112);
+}
+
 static void target_lights_lie_on_the_frontal_hemisphere(void **unused)
 {
     (void)unused;
@@ -445,6 +465,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(outline_errors_are_one_pixel_wide, set_up, tear_down),
         cmocka_unit_test_setup_teardown(jpeg_spoils_the_input_and_not_the_targets, set_up, tear_down),
         cmocka_unit_test(photographs_have_no_faults_unless_asked_for),
+        cmocka_unit_test(perfect_cameras_are_as_many_as_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,13 +114,14 @@ static void wrong_configurations_are_refused_by_key(void **unused)
 static void faults_left_out_are_none_and_stay_left_out(void **unused)
 {
     (void)unused;
-    static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error", "jpeg"};
+    static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error",
+                                       "jpeg",        "perfect_camera",  "average_decay"};
     model_config m;
     train_config t, again;
     char *good = shipped();
     assert_int_equal(train_config_parse(good, strlen(good), "test.json", &m, &t), OK);
     char *training = train_config_write(&t), *model = model_config_write(&m), text[8192];
-    for (int i = 0; i < 5; i++)
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         assert_null(strstr(training, keys[i]));
     free(training);
     t.camera_turn = 5;
@@ -128,6 +129,8 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     t.background_leak = 0.5;
     t.outline_error = 0.125;
     t.jpeg = 0.75;
+    t.perfect_camera = 0.375;
+    t.average_decay = 0.9375;
     training = train_config_write(&t);
     snprintf(text, sizeof text, "{\"training\": %s, \"model\": %s}", training, model);
     assert_int_equal(train_config_parse(text, strlen(text), "again.json", &m, &again), OK);
