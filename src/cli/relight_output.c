@@ -76,6 +76,17 @@ static status relight(const relight_job *job, const stage *st, const vec3 *light
     return light ? stage_relight(n, st, *light, out) : stage_relight_environment(n, st, out);
 }
 
+/* side as in stage_new; last: no other stage follows. */
+static status make_stage(const relight_job *job, int side, bool last, stage *out)
+{
+    merlin_maps *m = job->maps;
+    status s = stage_new(m, side, job->how, out);
+    merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
+    for (int i = 0; i < 5 && last; i++)
+        merlin_image_free(spent[i]);
+    return s;
+}
+
 static status write_picture(const staging *t, const char *pattern, size_t i, const img *picture)
 {
     char name[32];
@@ -103,7 +114,7 @@ static status write_light(const relight_job *job, const stage *st, const staging
     char label[LABEL_SIZE];
     label_light(p->light, label);
     if (s == OK && all) s = sheet_add(all, &square, label);
-    if (s == OK) s = img_new(&whole, job->maps->albedo.width, job->maps->albedo.height, 3);
+    if (s == OK) s = img_new(&whole, job->maps->mask.width, job->maps->mask.height, 3);
     if (s == OK) {
         crop_put(&square, crop_of(job->maps), &st->full.mask, &whole);
         s = write_picture(t, p->name, p->number, &whole);
@@ -118,7 +129,7 @@ static status write_lights(const relight_job *job, const staging *t)
     size_t count = job->lights.count;
     if (count == 0 && !job->environment) return OK;
     stage st;
-    status s = stage_new(job->maps, 0, job->how, &st);
+    status s = make_stage(job, 0, job->dome == 0 && job->orbit == 0, &st);
     if (s != OK) return s;
     sheet all = {.count = 0};
     if (job->environment) s = stage_surround(&st, &job->environment->map);
@@ -175,7 +186,7 @@ static status write_dome(const relight_job *job, const staging *t)
 {
     if (job->dome == 0) return OK;
     stage st;
-    status s = stage_new(job->maps, 0, job->how, &st);
+    status s = make_stage(job, 0, job->orbit == 0, &st);
     if (s != OK) return s;
     for (int i = 0; i < job->dome && s == OK; i++) {
         vec3 light = dome_light(i, job->dome);
@@ -252,7 +263,7 @@ static status write_orbit(const relight_job *job, const staging *t)
     img *frames = calloc((size_t)job->orbit, sizeof *frames);
     if (!frames) return fail(ERROR_MEMORY, "no memory for %d frames", job->orbit);
     stage st;
-    status s = stage_new(job->maps, side, job->how, &st);
+    status s = make_stage(job, side, true, &st);
     if (s == OK) {
         s = write_frames(job, &st, t, frames);
         if (s == OK) s = write_animations(job, t, frames);

@@ -12,7 +12,7 @@ enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 
 typedef struct relight_job {
     merlin_model *model;
-    const merlin_maps *maps;
+    merlin_maps *maps;                     /* but for the mask they are let go when nothing needs them any more */
     const char *output;                    /* folder */
     light_list lights;                     /* relit_000.png …, of the photograph's size */
     const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */

@@ -10,17 +10,8 @@
 #include "optics/ambient.h"
 #include "optics/camera.h"
 
-enum { SAMPLES = 64 };
-/* What a sample averages over, in parts of the solid angle that it stands for: neighbours that overlap leave no pattern
- * where a lamp falls between them. */
-#define OVERLAP 2.0f
 /* What counts as nearby, for bounces. */
 enum { FRAME_BY_RADIUS = 24 };
-
-/* Where a sample lies on the disc: its radius is a matter of the roughness. */
-typedef struct sample_place {
-    float u, cosine, sine;
-} sample_place;
 
 typedef struct pixel {
     vec3 albedo, normal, view;
@@ -33,11 +24,9 @@ struct job {
     const surface *s;
     camera eye;
     const float (*sh)[3];
-    const env_map *env;
-    const horizon *hidden; /* or NULL */
+    const horizon *hidden;
     const env_light *lights;
     int light_count;
-    sample_place places[SAMPLES];
     vec3 (*shade)(const job *j, const pixel *p);
     bool share; /* of light: not times coverage */
     img *image;
@@ -96,56 +85,6 @@ static vec3 shade_highlights(const job *j, const pixel *p)
 void surface_add_ambient_highlights(const surface *s, const float sh[9][3], img *image)
 {
     add(&(job){.s = s, .sh = sh, .shade = shade_highlights, .image = image});
-}
-
-/* ---- by the map ---- */
-
-/* Hammersley points: even steps one way, bits of the number reversed the other way. */
-static void place_samples(sample_place places[SAMPLES])
-{
-    for (unsigned i = 0; i < SAMPLES; i++) {
-        float turn = 0, half = 0.5f;
-        for (unsigned bits = i; bits; bits >>= 1, half *= 0.5f)
-            turn += bits & 1 ? half : 0;
-        float phi = 2 * BRDF_PI * (turn + 0.5f / SAMPLES);
-        places[i] = (sample_place){((float)i + 0.5f) / SAMPLES, cosf(phi), sinf(phi)};
-    }
-}
-
-/* One half vector's share: radiance times f (n·l) over the density of drawing it, D (n·h) / (4 v·h). */
-static vec3 sample_lobe(const job *j, const pixel *p, const horizon_view *edge, const sample_place *at, float alpha2,
-                        float k)
-{
-    const vec3 black = {0, 0, 0};
-    float cosine2 = (1 - at->u) / (1 + (alpha2 - 1) * at->u), sine = sqrtf(fmaxf(0, 1 - cosine2));
-    float n_h = sqrtf(cosine2);
-    vec3 h = brdf_to_world(vec3_make(sine * at->cosine, sine * at->sine, n_h), p->normal);
-    float v_h = vec3_dot(p->view, h);
-    vec3 l = vec3_fma(vec3_scale(p->view, -1), 2 * v_h, h);
-    float n_l = vec3_dot(p->normal, l), n_v = brdf_clamp(vec3_dot(p->normal, p->view), 0, 1);
-    if (v_h <= 0 || n_l <= 0) return black;
-    float density = brdf_distribution(alpha2, n_h) * n_h / (4 * v_h);
-    float weight = brdf_fresnel(fminf(v_h, 1)) * brdf_visibility(k, fminf(n_l, 1), n_v) * 4 * n_l * v_h / n_h;
-    if (j->hidden) weight *= horizon_sees(edge, l, 1 / (SAMPLES * density));
-    return vec3_scale(env_map_lookup(j->env, l, OVERLAP / (SAMPLES * density)), weight / SAMPLES);
-}
-
-static vec3 shade_reflections(const job *j, const pixel *p)
-{
-    vec3 sum = {0, 0, 0};
-    float alpha2 = brdf_alpha2(p->roughness), k = brdf_k(p->roughness);
-    horizon_view edge = {0};
-    if (j->hidden) horizon_at(j->hidden, p->x, p->y, &edge);
-    for (int i = 0; i < SAMPLES; i++)
-        sum = vec3_add(sum, sample_lobe(j, p, &edge, &j->places[i], alpha2, k));
-    return sum;
-}
-
-void surface_add_reflections(const surface *s, const env_map *env, const horizon *h, img *image)
-{
-    job j = {.s = s, .env = env, .hidden = h, .shade = shade_reflections, .image = image};
-    place_samples(j.places);
-    add(&j);
 }
 
 /* ---- what of it arrives ---- */

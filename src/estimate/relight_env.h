@@ -2,7 +2,7 @@
  * coefficients are known, from these.
  *
  *     surface_add_ambient(&maps, env.sh, &image);           image += albedo/π · irradiance
- *     surface_add_reflections(&maps, &env, NULL, &image);   image += the specular lobe over the map
+ *     surface_add_reflections(&maps, &env, NULL, &image);   reflections.h
  *
  * All of it is times coverage and before clipping. image: 3 channels of the surface's size. The surface shades itself
  * if its horizon is given:
@@ -11,17 +11,10 @@
 #ifndef MERLIN_ESTIMATE_RELIGHT_ENV_H
 #define MERLIN_ESTIMATE_RELIGHT_ENV_H
 
-#include "estimate/env_map.h"
-#include "estimate/horizon.h"
-#include "estimate/surface.h"
+#include "estimate/reflections.h"
 
 /* Light that never is below zero, though three bands of a bright sky may be. */
 void surface_add_ambient(const surface *s, const float sh[9][3], img *image);
-
-/* By importance sampling of the visible highlights' lobe, the same 64 directions about every pixel's normal, each
- * looked up as a mean over the solid angle that it stands for (Křivánek & Colbert 2008). There is no noise; a lamp's
- * highlight is off by up to a tenth of its peak. h: hides some of them; or NULL. */
-void surface_add_reflections(const surface *s, const env_map *env, const horizon *h, img *image);
 
 /* Of the irradiance on every pixel, by channel: the share that arrives past the surface itself, as env_lights.h tells
  * it, and by one bounce from nearby; in [0, 1], continued off the surface. share is made here, of the surface's size.
