@@ -33,13 +33,13 @@ static void sheet_free(sheet *s)
         img_free(&s->pictures[i]);
 }
 
-/* light NULL: the environment alone. */
 /* In hundredths, and never as "-0.00". */
 static double shown(float x)
 {
     return round(100 * (double)x) / 100 + 0.0;
 }
 
+/* light NULL: the environment alone. */
 static void label_light(const vec3 *light, char *label)
 {
     if (light)

@@ -215,13 +215,10 @@ static status estimate_views(network *n, const img *photo, const img *mask, int 
     return s;
 }
 
-/* Albedo has edges of one pixel, which the photograph restores (surface_refine), shape has none so sharp. */
 static status finish(const img *mask, surface *maps)
 {
     status s = img_copy(&maps->mask, mask);
-    if (s == OK) s = smooth_inside(&maps->normal, mask);
-    if (s == OK) s = smooth_inside(&maps->roughness, mask);
-    if (s == OK) s = smooth_inside(&maps->depth, mask);
+    if (s == OK) s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);
     return s;
 }

@@ -180,12 +180,6 @@ static status light_by_network(network *n, const stage *s, vec3 light, img *full
     return result;
 }
 
-static void add_to(const img *part, img *sum)
-{
-    for (size_t i = 0; i < value_count(sum); i++)
-        if (part->data[i] != 0) sum->data[i] += part->data[i];
-}
-
 /* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
  * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
 static status add_environment(const stage *s, img *low, img *full, img *ambient)
@@ -215,7 +209,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
     if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, &s->full.mask, &large);
     if (result == OK) {
         multiply_mask(&large, &s->full.mask);
-        add_to(&large, full);
+        img_add(&large, full);
     }
     img_free(&indirect);
     img_free(&large);

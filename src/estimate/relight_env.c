@@ -160,12 +160,6 @@ status surface_arriving_light(const surface *s, const horizon *h, const env_map 
     return result == OK ? fill_outside(share, &s->mask) : result;
 }
 
-static void add_image(const img *part, img *sum)
-{
-    for (size_t i = 0, n = 3 * (size_t)sum->width * (size_t)sum->height; i < n; i++)
-        if (part->data[i] != 0) sum->data[i] += part->data[i]; /* zeros are left alone (image.h) */
-}
-
 status surface_add_shadowed_environment(const surface *s, const surface *coarse, const horizon *h, const env_map *env,
                                         img *image)
 {
@@ -175,7 +169,7 @@ status surface_add_shadowed_environment(const surface *s, const surface *coarse,
     if (result == OK) {
         surface_add_ambient(s, (const float(*)[3])env->sh, &diffuse);
         shadow_darken(&share, &diffuse);
-        add_image(&diffuse, image);
+        img_add(&diffuse, image);
         surface_add_reflections(s, env, h, image);
     }
     img_free(&diffuse);

@@ -29,3 +29,10 @@ status smooth_inside(img *image, const img *mask)
     img_free(&line);
     return OK;
 }
+
+status smooth_estimate(surface *s)
+{
+    status result = smooth_inside(&s->normal, &s->mask);
+    if (result == OK) result = smooth_inside(&s->roughness, &s->mask);
+    return result == OK ? smooth_inside(&s->depth, &s->mask) : result;
+}

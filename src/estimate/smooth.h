@@ -5,9 +5,13 @@
 #ifndef MERLIN_ESTIMATE_SMOOTH_H
 #define MERLIN_ESTIMATE_SMOOTH_H
 
-#include "image/image.h"
+#include "estimate/surface.h"
 
 /* Filters an image in both directions; values where mask < 0.5 do not leak in. */
 status smooth_inside(img *image, const img *mask);
+
+/* Normals, roughness and depth of an estimate, by its own mask. Albedo has edges of one pixel, which the photograph
+ * restores (surface_refine), shape has none so sharp. */
+status smooth_estimate(surface *s);
 
 #endif

@@ -31,9 +31,8 @@ typedef enum eval_row {
     EVAL_BOTH_BRDF,
     EVAL_TRACED_NETWORK, /* with the network's indirect light, against path-traced pictures with cast shadows */
     EVAL_TRACED_BRDF,
-    EVAL_TRACED_SHADOWS,   /* the maps' own cast shadows added */
-    EVAL_ENVIRONMENT_BRDF, /* the maps under an environment that the model was not shown, against path-traced pictures
-                            */
+    EVAL_TRACED_SHADOWS,      /* the maps' own cast shadows added */
+    EVAL_ENVIRONMENT_BRDF,    /* the maps under an environment that the model was not shown, against the same */
     EVAL_ENVIRONMENT_SHADOWS, /* with the shadows that they cast on themselves, and a bounce */
     EVAL_ROWS
 } eval_row;
@@ -71,8 +70,7 @@ typedef struct eval_report {
     char class_names[EVAL_MAX_CLASSES][32]; /* the samples' shape classes, in order of appearance */
     eval_scores classes[EVAL_MAX_CLASSES];
     int class_count;
-    eval_scores
-        saturations[EVAL_SATURATIONS]; /* samples of which less than 10 %, less than 40 % and more is saturated */
+    eval_scores saturations[EVAL_SATURATIONS]; /* less than 10 % of a sample saturated, less than 40 %, more */
     double seconds;
 } eval_report;
 

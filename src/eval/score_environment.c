@@ -81,9 +81,7 @@ static status surface_of(const eval_maps *maps, const img *mask, bool estimated,
     if (s == OK) s = img_copy(&out->roughness, &maps->roughness);
     if (s == OK) s = img_copy(&out->depth, &maps->depth);
     if (s == OK) s = img_copy(&out->mask, mask);
-    if (s == OK && estimated) s = smooth_inside(&out->normal, mask);
-    if (s == OK && estimated) s = smooth_inside(&out->roughness, mask);
-    if (s == OK && estimated) s = smooth_inside(&out->depth, mask);
+    if (s == OK && estimated) s = smooth_estimate(out);
     if (s == OK) {
         to_file_range(&out->albedo);
         to_file_range(&out->roughness);

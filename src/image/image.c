@@ -58,3 +58,9 @@ img_span img_row_span(const img *mask, int y)
         s.first++;
     return s;
 }
+
+void img_add(const img *part, img *sum)
+{
+    for (size_t i = 0, n = (size_t)sum->width * (size_t)sum->height * (size_t)sum->channels; i < n; i++)
+        if (part->data[i] != 0) sum->data[i] += part->data[i];
+}

@@ -25,6 +25,9 @@ typedef struct img_span {
 } img_span;
 img_span img_row_span(const img *mask, int y);
 
+/* sum += part, of the same size; its zeros leave the sum alone. */
+void img_add(const img *part, img *sum);
+
 static inline float *img_at(const img *image, int x, int y)
 {
     return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;

@@ -35,11 +35,11 @@ typedef struct pst_camera {
     float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
 } pst_camera;
 
-/* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (sRGB decoded for 8-bit sources, ambient
- * subtracted; division by light intensities is left to the solvers so that saturation stays visible at 65535). */
 /* A value from here on, as a share of full scale, may be less than the light was. */
 #define PST_SATURATED 0.98f
 
+/* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (sRGB decoded for 8-bit sources, ambient
+ * subtracted; division by light intensities is left to the solvers so that saturation stays visible at 65535). */
 typedef struct pst_capture {
     int width, height, channels, count; /* channels 1 or 3 */
     uint16_t **picture;                 /* count planes of height × width × channels */

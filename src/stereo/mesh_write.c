@@ -1,8 +1,6 @@
 #include "stereo/mesh_write.h"
 
-#include <string.h>
-#include <strings.h>
-
+#include "base/file.h"
 #include "stereo/mesh_build.h"
 
 typedef struct format {
@@ -15,9 +13,8 @@ enum { FORMATS = sizeof formats / sizeof formats[0] };
 
 static const format *format_of(const char *path)
 {
-    size_t length = strlen(path);
     for (int i = 0; i < FORMATS; i++)
-        if (length > 4 && strcasecmp(path + length - 4, formats[i].ending) == 0) return &formats[i];
+        if (file_ends_in(path, formats[i].ending)) return &formats[i];
     return NULL;
 }
 

@@ -26,8 +26,7 @@ static bool is_beside_the_capture(const char *name)
                                          "depth", "relit",   "orbit",  "calibration", "roughness", "overview"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (has_stem(name, others[i])) return true;
-    size_t n = strlen(name);
-    return n > 9 && strcasecmp(name + n - 9, ".mask.png") == 0;
+    return file_ends_in(name, ".mask.png");
 }
 
 static bool is_numbered(const char *name)

@@ -24,13 +24,13 @@ typedef struct train_config {
     double background_leak; /* share of photographs with a background, which shows at the outline */
     double outline_error;   /* share whose mask is a pixel too large or too small */
     double jpeg;            /* share compressed as JPEG */
-    double
-        average_decay; /* of the mean of the weights that is validated and exported (train/average.h); optional too */
-    double perfect_camera; /* share without any of the above, saturated at radiance 1 as in the paper; optional too */
-    double memory_gib;     /* samples beyond this are read from disk each time */
-    int validation_count;  /* the folder's last samples are held back; a multiple of batch */
-    int validation_steps;  /* between validations; 0: never */
-    int curve_steps;       /* a row of curves.csv is the mean over so many */
+    double perfect_camera;  /* share of photographs as the paper's: only turned and moved, saturated at radiance 1 */
+    /* Optional, too: */
+    double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
+    double memory_gib;    /* samples beyond this are read from disk each time */
+    int validation_count; /* the folder's last samples are held back; a multiple of batch */
+    int validation_steps; /* between validations; 0: never */
+    int curve_steps;      /* a row of curves.csv is the mean over so many */
     double checkpoint_minutes;
 } train_config;
 

@@ -36,25 +36,41 @@ static void all_equal(nn_params *params, double value, double tolerance)
             assert_float_equal(nn_params_at(params, i)->value[k], value, tolerance);
 }
 
+static double swing(int step)
+{
+    return 1 + 0.1 * cos(0.7 * step);
+}
+
+static double line(int step)
+{
+    return step;
+}
+
+/* Weights that are 30 at first and then value(step): their mean after the last step. */
+static void mean_is(double decay, double (*value)(int step), double expected, double tolerance)
+{
+    nn_graph *graph;
+    nn_params *params = new_params(&graph);
+    trn_average *average;
+    set_all(params, 30);
+    assert_int_equal(trn_average_new(params, decay, &average), OK);
+    for (int step = 1; step <= steps; step++) {
+        set_all(params, value(step));
+        trn_average_add(average, step);
+    }
+    trn_average_swap(average);
+    all_equal(params, expected, tolerance);
+    trn_average_free(average);
+    nn_params_free(params);
+    nn_graph_free(graph);
+}
+
 /* Weights that swing about 1 from step to step, as those of a network about its optimum: the mean taken at every step,
  * by definition, is 1 but for what is left of the start and half a swing of one step's share. */
 static void mean_is_nearer_to_the_centre_than_any_step(void **state)
 {
     (void)state;
-    nn_graph *graph;
-    nn_params *params = new_params(&graph);
-    trn_average *average;
-    set_all(params, 30);
-    assert_int_equal(trn_average_new(params, 0.95, &average), OK);
-    for (int step = 1; step <= steps; step++) {
-        set_all(params, 1 + 0.1 * cos(0.7 * step));
-        trn_average_add(average, step);
-    }
-    trn_average_swap(average);
-    all_equal(params, 1, 0.03);
-    trn_average_free(average);
-    nn_params_free(params);
-    nn_graph_free(graph);
+    mean_is(0.95, swing, 1, 0.03);
 }
 
 /* A line rising by one a step lies decay / (1 - decay) steps before its exponential mean. Taken every eighth step it is
@@ -63,19 +79,7 @@ static void mean_of_a_line_lags_by_its_length(void **state)
 {
     (void)state;
     const double decay = 0.97;
-    nn_graph *graph;
-    nn_params *params = new_params(&graph);
-    trn_average *average;
-    assert_int_equal(trn_average_new(params, decay, &average), OK);
-    for (int step = 1; step <= steps; step++) {
-        set_all(params, step);
-        trn_average_add(average, step);
-    }
-    trn_average_swap(average);
-    all_equal(params, steps - decay / (1 - decay), 8);
-    trn_average_free(average);
-    nn_params_free(params);
-    nn_graph_free(graph);
+    mean_is(decay, line, steps - decay / (1 - decay), 8);
 }
 
 static void swapping_twice_changes_nothing(void **state)
