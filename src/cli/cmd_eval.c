@@ -118,7 +118,7 @@ int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
-    request r = {.options = {.white = 1, .views = 1, .figure_rows = 8, .stopped = cli_interrupted}};
+    request r = {.options = {.figure_rows = 8, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();

@@ -11,22 +11,8 @@ struct nn_adam {
     nn_params *params;
     nn_adam_options options;
     int64_t steps, skipped;
-    float *moments; /* both moments of every parameter, parameter after parameter */
-    size_t *first;  /* where in moments a parameter begins */
+    float *moments; /* the first of every value, then the second */
 };
-
-static status allocate(nn_adam *adam)
-{
-    size_t count = nn_params_count(adam->params), total = 0;
-    adam->first = calloc(count + 1, sizeof *adam->first);
-    if (!adam->first) return fail(ERROR_MEMORY, "no memory for the optimizer");
-    for (size_t i = 0; i < count; i++) {
-        adam->first[i] = total;
-        total += 2 * nn_params_at(adam->params, i)->count;
-    }
-    adam->moments = calloc(total + 1, sizeof *adam->moments);
-    return adam->moments ? OK : fail(ERROR_MEMORY, "no memory for the optimizer's %zu moments", total);
-}
 
 status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out)
 {
@@ -35,14 +21,13 @@ status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **
     if (!(options->epsilon > 0 && options->clip_norm >= 0))
         return fail(ERROR_USAGE, "Adam's epsilon must be positive and its clipping norm at least 0");
     nn_adam *adam = calloc(1, sizeof *adam);
-    if (!adam) return fail(ERROR_MEMORY, "no memory for the optimizer");
-    adam->params = params;
-    adam->options = *options;
-    status s = allocate(adam);
-    if (s != OK) {
-        nn_adam_free(adam);
-        return s;
+    float *moments = calloc(2 * nn_params_values(params) + 1, sizeof *moments);
+    if (!adam || !moments) {
+        free(adam);
+        free(moments);
+        return fail(ERROR_MEMORY, "no memory for the optimizer's moments of %zu values", nn_params_values(params));
     }
+    *adam = (nn_adam){.params = params, .options = *options, .moments = moments};
     *out = adam;
     return OK;
 }
@@ -50,7 +35,6 @@ status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **
 void nn_adam_free(nn_adam *adam)
 {
     if (!adam) return;
-    free(adam->first);
     free(adam->moments);
     free(adam);
 }
@@ -109,6 +93,6 @@ void nn_adam_set_steps(nn_adam *adam, int64_t steps, int64_t skipped)
 
 float *nn_adam_moment(nn_adam *adam, size_t param, int which)
 {
-    size_t count = nn_params_at(adam->params, param)->count;
-    return adam->moments + adam->first[param] + (which == 1 ? 0 : count);
+    size_t place = nn_params_at(adam->params, param)->place;
+    return adam->moments + place + (which == 1 ? 0 : nn_params_values(adam->params));
 }

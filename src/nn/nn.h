@@ -119,11 +119,14 @@ typedef struct nn_param {
     int rank;
     int64_t shape[4];
     size_t count;
+    size_t place;              /* where its values begin among all parameters' (nn_params_values) */
     float *value;              /* float32 master */
     float *gradient;           /* filled by nn_backward; NULL for running statistics */
     float learning_rate_scale; /* multiplies Adam's rate; 1 unless nn_params_scale_rate said otherwise */
 } nn_param;
 nn_param *nn_params_at(nn_params *params, size_t i);
+/* How many values all have, with room between parameters: for a number beside each value. */
+size_t nn_params_values(const nn_params *params);
 nn_param *nn_params_find(nn_params *params, const char *name);
 void nn_params_scale_rate(nn_params *params, const char *prefix, float scale);
 /* After values were changed from outside: programs pick them up at their next run. */

@@ -89,6 +89,7 @@ static status add_param(nn_params *params, const param_spec *spec, room *needed)
         p->count *= (size_t)p->shape[i];
     p->name = strdup(spec->name);
     if (!p->name) return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
+    p->place = needed->values;
     needed->values += padded(p->count);
     if (spec->trained) needed->gradients += padded(p->count);
     return OK;
@@ -107,16 +108,16 @@ static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed
 static status fill_params(nn_params *params, const nn_graph *g, const uint64_t *seed, const room *needed)
 {
     /* the gradients of a model that is not trained are pages that nobody touches */
-    float *values = params->values = memory_new(needed->values * sizeof *values);
+    params->values = memory_new(needed->values * sizeof *params->values);
     float *gradients = params->gradients = memory_new(needed->gradients * sizeof *gradients);
-    if (!values || !gradients) return fail(ERROR_MEMORY, "no memory for parameters");
+    if (!params->values || !gradients) return fail(ERROR_MEMORY, "no memory for parameters");
+    params->value_count = needed->values;
     nn_param *p = params->items;
     for (int i = 0; i < g->count; i++) {
         param_spec specs[PARAMS_PER_NODE];
         int count = node_specs(g->nodes[i], specs);
         for (int k = 0; k < count; k++, p++) {
-            p->value = values;
-            values += padded(p->count);
+            p->value = params->values + p->place;
             if (specs[k].trained) {
                 p->gradient = gradients;
                 gradients += padded(p->count);
@@ -183,6 +184,11 @@ size_t nn_params_count(const nn_params *params)
 nn_param *nn_params_at(nn_params *params, size_t i)
 {
     return i < params->count ? &params->items[i] : NULL;
+}
+
+size_t nn_params_values(const nn_params *params)
+{
+    return params->value_count;
 }
 
 nn_param *nn_params_find(nn_params *params, const char *name)

@@ -12,28 +12,24 @@ enum { STRIDE = 8 };
 struct trn_average {
     nn_params *params;
     double decay;
-    float *values; /* parameter after parameter */
-    size_t *first; /* where in values a parameter begins */
+    float *values; /* the mean of each of the parameters' */
 };
 
 status trn_average_new(nn_params *params, double decay, trn_average **out)
 {
-    size_t count = nn_params_count(params), total = 0;
+    size_t total = nn_params_values(params);
     trn_average *a = calloc(1, sizeof *a);
-    if (a) a->first = calloc(count + 1, sizeof *a->first);
-    for (size_t i = 0; a && a->first && i < count; i++) {
-        a->first[i] = total;
-        total += nn_params_at(params, i)->count;
-    }
-    if (a) a->values = calloc(total + 1, sizeof *a->values);
-    if (!a || !a->first || !a->values) {
-        trn_average_free(a);
+    float *values = calloc(total + 1, sizeof *values);
+    if (!a || !values) {
+        free(a);
+        free(values);
         return fail(ERROR_MEMORY, "no memory for the mean of %zu weights", total);
     }
-    a->params = params;
-    a->decay = decay;
-    for (size_t i = 0; i < count; i++)
-        memcpy(a->values + a->first[i], nn_params_at(params, i)->value, nn_params_at(params, i)->count * sizeof(float));
+    *a = (trn_average){.params = params, .decay = decay, .values = values};
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        memcpy(values + p->place, p->value, p->count * sizeof *values);
+    }
     *out = a;
     return OK;
 }
@@ -41,7 +37,6 @@ status trn_average_new(nn_params *params, double decay, trn_average **out)
 void trn_average_free(trn_average *a)
 {
     if (!a) return;
-    free(a->first);
     free(a->values);
     free(a);
 }
@@ -55,7 +50,7 @@ static void blend_param(void *context, size_t i)
 {
     const blend *b = context;
     const nn_param *p = nn_params_at(b->average->params, i);
-    float *mean = b->average->values + b->average->first[i];
+    float *mean = b->average->values + p->place;
     for (size_t k = 0; k < p->count; k++)
         mean[k] += b->rate * (p->value[k] - mean[k]);
 }
@@ -72,7 +67,7 @@ void trn_average_swap(trn_average *a)
 {
     for (size_t i = 0; i < nn_params_count(a->params); i++) {
         const nn_param *p = nn_params_at(a->params, i);
-        float *mean = a->values + a->first[i];
+        float *mean = a->values + p->place;
         for (size_t k = 0; k < p->count; k++) {
             float value = p->value[k];
             p->value[k] = mean[k];
@@ -84,5 +79,5 @@ void trn_average_swap(trn_average *a)
 
 float *trn_average_values(trn_average *a, size_t i)
 {
-    return a->values + a->first[i];
+    return a->values + nn_params_at(a->params, i)->place;
 }

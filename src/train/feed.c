@@ -101,12 +101,18 @@ void trn_feed_free(trn_feed *f)
     free(f);
 }
 
+/* Validation's draws do not depend on the configuration, so that its losses compare between runs. */
+static uint64_t seed_of(const trn_feed *f)
+{
+    return f->validation ? 0 : (uint64_t)f->source.config->seed;
+}
+
 /* The target's environment is another sample's, turned and exposed at random. Draws are of a stream of their own, so
  * that the point setting's stay what they are. */
 static status draw_environments(const trn_feed *f, const item *it, trn_lighting *out)
 {
     const trn_source *from = &f->source;
-    rng r = rng_at((uint64_t)from->config->seed, 2 * it->presentation + f->validation, TRN_STREAM_ENVIRONMENT);
+    rng r = rng_at(seed_of(f), 2 * it->presentation + f->validation, TRN_STREAM_ENVIRONMENT);
     size_t first = f->validation ? from->training_count : 0;
     size_t count = f->validation ? trn_dataset_count(from->data) - first : from->training_count;
     size_t other = first + (size_t)rng_below(&r, (int)count);
@@ -135,8 +141,7 @@ static void fill_item(void *context, size_t i)
     trn_feed *f = context;
     item *it = &f->items[i];
     const train_config *c = f->source.config;
-    rng r =
-        rng_at((uint64_t)c->seed, it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
+    rng r = rng_at(seed_of(f), it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
     trn_lighting lighting = {.target = trn_draw_light(&r)};
     int orientation = f->validation ? 0 : rng_below(&r, ORIENTATIONS);
     trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
