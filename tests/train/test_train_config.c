@@ -117,7 +117,7 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
 {
     (void)unused;
     static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error",
-                                       "jpeg",        "perfect_camera",  "average_decay"};
+                                       "jpeg",        "perfect_camera",  "average_decay",   "relight_brdf_weight"};
     model_config m;
     train_config t, again;
     char *good = shipped();
@@ -133,6 +133,7 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     t.jpeg = 0.75;
     t.perfect_camera = 0.375;
     t.average_decay = 0.9375;
+    t.relight_brdf_weight = 2;
     training = train_config_write(&t);
     snprintf(text, sizeof text, "{\"training\": %s, \"model\": %s}", training, model);
     assert_int_equal(train_config_parse(text, strlen(text), "again.json", &m, &again), OK);
