@@ -87,5 +87,5 @@ const char *merlin_model_name(const merlin_model *model)
 
 merlin_params merlin_params_default(void)
 {
-    return (merlin_params){.size = 256, .views = 1, .auto_exposure = 1};
+    return (merlin_params){.size = 256, .views = NETWORK_VIEWS, .auto_exposure = 1};
 }

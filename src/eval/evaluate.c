@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "estimate/network.h"
 #include "eval/score.h"
 
 typedef struct evaluation {
@@ -83,7 +84,8 @@ static status begin(evaluation *e, const char *first_path)
     e->scorer.environments = o->environments;
     e->scorer.white = e->report->white = o->white > 0 ? o->white : 1;
     sample_free(&first);
-    s = eval_model_open(o->weights, e->report->size, o->type, o->views, &e->scorer.model);
+    e->report->views = o->views > 0 ? o->views : NETWORK_VIEWS;
+    s = eval_model_open(o->weights, e->report->size, o->type, e->report->views, &e->scorer.model);
     if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);
     if (s == OK && o->figure) s = eval_sheet_new(o->figure_rows, &e->scorer.sheet);
     if (s != OK) return s;

@@ -1,6 +1,6 @@
 /* A model measured on held-out samples, beside trivial answers.
  *
- *     eval_options options = {.data = "heldout", .weights = "weights.safetensors", .views = 1};
+ *     eval_options options = {.data = "heldout", .weights = "weights.safetensors"};
  *     eval_report report;
  *     status s = eval_run(&options, &report);
  *     if (s == OK) eval_print_table(&report, stdout);
@@ -63,6 +63,7 @@ enum { EVAL_MAX_CLASSES = 16, EVAL_SATURATIONS = 3 };
 typedef struct eval_report {
     char model[64];
     int size;             /* of the samples, pixels a side */
+    int views;            /* orientations of a picture whose mean the maps are */
     float white;          /* radiance at which the photographs saturate */
     bool means_from_data; /* the mean maps are those of the evaluated samples themselves */
     size_t means_samples; /* how many samples the mean maps were taken over */
@@ -81,7 +82,7 @@ typedef struct eval_options {
     float white;         /* radiance at which the photograph saturates, from 1, the paper's, on; 0 counts as 1 */
     size_t environments; /* so many of them, from the first on, are relit by environments too */
     nn_type type;
-    int views;          /* orientations of each picture whose mean the maps are, to 8; 0 counts as 1 */
+    int views;          /* orientations of each picture whose mean the maps are, to 8; 0: as merlin estimate */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */
     int figure_rows;    /* samples shown */
     bool quiet;

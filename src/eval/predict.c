@@ -44,7 +44,7 @@ status eval_model_open(const char *weights, int size, nn_type type, int views, e
     eval_model *m = calloc(1, sizeof *m);
     if (!m) return fail(ERROR_MEMORY, "no memory for a model");
     m->size = size;
-    m->views = views > 1 ? views : 1;
+    m->views = views;
     status s = model_load(weights, &m->config, &m->params);
     if (s == OK) s = build_programs(m, type);
     if (s != OK) {

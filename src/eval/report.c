@@ -145,8 +145,8 @@ static size_t environments(const eval_report *report)
 
 void eval_print_table(const eval_report *report, FILE *stream)
 {
-    fprintf(stream, "%s on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model, report->all.samples,
-            report->size, report->size, report->means_samples,
+    fprintf(stream, "%s (views: %d) on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model,
+            report->views, report->all.samples, report->size, report->size, report->means_samples,
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
     if (report->white > 1)
         fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
@@ -185,6 +185,7 @@ char *eval_report_json(const eval_report *report)
     cJSON *o = cJSON_CreateObject();
     cJSON_AddStringToObject(o, "model", report->model);
     cJSON_AddNumberToObject(o, "size", report->size);
+    cJSON_AddNumberToObject(o, "views", report->views);
     cJSON_AddNumberToObject(o, "white", (double)report->white);
     cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
     cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);

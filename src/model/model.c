@@ -10,8 +10,8 @@
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
 const char *const model_losses[MODEL_LOSSES] = {
-    "albedo", "normal",   "depth",          "roughness", "roughness_gradient",
-    "direct", "indirect", "reconstruction", "relight",   "environment"};
+    "albedo",   "normal",         "depth",   "roughness",    "roughness_gradient", "direct",
+    "indirect", "reconstruction", "relight", "relight_brdf", "environment"};
 
 typedef struct maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
@@ -186,7 +186,7 @@ static nn_node *render_environment(network *n, nn_node *code)
     return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
 }
 
-static void build_lights(network *n, bool training)
+static void build_lights(network *n, model_part part)
 {
     nn_graph *g = n->g;
     bool both = n->config->lighting == MODEL_LIGHT_BOTH, by_network = n->config->relight == MODEL_RELIGHT_NETWORK;
@@ -200,12 +200,12 @@ static void build_lights(network *n, bool training)
     if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
     if (both || by_network) n->light = nn_input(g, "light", model_light_size(n->config), NN_VECTOR);
     if (by_network) relight_by_network(n);
-    if (training && by_network) return;
+    if (part == MODEL_TRAINING && by_network) return;
     n->relit_brdf = render(n, n->light_position);
     if (both) n->relit_brdf = nn_add(g, n->relit_brdf, render_environment(n, nn_slice(g, n->light, 3, MODEL_SH)));
 }
 
-static void build_network(network *n, bool training)
+static void build_network(network *n, model_part part)
 {
     nn_graph *g = n->g;
     nn_node *image = nn_input(g, "image", 3, 1);
@@ -217,7 +217,7 @@ static void build_network(network *n, bool training)
         material_by_one_decoder(n);
     else
         material_by_four_decoders(n);
-    build_lights(n, training);
+    build_lights(n, part);
 }
 
 static void name_outputs(const network *n)
@@ -258,8 +258,9 @@ static void add_losses(network *n)
         nn_node *code = nn_input(g, "environment_true", MODEL_SH, NN_VECTOR);
         nn_masked_l2(g, n->environment_code, code, one, "environment", 1.0f);
     }
-    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf;
-    nn_masked_l2(g, relit, nn_input(g, "relit_true", 3, 1), mask, "relight", 1.0f);
+    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf, *relit_true = nn_input(g, "relit_true", 3, 1);
+    nn_masked_l2(g, relit, relit_true, mask, "relight", 1.0f);
+    if (n->relit_direct && n->relit_brdf) nn_masked_l2(g, n->relit_brdf, relit_true, mask, "relight_brdf", 1.0f);
 }
 
 static status build_indirect(nn_graph *g, const model_config *config)
@@ -286,9 +287,9 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
         s = build_indirect(g, config);
     } else {
         network n = {.g = g, .config = config};
-        build_network(&n, part == MODEL_TRAINING);
+        build_network(&n, part);
         name_outputs(&n);
-        if (part == MODEL_TRAINING) add_losses(&n);
+        if (part != MODEL_WHOLE) add_losses(&n);
     }
     if (s != OK) {
         nn_graph_free(g);

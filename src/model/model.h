@@ -27,7 +27,7 @@
 #include "base/status.h"
 #include "nn/nn.h"
 
-enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 10, MODEL_SH = 27 };
+enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 11, MODEL_SH = 27 };
 
 /* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
 #define MODEL_FOV 60.0f
@@ -77,8 +77,9 @@ void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
 void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
 
 typedef enum model_part {
-    MODEL_WHOLE,    /* everything a photograph goes through once */
-    MODEL_TRAINING, /* the same with losses */
+    MODEL_WHOLE,         /* everything a photograph goes through once */
+    MODEL_TRAINING,      /* the same with losses */
+    MODEL_TRAINING_BRDF, /* beside them "relight_brdf", of "relit_brdf", where "relight" is the network's */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                        "mask", for both lights "environment"; output "indirect" */
 } model_part;

@@ -40,6 +40,7 @@ static const optional optionals[] = {
     {"outline_error", 1, offsetof(train_config, outline_error)},
     {"jpeg", 1, offsetof(train_config, jpeg)},
     {"perfect_camera", 1, offsetof(train_config, perfect_camera)},
+    {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight)},
     {"average_decay", 0.999999, offsetof(train_config, average_decay)},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };
@@ -122,6 +123,8 @@ status train_config_parse(const char *json, size_t size, const char *where, mode
     if (s == OK) s = json_finish(o);
     if (s == OK) s = model_config_parse(model_json, strlen(model_json), where, model);
     if (s == OK) s = parse_training(training_json, where, training);
+    if (s == OK && training->relight_brdf_weight > 0 && model->relight != MODEL_RELIGHT_NETWORK)
+        s = fail(ERROR_INPUT, "%s: \"relight_brdf_weight\" needs \"relight\": \"network\"", where);
     json_free(o);
     free(model_json);
     free(training_json);

@@ -26,6 +26,8 @@ typedef struct train_config {
     double jpeg;            /* share compressed as JPEG */
     double perfect_camera;  /* share of photographs as the paper's: only turned and moved, saturated at radiance 1 */
     /* Optional, too: */
+    double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF beside the network's; 0: none, as the
+                                   paper */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
     double memory_gib;    /* samples beyond this are read from disk each time */
     int validation_count; /* the folder's last samples are held back; a multiple of batch */

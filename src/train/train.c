@@ -101,13 +101,20 @@ static status open_data(run *r)
     return trn_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
 }
 
+static void weigh_losses(nn_program *p, const train_config *c)
+{
+    nn_set_loss_weight(p, "depth", (float)c->depth_weight);
+    if (c->relight_brdf_weight > 0) nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
+}
+
 static status build(run *r)
 {
     const train_config *c = &r->training;
     nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
     trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
-    status s = model_build(&r->model, MODEL_TRAINING, &r->graph);
+    model_part part = c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
+    status s = model_build(&r->model, part, &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK && r->options->init)
         s = r->options->init_shared ? nn_params_load_shared(r->params, r->options->init)
@@ -118,11 +125,11 @@ static status build(run *r)
     if (s == OK && c->average_decay > 0) s = trn_average_new(r->params, c->average_decay, &r->average);
     if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
     if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
-    if (s == OK) nn_set_loss_weight(r->program, "depth", (float)c->depth_weight);
+    if (s == OK) weigh_losses(r->program, c);
     if (s != OK || c->validation_count == 0) return s;
     options.purpose = NN_INFER;
     s = nn_compile(r->graph, r->params, &options, &r->judge);
-    if (s == OK) nn_set_loss_weight(r->judge, "depth", (float)c->depth_weight);
+    if (s == OK) weigh_losses(r->judge, c);
     return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
 }
 

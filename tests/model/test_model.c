@@ -57,6 +57,31 @@ static void every_row_of_table_1_compiles_for_training(void **unused)
     }
 }
 
+static void relighting_by_brdf_can_be_trained_beside_the_network(void **unused)
+{
+    (void)unused;
+    enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
+    model_config c;
+    read_config("merlin-point", &c);
+    nn_params *params = NULL;
+    nn_program *p = compile(&c, MODEL_TRAINING, NN_TRAIN, SIZE, &params);
+    assert_true(isnan(nn_loss(p, "relight_brdf")));
+    nn_program_free(p);
+    p = compile(&c, MODEL_TRAINING_BRDF, NN_TRAIN, SIZE, &params);
+    fill(nn_input_data(p, "mask"), SIZE * SIZE, 1);
+    fill(nn_input_data(p, "loss_mask"), SIZE * SIZE, 1);
+    fill(nn_input_data(p, "relit_true"), VALUES, 0.25f);
+    nn_input_data(p, "light_position")[0] = 0.5f;
+    assert_int_equal(nn_forward(p), OK);
+    const float *relit = nn_output_data(p, "relit_brdf");
+    double sum = 0;
+    for (int i = 0; i < VALUES; i++)
+        sum += ((double)relit[i] - 0.25) * ((double)relit[i] - 0.25) / (SIZE * SIZE);
+    assert_float_equal(nn_loss(p, "relight_brdf"), sum, 1e-4 * sum);
+    nn_program_free(p);
+    nn_params_free(params);
+}
+
 static void every_row_of_table_1_speaks_the_fixed_names(void **unused)
 {
     (void)unused;
@@ -188,6 +213,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_row_of_table_1_compiles_for_training),
+        cmocka_unit_test(relighting_by_brdf_can_be_trained_beside_the_network),
         cmocka_unit_test(every_row_of_table_1_speaks_the_fixed_names),
         cmocka_unit_test(rows_of_table_1_differ_in_the_papers_switches),
         cmocka_unit_test(default_model_keeps_the_budget),
