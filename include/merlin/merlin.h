@@ -106,8 +106,9 @@ typedef struct merlin_maps {
     merlin_timing timing;
 } merlin_maps;
 
-/* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size, nonzero
- * on the object; NULL or without data: the object is searched for. params NULL: the defaults. */
+/* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size,
+ * coverage in [0, 1]: what is covered by half or more is the object; NULL or without data: the object is searched for.
+ * params NULL: the defaults. */
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps);
 void merlin_maps_free(merlin_maps *maps);

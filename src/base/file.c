@@ -52,9 +52,22 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
     return OK;
 }
 
+static int open_descriptor(const char *path)
+{
+    return open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+}
+
+FILE *file_open(const char *path)
+{
+    int descriptor = open_descriptor(path);
+    FILE *f = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (!f && descriptor >= 0) close(descriptor);
+    return f;
+}
+
 status file_read(const char *path, size_t limit, char **data, size_t *size)
 {
-    FILE *f = fopen(path, "rb");
+    FILE *f = file_open(path);
     if (!f) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
     status s = read_open(f, path, limit, data, size);
     fclose(f);
@@ -75,7 +88,7 @@ static status map_open(int descriptor, const char *path, size_t limit, file_view
 status file_map(const char *path, size_t limit, file_view *out)
 {
     *out = (file_view){0};
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    int descriptor = open_descriptor(path);
     if (descriptor < 0) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
     status s = map_open(descriptor, path, limit, out);
     close(descriptor);
@@ -175,8 +188,10 @@ status file_make_folder(const char *path)
         if (*p != '/' && *p != 0) continue;
         char end = *p;
         *p = 0;
-        if (mkdir(copy, 0777) != 0 && !file_is_folder(copy))
-            s = fail(ERROR_OUTPUT, "cannot make the folder %s: %s", copy, strerror(errno));
+        int why = mkdir(copy, 0777) == 0 ? 0 : errno;
+        if (why && !file_is_folder(copy))
+            s = fail(ERROR_OUTPUT, "cannot make the folder %s: %s", copy,
+                     why == EEXIST ? "a file of that name is in the way" : strerror(why));
         *p = end;
         if (end == 0) break;
     }

@@ -8,6 +8,10 @@
 
 #include "base/status.h"
 
+/* Opens a file for reading in binary; NULL and errno as fopen's. A pipe that nobody writes to is not waited for, so
+ * that it can be refused like anything else that is not a plain file. */
+FILE *file_open(const char *path);
+
 /* Reads all of a file; *data is malloc'ed, one zero byte is put behind it, *size excludes that byte. Refuses files over
  * limit bytes. */
 status file_read(const char *path, size_t limit, char **data, size_t *size);

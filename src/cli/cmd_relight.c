@@ -19,15 +19,14 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
     "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the "
-    "object\n"
-    "is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
+    "merlin estimate; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the\n"
+    "object is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
     "      --light x,y,z    a light's position; may be given again\n"
     "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
-    "      --orbit N        N frames with the light on a circle in front of the object, also as orbit.webp and "
-    "orbit.gif\n"
-    "      --dome N         N pictures, dome_000.png and on, under lights spread evenly over the frontal hemisphere,\n"
-    "                       and mask.png\n"
+    "      --orbit N        N frames (2 to 240) with the light on a circle in front of the object, also as orbit.webp\n"
+    "                       and orbit.gif\n"
+    "      --dome N         N pictures (3 to 999), dome_000.png and on, under lights spread evenly over the frontal\n"
+    "                       hemisphere, and mask.png\n"
     "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo\n"
     "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each light\n"
     "                       with --orbit they go round once, and the light stays\n"
@@ -85,6 +84,9 @@ static status check(request *r)
         return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
     if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
     if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
+    if (file_is_folder(r->input) && (r->mask || photo_params_given(&r->params)))
+        return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
+                    r->input);
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
 }

@@ -86,6 +86,8 @@ static status check(request *r)
     if (file_exists(r->input) && !file_is_folder(r->input) &&
         (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))
         return fail(ERROR_USAGE, "--lights, --near, --fov, --ambient and --linear are for a folder of pictures");
+    if (file_is_folder(r->input) && (r->weights || photo_params_given(&r->params)))
+        return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");
     return OK;
 }
 

@@ -87,7 +87,9 @@ status cli_read_options(int *argc, char ***argv, const cli_option *options)
         const char *given = (*argv)[optind - 1];
         if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
         if (value == '?') return fail(ERROR_USAGE, "unknown option %s", given);
-        status s = take(find(options, value), optarg);
+        const cli_option *option = find(options, value);
+        if (optarg && !*optarg) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
+        status s = take(option, optarg);
         if (s != OK) return s;
     }
     *argc -= optind;

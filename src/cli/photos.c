@@ -253,3 +253,9 @@ status photo_take_exposure(const char *text, void *into)
     params->exposure = (float)ev;
     return s;
 }
+
+bool photo_params_given(const merlin_params *params)
+{
+    merlin_params usual = merlin_params_default();
+    return params->size != usual.size || params->views != usual.views || params->auto_exposure != usual.auto_exposure;
+}

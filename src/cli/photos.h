@@ -38,5 +38,7 @@ status photo_find_model(const char *asked, char **path);
 /* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */
 status photo_take_size(const char *text, void *into);
 status photo_take_exposure(const char *text, void *into);
+/* Whether --size, --views or --exposure ask for anything but the defaults. */
+bool photo_params_given(const merlin_params *params);
 
 #endif

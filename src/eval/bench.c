@@ -188,6 +188,9 @@ status bench_run(const bench_options *options, bench_report *out)
             s = fail(ERROR_STOPPED, "stopped before measuring %s", stages[i].what);
         else
             s = stages[i].measure(options, out);
+        /* Ctrl-C goes to the programs that a stage starts, too, and they fail */
+        if (s != OK && options->stopped && options->stopped())
+            s = fail(ERROR_STOPPED, "stopped while measuring %s", stages[i].what);
     }
     if (s == OK) progress_update(&p, STAGES, NULL);
     progress_end(&p);

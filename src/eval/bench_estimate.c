@@ -1,6 +1,7 @@
 #include "eval/bench_estimate.h"
 
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <math.h>
@@ -146,7 +147,10 @@ static status run_once(char *const *arguments, const bench_files *files, bench_e
     if (refused) return fail(ERROR_INPUT, "cannot start %s: %s", arguments[0], strerror(refused));
     int code;
     struct rusage usage;
-    if (wait4(child, &code, 0, &usage) != child) return fail(ERROR_INPUT, "lost sight of %s", arguments[0]);
+    pid_t ended;
+    while ((ended = wait4(child, &code, 0, &usage)) < 0 && errno == EINTR)
+        ;
+    if (ended != child) return fail(ERROR_INPUT, "lost sight of %s", arguments[0]);
     run->seconds = clock_seconds() - started;
     run->bytes = (size_t)usage.ru_maxrss * 1024;
     return WIFEXITED(code) && WEXITSTATUS(code) == 0 ? read_parts(files->report, run) : explain(files->errors, code);

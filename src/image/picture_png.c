@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "image/picture.h"
 
 /* A file on its way in; libpng leaves by longjmp, so that what is to be freed is kept here. */
@@ -41,7 +42,7 @@ static void reader_free(reader *r)
 
 static bool reader_open(reader *r, const char *path)
 {
-    *r = (reader){.file = fopen(path, "rb")};
+    *r = (reader){.file = file_open(path)};
     r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, leave, say_nothing);
     r->info = r->png ? png_create_info_struct(r->png) : NULL;
     return r->file && r->info;

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/file.h"
 #include "image/color.h"
 #include "image/picture.h"
 
@@ -24,7 +25,7 @@ static file_kind kind_of(const unsigned char head[8])
 static status look_at(const char *path, file_kind *kind)
 {
     struct stat about;
-    FILE *f = fopen(path, "rb");
+    FILE *f = file_open(path);
     if (!f || fstat(fileno(f), &about) != 0) {
         status s = fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
         if (f) fclose(f);

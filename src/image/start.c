@@ -54,10 +54,15 @@ void vips_without_modules(void)
 
 bool vips_load_heif(void)
 {
+    typedef const gchar *registration(void *module); /* what GModule, which libvips would load it by, calls */
     char path[1024];
     snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", functions.version(0),
              functions.version(1));
-    return dlopen(path, RTLD_LAZY | RTLD_LOCAL) != NULL; /* for good: its types stay registered */
+    void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL); /* for good: its types stay registered */
+    registration *begin = NULL;
+    void *found = module ? dlsym(module, "g_module_check_init") : NULL;
+    memcpy(&begin, &found, sizeof begin); /* ISO C converts no data pointer to a function */
+    return begin && !begin(NULL);
 }
 
 status vips_refusal(status s, const char *verb, const char *path)

@@ -167,6 +167,9 @@ static void folders_are_made_with_those_above(void **state)
     assert_int_equal(file_write(file, "", 0), OK);
     assert_true(file_exists(file) && !file_is_folder(file));
     assert_int_equal(file_make_folder(below), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "a file of that name is in the way"));
+    assert_int_equal(file_make_folder("/proc/self/x/y"), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "No such file or directory")); /* what mkdir says there */
     unlink(file);
     for (int i = 0; i < 3; i++, *strrchr(deep, '/') = 0)
         rmdir(deep);

@@ -37,7 +37,11 @@ rm -rf out.merlin
 radiance large.hdr 80 30
 refuses 1 'the mask is 64×64 pixels, the photograph 80×80' estimate large.hdr --mask disc.merlin/mask.png "${small[@]}"
 radiance empty.hdr 64 0
-refuses 1 'mask selects nothing' estimate disc.hdr --mask empty.hdr "${small[@]}"
+refuses 1 'mask selects nothing (0 pixels are half white' estimate disc.hdr --mask empty.hdr "${small[@]}"
+refuses 2 '--mask wants a value' estimate disc.hdr --mask '' "${small[@]}"
+mkfifo pipe
+refuses 1 'pipe: it is not a plain file' estimate pipe "${small[@]}"
+refuses 1 'pipe' estimate disc.hdr --model pipe
 refuses 1 'no object stands out' estimate empty.hdr "${small[@]}"
 refuses 1 'missing.png' estimate disc.hdr --mask missing.png "${small[@]}"
 absent out.merlin

@@ -73,6 +73,8 @@ absent none
 echo "wrong use"
 refuses 2 'no photograph' relight
 refuses 2 'no light' relight disc.merlin
+refuses 2 'holds maps already' relight disc.merlin --light 0,0,0 --views 8
+refuses 2 'holds maps already' relight disc.merlin --light 0,0,0 --mask disc.merlin/mask.png
 refuses 2 'one photograph' relight disc.merlin disc.hdr --light 0,0,0
 refuses 2 '--light' relight disc.merlin --light 1,2
 refuses 2 '--light' relight disc.merlin --light 0,nan,0

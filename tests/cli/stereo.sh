@@ -37,6 +37,7 @@ refuses 2 '--method' stereo dome --method magic
 refuses 2 '--integrate' stereo dome --integrate magic
 refuses 2 'c.stl' stereo dome --mesh c.stl
 refuses 2 'unknown option' stereo dome --nonsense
+refuses 2 'for one photograph' stereo dome --views 8
 refuses 2 'for a folder' stereo disc.hdr --near
 refuses 2 'for a folder' stereo disc.hdr --fov 40
 refuses 2 '--fov' stereo dome --fov 200
