@@ -3,7 +3,7 @@
 _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local -A options=(
-        [estimate]="--mask --output --model --size --views --exposure --json --quiet --help"
+        [estimate]="--mask --output --model --size --views --exposure --mesh --json --quiet --help"
         [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --views --exposure --json --quiet --help"
         [stereo]="--lights --near --fov --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
             --sphere --json --quiet --help"

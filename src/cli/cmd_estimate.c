@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_mesh.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
 
@@ -27,6 +28,7 @@ static const char help[] =
     "      --size N         side of the square the network sees, a multiple of 32 from 64 to 1024 (default 256)\n"
     "      --views N        the mean over N of the square's 8 orientations (default 2): better maps, more time\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
+    "      --mesh           write mesh.glb, too: the object's front with albedo and normals\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
@@ -35,7 +37,7 @@ static const char help[] =
 typedef struct request {
     const char *mask, *output, *weights;
     merlin_params params;
-    bool json, quiet, help;
+    bool mesh, json, quiet, help;
     merlin_model *model;
 } request;
 
@@ -48,6 +50,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"mesh", .flag = &r->mesh},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
@@ -113,6 +116,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     if (s != OK) s = fail_in(s, "%s", job->photo);
     lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
+    if (s == OK && r->mesh) s = photo_mesh_write(&maps, job->output);
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) announce(r, job, &maps, laps);

@@ -50,6 +50,9 @@ static inline crop_square crop_of(const merlin_maps *maps)
 /* ERROR_USAGE if the maps are not what merlin_estimate or merlin_maps_read gave. */
 status maps_check(const merlin_maps *maps);
 
+/* The maps of the crop, brought to side × side pixels, their mask 0 or 1. */
+status maps_surface(const merlin_maps *maps, int side, surface *out);
+
 /* Which part of a photograph is the object. */
 typedef struct photo_object {
     img mask;

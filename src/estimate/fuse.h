@@ -2,9 +2,10 @@
  *
  *     status s = fuse_depth(&normal, &mask, 60, &depth);
  *
- * A network's depth knows where things are, its normals how the surface runs; taken by itself, the depth is bumpy where
- * the normals are smooth. Nehab et al. 2005 join the two. Here in log depth, in which a plane's normal gives the step
- * from a pixel to its neighbour exactly: ln(z_j / z_i) = ln((n·r_i) / (n·r_j)), r being the pixels' rays. Minimized:
+ * So it is written by merlin estimate, and followed by shadows. A network's depth knows where things are, its normals
+ * how the surface runs; taken by itself, the depth is bumpy where the normals are smooth. Nehab et al. 2005 join the
+ * two. Here in log depth, in which a plane's normal gives the step from a pixel to its neighbour exactly: ln(z_j / z_i)
+ * = ln((n·r_i) / (n·r_j)), r being the pixels' rays. Minimized:
  *
  *     Σ (u - ln z)² / ℓ²  +  Σ w (u_j - u_i - step)²,   w = 1 / (1 + (e/σ)⁴),  e = ln(z_j / z_i) - step
  *

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "estimate/black.h"
+#include "estimate/fuse.h"
 #include "estimate/smooth.h"
 #include "estimate/view.h"
 #include "optics/orientation.h"
@@ -220,6 +221,7 @@ static status finish(const img *mask, surface *maps)
     status s = img_copy(&maps->mask, mask);
     if (s == OK) s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);
+    if (s == OK) s = fuse_depth(&maps->normal, &maps->mask, SURFACE_FOV, &maps->depth);
     return s;
 }
 

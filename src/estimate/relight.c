@@ -91,6 +91,18 @@ static status take_surface(const merlin_maps *maps, const img *mask, int side, b
 }
 
 /* The photograph as the network saw it. */
+status maps_surface(const merlin_maps *maps, int side, surface *out)
+{
+    *out = (surface){0};
+    img mask = {0}, whole = img_of(&maps->mask);
+    status s = maps_check(maps);
+    if (s == OK) s = crop_take(&whole, crop_of(maps), &whole, &mask);
+    if (s == OK) s = take_surface(maps, &mask, side, true, out);
+    img_free(&mask);
+    if (s != OK) surface_free(out);
+    return s;
+}
+
 static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
     img whole = img_of(&maps->photo), cover = img_of(&maps->mask), part = {0};

@@ -121,13 +121,18 @@ static void build(builder *b, uint32_t *vertex)
     add_normals(m);
 }
 
+status surface_mesh_check_size(const pst_mesh_source *from, const img *map)
+{
+    if (!map || (map->width == from->depth->width && map->height == from->depth->height)) return OK;
+    return fail(ERROR_USAGE, "the maps of a mesh differ in size: %d × %d and %d × %d", from->depth->width,
+                from->depth->height, map->width, map->height);
+}
+
 static status check(const pst_mesh_source *from)
 {
-    const img *maps[] = {from->mask, from->normal, from->albedo};
-    for (int i = 0; i < 3; i++)
-        if (maps[i] && (maps[i]->width != from->depth->width || maps[i]->height != from->depth->height))
-            return fail(ERROR_USAGE, "the maps of a mesh differ in size: %d × %d and %d × %d", from->depth->width,
-                        from->depth->height, maps[i]->width, maps[i]->height);
+    status s = surface_mesh_check_size(from, from->mask);
+    if (s == OK) s = surface_mesh_check_size(from, from->normal);
+    if (s != OK) return s;
     if (from->camera.perspective && !(from->camera.focal > 0))
         return fail(ERROR_USAGE, "a mesh seen in perspective needs a focal length in pixels");
     return OK;

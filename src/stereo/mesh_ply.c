@@ -75,5 +75,6 @@ static void write_mesh(FILE *f, const void *context)
 
 status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
-    return file_print(path, write_mesh, &(ply){m, from});
+    status s = surface_mesh_check_size(from, from->albedo); /* vertices have colours here, not a texture */
+    return s == OK ? file_print(path, write_mesh, &(ply){m, from}) : s;
 }

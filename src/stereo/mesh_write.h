@@ -6,7 +6,8 @@
 #include "stereo/capture.h"
 
 typedef struct pst_mesh_source {
-    const img *depth, *mask, *normal, *albedo; /* normal, albedo may be NULL */
+    const img *depth, *mask;    /* of one size, as normal */
+    const img *normal, *albedo; /* may be NULL; albedo, where it becomes a texture (OBJ, GLB), of any size */
     pst_camera camera;
 } pst_mesh_source;
 

@@ -26,6 +26,11 @@ succeeds '^{.*"exposure_gain".*}$' estimate disc.hdr "${small[@]}" --json
 succeeds --exposure estimate --help
 rm -rf out.merlin
 
+echo "--mesh adds the front as a mesh"
+succeeds disc.merlin/overview.png estimate disc.hdr --size 64 --mesh
+[ "$(head -c 4 disc.merlin/mesh.glb)" = glTF ] || complain "mesh.glb is none"
+"$MERLIN" render --mesh disc.merlin/mesh.glb --count 1 --size 64 --no-env -o meshes --quiet || complain "mesh.glb cannot be read"
+
 echo "masks are used, and must fit"
 succeeds '"mask":"given"' estimate disc.hdr --mask disc.merlin/mask.png "${small[@]}" --json
 rm -rf out.merlin

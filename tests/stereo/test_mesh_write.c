@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "image/resize.h"
 #include "scratch.h"
 #include "stereo/mesh_write.h"
 
@@ -172,6 +173,22 @@ static void albedo_and_normals_may_be_missing(void **state)
     sheet_free(&s);
 }
 
+static void a_texture_may_be_finer_than_the_shape(void **state)
+{
+    (void)state;
+    sheet s;
+    sheet_new(&s, true);
+    img fine = {0};
+    assert_int_equal(img_resize(&s.albedo, 3 * WIDTH, 3 * HEIGHT, &fine), OK);
+    s.source.albedo = &fine;
+    assert_int_equal(pst_mesh_write(scratch_path("fine.glb"), &s.source), OK);
+    check_mesh(scratch_path("fine.glb"), false, true);
+    assert_int_equal(pst_mesh_write(scratch_path("fine.ply"), &s.source), ERROR_USAGE);
+    assert_false(file_exists(scratch_path("fine.ply")));
+    img_free(&fine);
+    sheet_free(&s);
+}
+
 static void what_cannot_be_a_mesh_is_refused(void **state)
 {
     (void)state;
@@ -193,6 +210,7 @@ int main(void)
         cmocka_unit_test(an_obj_names_its_material_and_texture),
         cmocka_unit_test(a_glb_keeps_the_container_rules),
         cmocka_unit_test(albedo_and_normals_may_be_missing),
+        cmocka_unit_test(a_texture_may_be_finer_than_the_shape),
         cmocka_unit_test(what_cannot_be_a_mesh_is_refused),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
