@@ -14,8 +14,19 @@ add_executable(relight_photo EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/examples/rel
 target_include_directories(relight_photo PRIVATE ${PROJECT_SOURCE_DIR}/include)
 target_link_libraries(relight_photo PRIVATE libmerlin)
 
+# Both descriptions find their prefix from where they lie, because make install chooses it after this file is read.
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+  OUTPUT_VARIABLE MERLIN_UP)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/merlin.pc.in merlin.pc @ONLY)
-install(TARGETS merlin libmerlin)
+include(CMakePackageConfigHelpers)
+write_basic_package_version_file(merlin-config-version.cmake COMPATIBILITY SameMinorVersion)
+target_include_directories(libmerlin INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+install(TARGETS merlin)
+set_target_properties(libmerlin PROPERTIES EXPORT_NAME merlin)
+install(TARGETS libmerlin EXPORT merlin-targets)
+install(EXPORT merlin-targets NAMESPACE merlin:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/merlin)
+install(FILES cmake/merlin-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/merlin-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/merlin)
 install(DIRECTORY include/merlin TYPE INCLUDE)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/merlin)

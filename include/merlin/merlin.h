@@ -19,9 +19,10 @@
  * looks along -z, x right, y up; the object stands near (0, 0, -1). The square `crop` around the object counts as the
  * whole frame of that camera: 60 degrees wide, its centre on the optical axis, whatever lens took the photograph.
  *
- * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. Nothing is
- * printed, nothing exits. There are no globals: a model may be used from several threads (runs through one model take
- * turns). */
+ * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. Pointers must
+ * not be NULL unless a comment says so (MERLIN_WRONG_USE); what frees or closes takes NULL, and then does nothing.
+ * Nothing is printed, nothing exits. There are no globals: a model may be used from several threads (runs through one
+ * model take turns). */
 #ifndef MERLIN_MERLIN_H
 #define MERLIN_MERLIN_H
 
@@ -72,7 +73,7 @@ typedef struct merlin_params {
     int size;          /* side of the square the network sees: a multiple of 32, from 64 to 1024; trained at 256 */
     int views;         /* in how many of the square's eight orientations the network sees it; the mean is taken */
     int auto_exposure; /* 1: bring a photograph that is too dark or too bright to the brightness of the training data */
-    float exposure;    /* EV on top if auto_exposure is 0 */
+    float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
 } merlin_params;
 

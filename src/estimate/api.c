@@ -19,10 +19,12 @@ const char *merlin_error(void)
 
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
 {
+    status s = api_needs(__func__, path && color);
+    if (s != OK) return result_of(s);
     *color = (merlin_image){0};
     if (alpha) *alpha = (merlin_image){0};
     img c = {0}, a = {0};
-    status s = img_read(path, &c, alpha ? &a : NULL);
+    s = img_read(path, &c, alpha ? &a : NULL);
     if (s != OK) return result_of(s);
     if (a.data && mask_is_opaque(&a)) img_free(&a);
     *color = image_of(&c);
@@ -32,20 +34,27 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
 
 merlin_status merlin_mask_read(const char *path, merlin_image *mask)
 {
+    status s = api_needs(__func__, path && mask);
+    if (s != OK) return result_of(s);
     img m = {0};
-    status s = img_read_mask(path, &m);
+    s = img_read_mask(path, &m);
     *mask = image_of(&m);
     return result_of(s);
 }
 
 merlin_status merlin_image_write(const char *path, const merlin_image *image)
 {
+    status s = api_needs(__func__, path && image);
+    if (s != OK) return result_of(s);
     img m = img_of(image);
+    if (!m.data || m.width < 1 || m.height < 1)
+        return result_of(fail(ERROR_USAGE, "cannot write %s: the image has no pixels", path));
     return result_of(img_write_png(path, &m, IMG_SRGB8));
 }
 
 void merlin_image_free(merlin_image *image)
 {
+    if (!image) return;
     img m = img_of(image);
     img_free(&m);
     *image = (merlin_image){0};
@@ -53,6 +62,7 @@ void merlin_image_free(merlin_image *image)
 
 void merlin_maps_free(merlin_maps *maps)
 {
+    if (!maps) return;
     merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
                               &maps->mask,   &maps->photo,  &maps->reconstruction};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
@@ -62,10 +72,12 @@ void merlin_maps_free(merlin_maps *maps)
 
 merlin_status merlin_model_open(const char *weights, merlin_model **out)
 {
+    status s = api_needs(__func__, weights && out);
+    if (s != OK) return result_of(s);
     *out = NULL;
     merlin_model *model = calloc(1, sizeof *model);
     if (!model) return result_of(fail(ERROR_MEMORY, "no memory for a model"));
-    status s = network_open(weights, &model->network);
+    s = network_open(weights, &model->network);
     if (s != OK)
         free(model);
     else
@@ -82,7 +94,7 @@ void merlin_model_close(merlin_model *model)
 
 const char *merlin_model_name(const merlin_model *model)
 {
-    return network_config(model->network)->name;
+    return model ? network_config(model->network)->name : "";
 }
 
 merlin_params merlin_params_default(void)

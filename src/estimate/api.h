@@ -36,6 +36,12 @@ static inline merlin_status result_of(status s)
     return (merlin_status)s;
 }
 
+/* ERROR_USAGE where a public function got NULL for something that it needs. */
+static inline status api_needs(const char *function, bool all_there)
+{
+    return all_there ? OK : fail(ERROR_USAGE, "%s was called with a null pointer", function);
+}
+
 static inline crop_square crop_of(const merlin_maps *maps)
 {
     return (crop_square){maps->crop.x, maps->crop.y, maps->crop.side};

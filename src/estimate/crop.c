@@ -27,6 +27,12 @@ static bounds bounds_of(const img *mask)
     return b;
 }
 
+bool crop_is_sound(crop_square c)
+{
+    return c.side > 0 && c.side < CROP_FARTHEST && c.x > -CROP_FARTHEST && c.x < CROP_FARTHEST &&
+           c.y > -CROP_FARTHEST && c.y < CROP_FARTHEST;
+}
+
 status crop_around(const img *mask, crop_square *out)
 {
     bounds b = bounds_of(mask);

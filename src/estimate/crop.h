@@ -5,11 +5,17 @@
 #ifndef MERLIN_ESTIMATE_CROP_H
 #define MERLIN_ESTIMATE_CROP_H
 
+#include <stdbool.h>
+
 #include "image/image.h"
 
 typedef struct crop_square {
     int x, y, side; /* pixels of the photograph; may hang over its edges */
 } crop_square;
+
+/* Whether it can be a photograph's, nothing of it beyond CROP_FARTHEST: what came from outside may be any numbers. */
+enum { CROP_FARTHEST = 65536 };
+bool crop_is_sound(crop_square c);
 
 /* mask: 1 channel; a pixel belongs to the object from 0.5 on. ERROR_INPUT if fewer than 64 pixels do. */
 status crop_around(const img *mask, crop_square *out);

@@ -29,6 +29,8 @@ static status prepare(const char *path, float turn, float exposure, env_map *map
 
 merlin_status merlin_environment_read(const char *path, float turn, float exposure, merlin_environment **out)
 {
+    status s = api_needs(__func__, path && out);
+    if (s != OK) return result_of(s);
     *out = NULL;
     if (!isfinite(turn) || !(fabsf(exposure) <= MOST_EXPOSURE))
         return result_of(fail(ERROR_USAGE, "an environment's turn must be finite and its exposure within %g EV",
@@ -36,7 +38,7 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
     merlin_environment *e = calloc(1, sizeof *e);
     if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
     img picture = {0};
-    status s = img_read(path, &picture, NULL);
+    s = img_read(path, &picture, NULL);
     if (s == OK) s = check(path, &picture);
     if (s == OK) s = env_map_new(&picture, &e->map);
     if (s == OK) s = prepare(path, turn, exposure, &e->map);

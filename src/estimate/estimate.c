@@ -11,6 +11,7 @@
 #include "image/resize.h"
 
 enum { LEAST_SIDE = 16, MOST_PIXELS = 64 * 1000 * 1000 };
+static const float MOST_EXPOSURE = 20.0f;
 
 /* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's. */
 typedef struct work {
@@ -58,6 +59,12 @@ static status check_photo(const img *photo)
     for (size_t i = 0; i < count; i++)
         if (!isfinite(photo->data[i])) return fail(ERROR_INPUT, "the photograph has values that are not finite");
     return OK;
+}
+
+static status check_params(const merlin_params *p)
+{
+    if (p->auto_exposure || fabsf(p->exposure) <= MOST_EXPOSURE) return OK;
+    return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)MOST_EXPOSURE, (double)p->exposure);
 }
 
 status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out)
@@ -222,7 +229,8 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     network *n = model->network;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
-    status s = network_prepare(n, w->params->size);
+    status s = check_params(w->params);
+    if (s == OK) s = network_prepare(n, w->params->size);
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);
@@ -265,9 +273,11 @@ status estimate_object(merlin_model *model, merlin_image *photo, photo_object *o
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps)
 {
+    status s = api_needs(__func__, model && photo && maps);
+    if (s != OK) return result_of(s);
     photo_object object;
     *maps = (merlin_maps){0};
-    status s = photo_object_choose(photo, mask, &object);
+    s = photo_object_choose(photo, mask, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
     if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
     photo_object_free(&object);

@@ -9,7 +9,6 @@
 #include "image/exr.h"
 
 enum { CHANNELS = 12 };
-static const float LARGEST_COORDINATE = 65536.0f;
 
 /* Name, image's place in maps_images, channel. */
 typedef struct layer {
@@ -62,8 +61,8 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
                     exr_get_numbers(f, "merlinMaskFound", &found, 1) &&
                     exr_get_numbers(f, "merlinMaskConfidence", &confidence, 1) && model;
     if (!complete) return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attributes are missing", path);
-    bool sound = fabsf(square[0]) < LARGEST_COORDINATE && fabsf(square[1]) < LARGEST_COORDINATE && square[2] >= 1 &&
-                 square[2] < LARGEST_COORDINATE && size >= NETWORK_LEAST_SIZE && size <= NETWORK_LARGEST_SIZE &&
+    bool sound = fabsf(square[0]) < (float)CROP_FARTHEST && fabsf(square[1]) < (float)CROP_FARTHEST && square[2] >= 1 &&
+                 square[2] < (float)CROP_FARTHEST && size >= NETWORK_LEAST_SIZE && size <= NETWORK_LARGEST_SIZE &&
                  fmodf(size, MODEL_SIZE_MULTIPLE) == 0 && maps->gain > 1e-6f && maps->gain < 1e6f;
     if (!sound) return fail(ERROR_INPUT, "%s: crop, size or gain is out of range", path);
     maps->crop.x = (int)square[0];
@@ -109,12 +108,14 @@ static void tidy(merlin_maps *maps)
 
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
 {
+    status s = api_needs(__func__, folder && maps);
+    if (s != OK) return result_of(s);
     *maps = (merlin_maps){0};
     char *path = file_join(folder, "maps.exr");
     if (!path) return result_of(fail(ERROR_MEMORY, "no memory for a file name"));
     exr_file *f = NULL;
-    status s = file_exists(path) ? exr_open(path, &f)
-                                 : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
+    s = file_exists(path) ? exr_open(path, &f)
+                          : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
     if (s == OK) s = read_attributes(f, path, maps);
     if (s == OK) s = read_layers(f, maps);
     if (f) exr_close(f);

@@ -178,5 +178,6 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const char *fold
 
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder)
 {
-    return result_of(maps_write(model, maps, folder, NULL));
+    status s = api_needs(__func__, model && maps && folder);
+    return result_of(s == OK ? maps_write(model, maps, folder, NULL) : s);
 }

@@ -1,4 +1,5 @@
 /* merlin_relight and merlin_relight_environment: maps under other light. */
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -40,7 +41,8 @@ status maps_check(const merlin_maps *maps)
     const merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,
                                     &maps->depth,  &maps->mask,   &maps->photo};
     const int channels[] = {3, 3, 1, 1, 1, 3};
-    bool sound = maps->crop.side > 0 && maps->size >= NETWORK_LEAST_SIZE && maps->gain > 0;
+    bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE &&
+                 maps->size <= NETWORK_LARGEST_SIZE && maps->gain > 0 && isfinite(maps->gain);
     for (int i = 0; i < 6; i++)
         sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
                  images[i]->height == maps->albedo.height;
@@ -280,6 +282,8 @@ status stage_relight_environment(network *n, const stage *s, img *out)
 static status relight_maps(merlin_model *model, const merlin_maps *maps, const vec3 *light, const env_map *environment,
                            merlin_relighting how, merlin_image *out)
 {
+    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
+        return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
     stage st;
     status s = stage_new(maps, 0, how, &st);
     if (s != OK) return s;
@@ -308,17 +312,21 @@ static status check_light(const float light[3])
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out)
 {
+    status s = api_needs(__func__, model && maps && light && out);
+    if (s != OK) return result_of(s);
     *out = (merlin_image){0};
     vec3 place = vec3_of(light);
-    status s = check_light(light);
+    s = check_light(light);
     return result_of(s == OK ? relight_maps(model, maps, &place, NULL, how, out) : s);
 }
 
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
                                          const float *light, merlin_relighting how, merlin_image *out)
 {
+    status s = api_needs(__func__, model && maps && env && out);
+    if (s != OK) return result_of(s);
     *out = (merlin_image){0};
-    status s = light ? check_light(light) : OK;
+    s = light ? check_light(light) : OK;
     if (s != OK) return result_of(s);
     vec3 place = light ? vec3_of(light) : vec3_make(0, 0, 0);
     return result_of(relight_maps(model, maps, light ? &place : NULL, &env->map, how, out));

@@ -6,6 +6,7 @@
 #include "scratch.h"
 #include "weights.h"
 
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -188,7 +189,7 @@ static void photographs_without_an_object_are_refused(void **state)
     merlin_image_free(&grey);
 }
 
-static void tiny_photographs_and_odd_sizes_are_refused(void **state)
+static void tiny_photographs_and_odd_parameters_are_refused(void **state)
 {
     const fixture *f = *state;
     merlin_maps maps;
@@ -199,6 +200,10 @@ static void tiny_photographs_and_odd_sizes_are_refused(void **state)
     p.size = 100;
     assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_WRONG_USE);
     assert_non_null(strstr(merlin_error(), "multiple of 32"));
+    p = small();
+    p.auto_exposure = 0;
+    p.exposure = NAN;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_WRONG_USE);
 }
 
 static void photographs_with_infinities_are_refused(void **state)
@@ -220,6 +225,52 @@ static void empty_maps_are_neither_relit_nor_written(void **state)
     assert_int_equal(merlin_relight(f->model, &maps, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
     assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_WRONG_USE);
     assert_false(file_exists(f->output));
+}
+
+static void maps_of_impossible_frames_are_refused(void **state)
+{
+    const fixture *f = *state;
+    const float light[3] = {0};
+    merlin_maps good, bad[5];
+    merlin_image image;
+    estimate(f, &good);
+    for (int i = 0; i < 5; i++)
+        bad[i] = good;
+    bad[0].crop.side = INT_MAX;
+    bad[1].crop.x = INT_MIN;
+    bad[2].size = INT_MAX;
+    bad[3].gain = INFINITY;
+    bad[4].depth.width--;
+    for (int i = 0; i < 5; i++)
+        assert_int_equal(merlin_relight(f->model, &bad[i], light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relight(f->model, &good, light, (merlin_relighting)77, &image), MERLIN_WRONG_USE);
+    merlin_maps_free(&good);
+}
+
+static void null_pointers_are_refused_and_freed(void **state)
+{
+    const fixture *f = *state;
+    const float light[3] = {0};
+    merlin_maps maps = {0};
+    merlin_image image = {0};
+    merlin_environment *room;
+    assert_int_equal(merlin_model_open(NULL, NULL), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "merlin_model_open was called with a null pointer"));
+    assert_int_equal(merlin_image_read("a.png", NULL, NULL), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_mask_read(NULL, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_image_write(NULL, &f->photo), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_image_write(f->output, &image), MERLIN_WRONG_USE); /* no pixels */
+    assert_int_equal(merlin_estimate(f->model, NULL, NULL, NULL, &maps), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_maps_write(f->model, NULL, f->output), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_maps_read(NULL, &maps), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relight(f->model, &maps, NULL, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_environment_read(NULL, 0, 0, &room), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relight_environment(NULL, &maps, NULL, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_string_equal(merlin_model_name(NULL), "");
+    merlin_image_free(NULL);
+    merlin_maps_free(NULL);
+    merlin_environment_free(NULL);
+    merlin_model_close(NULL);
 }
 
 static int stop_now(void)
@@ -375,8 +426,10 @@ int main(void)
         cmocka_unit_test(the_object_is_found_without_a_mask),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
+        cmocka_unit_test(maps_of_impossible_frames_are_refused),
+        cmocka_unit_test(null_pointers_are_refused_and_freed),
         cmocka_unit_test(photographs_without_an_object_are_refused),
-        cmocka_unit_test(tiny_photographs_and_odd_sizes_are_refused),
+        cmocka_unit_test(tiny_photographs_and_odd_parameters_are_refused),
         cmocka_unit_test(photographs_with_infinities_are_refused),
         cmocka_unit_test(empty_maps_are_neither_relit_nor_written),
         cmocka_unit_test(work_stops_when_told_to),

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# What make install puts under a prefix is all that another program needs, wherever that prefix is.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
+# shellcheck source=tests/cli/support/pictures.bash
+source "$(dirname "$0")/support/pictures.bash"
+export OMP_WAIT_POLICY=passive # other tests may run beside this one
+build=$(dirname "$MERLIN")
+example=$MERLIN_SOURCE_DIR/examples/relight_photo.c
+if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$build/CMakeCache.txt"; then
+    echo "a sanitized library wants a sanitized program: not tested"
+    exit 0
+fi
+make_tiny_model
+cd "$scratch" || exit 1
+radiance disc.hdr 64 22
+cmake --install "$build" --prefix "$scratch/first" >install.log || complain "it does not install: $(cat install.log)"
+mv first prefix # nothing may remember the place
+
+echo "the installed command finds its weights and its manual lies where man looks"
+succeeds merlin-point prefix/bin/merlin info merlin-point
+present prefix/share/man/man1/merlin.1 prefix/share/bash-completion/completions/merlin
+
+relit() {
+    LD_LIBRARY_PATH=$(dirname prefix/lib*/libmerlin.so) "$1" weights.safetensors disc.hdr "$2" || complain "$1 fails"
+    present "$2"
+}
+
+echo "the example is built by pkg-config"
+description=$(dirname prefix/lib*/pkgconfig/merlin.pc)
+export PKG_CONFIG_PATH=$scratch/$description
+# shellcheck disable=SC2046
+cc "$example" $(pkg-config --cflags --libs merlin) -o by-pkg-config || complain "pkg-config's answer does not build it"
+relit ./by-pkg-config pkg-config.png
+
+echo "the example is built by CMake's find_package"
+cat >CMakeLists.txt <<CMAKE
+cmake_minimum_required(VERSION 3.13)
+project(other LANGUAGES C)
+find_package(merlin 0.1 REQUIRED)
+add_executable(by-cmake $example)
+target_link_libraries(by-cmake PRIVATE merlin::merlin)
+CMAKE
+cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 || complain "$(cat cmake.log)"
+cmake --build other >cmake.log 2>&1 || complain "$(cat cmake.log)"
+relit other/by-cmake cmake.png
+
+finish
