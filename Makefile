@@ -17,7 +17,7 @@ build: setup-build
 
 # One photograph taken apart and lit again.
 demo: build
-	$(MERLIN) estimate examples/demo.png -o $(OUT)
+	$(MERLIN) estimate examples/demo.png --mesh -o $(OUT)
 	$(MERLIN) relight $(OUT) --orbit 24 -o $(OUT)/orbit
 	@echo
 	@echo "maps, reconstruction and report: $(OUT)/"

@@ -150,6 +150,25 @@ static status make_input(work *w, merlin_maps *maps)
     return OK;
 }
 
+/* What the network adds makes up for the false highlights of its own maps, view by view; in the mean of several views
+ * these are others. */
+static status follow_mean(network *n, work *w, bool in_environment)
+{
+    if (w->params->views == 1) return OK;
+    const surface *maps = &w->low.maps;
+    img direct = {0}, ambient = {0}, indirect = {0};
+    status s = surface_shade(maps, vec3_make(0, 0, 0), &direct);
+    if (s == OK && in_environment) s = img_new(&ambient, direct.width, direct.height, 3);
+    if (s == OK && in_environment) surface_add_ambient(maps, (const float(*)[3])w->low.environment, &ambient);
+    if (s == OK) s = network_indirect(n, maps, &direct, in_environment ? &ambient : NULL, &indirect);
+    img_free(&direct);
+    img_free(&ambient);
+    if (s != OK) return s;
+    img_free(&w->low.indirect);
+    w->low.indirect = indirect;
+    return OK;
+}
+
 /* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
 static status refine(work *w, float gain, bool in_environment)
 {
@@ -218,8 +237,9 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, w->params->views, w->params->stop, &w->low);
-    if (s == OK) s = lap(w, &t->network);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
+    if (s == OK) s = follow_mean(n, w, maps->has_environment);
+    if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     if (s == OK) s = refine(w, maps->gain, maps->has_environment);
     if (s == OK) s = place_all(w, maps);

@@ -74,16 +74,33 @@ static status show_by_network(const eval_model *m, const img *mask, eval_predict
     return s;
 }
 
-/* Means of several views are rendered over again. */
-static status show_by_rendering(const img *mask, eval_prediction *out)
+/* Given all that lights the maps, and the surroundings' share of it. */
+static status bounces_of_mean(eval_model *m, const img *mask, const img *lit, const img *ambient, eval_prediction *out)
+{
+    const img pictures[EVAL_LIGHTS] = {*lit, *lit, *lit, *lit};
+    const float *indirect;
+    status s = eval_run_indirect(m, &out->maps, mask, pictures, ambient, &indirect);
+    if (s == OK && indirect)
+        memcpy(out->indirect.data, indirect, 3 * (size_t)m->size * (size_t)m->size * sizeof *indirect);
+    return s;
+}
+
+/* Means of several views are rendered over again, and so are bounces: what the network adds makes up for the false
+ * highlights of the view's own maps (estimate/estimate.c). */
+static status show_by_rendering(eval_model *m, const img *mask, eval_prediction *out)
 {
     const eval_lighting flash = {{0, 0, 0}, NULL}, both = {{0, 0, 0}, (const float(*)[3])out->sh};
-    img lit = {0};
+    img lit = {0}, ambient = {0};
     status s = eval_show(&out->maps, mask, &flash, &out->flash);
     if (s == OK) s = eval_show(&out->maps, mask, &both, &lit);
+    if (s == OK) s = img_copy(&ambient, &lit);
+    for (size_t i = 0, n = 3 * (size_t)m->size * (size_t)m->size; s == OK && i < n; i++)
+        ambient.data[i] -= out->flash.data[i];
+    if (s == OK) s = bounces_of_mean(m, mask, &lit, &ambient, out);
     img_free(&out->reconstruction);
     if (s == OK) s = eval_picture(&lit, &out->indirect, mask, &out->reconstruction);
     img_free(&lit);
+    img_free(&ambient);
     return s;
 }
 
@@ -96,6 +113,6 @@ status eval_estimate(eval_model *m, const img *image, const img *mask, eval_pred
     status s = mean_of_views(m, image, mask, &mean);
     if (s == OK) keep(&mean, out);
     network_estimation_free(&mean);
-    if (s == OK) s = m->views == 1 ? show_by_network(m, mask, out) : show_by_rendering(mask, out);
+    if (s == OK) s = m->views == 1 ? show_by_network(m, mask, out) : show_by_rendering(m, mask, out);
     return s;
 }

@@ -45,29 +45,28 @@ static void add(const img *direct, const img *bounces, img *out)
         out->data[i] = clip(direct->data[i] + bounces->data[i]);
 }
 
-/* The network's bounces for the four pictures in `direct`, given the maps; NULL for a variant without. */
-static status run_indirect(eval_model *m, const eval_maps *maps, const img *mask, const img direct[EVAL_LIGHTS],
-                           const float **indirect)
+static void put_indirect(eval_model *m, const char *name, size_t slot, const img *from)
 {
-    const struct {
-        const char *name;
-        const img *image;
-    } inputs[] = {{"albedo", &maps->albedo},
-                  {"normal", &maps->normal},
-                  {"roughness", &maps->roughness},
-                  {"depth", &maps->depth},
-                  {"mask", mask}};
-    size_t pixels = (size_t)m->size * (size_t)m->size;
+    float *to = nn_input_data(m->indirect.program, name);
+    size_t values = (size_t)m->size * (size_t)m->size * (size_t)from->channels;
+    if (to) memcpy(to + slot * values, from->data, values * sizeof *to);
+}
+
+status eval_run_indirect(eval_model *m, const eval_maps *maps, const img *mask, const img direct[EVAL_LIGHTS],
+                         const img *ambient, const float **indirect)
+{
     *indirect = NULL;
     if (!m->indirect.program) return OK;
+    float *environment = nn_input_data(m->indirect.program, "environment");
+    if (environment) memset(environment, 0, EVAL_LIGHTS * 3 * (size_t)m->size * (size_t)m->size * sizeof *environment);
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
-        for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
-            size_t values = pixels * (size_t)inputs[k].image->channels;
-            memcpy(nn_input_data(m->indirect.program, inputs[k].name) + i * values, inputs[k].image->data,
-                   values * sizeof(float));
-        }
-        memcpy(nn_input_data(m->indirect.program, "direct") + i * pixels * 3, direct[i].data,
-               pixels * 3 * sizeof(float));
+        put_indirect(m, "albedo", i, &maps->albedo);
+        put_indirect(m, "normal", i, &maps->normal);
+        put_indirect(m, "roughness", i, &maps->roughness);
+        put_indirect(m, "depth", i, &maps->depth);
+        put_indirect(m, "mask", i, mask);
+        put_indirect(m, "direct", i, &direct[i]);
+        if (ambient) put_indirect(m, "environment", i, ambient);
     }
     status s = nn_forward(m->indirect.program);
     if (s == OK) *indirect = nn_output_data(m->indirect.program, "indirect");
@@ -81,7 +80,7 @@ static status add_bounces(eval_model *m, const eval_prediction *p, const img *ma
     const float *indirect;
     size_t values = 3 * (size_t)m->size * (size_t)m->size;
     img bounces = {0};
-    status s = run_indirect(m, &p->maps, mask, direct, &indirect);
+    status s = eval_run_indirect(m, &p->maps, mask, direct, NULL, &indirect);
     if (s == OK) s = img_new(&bounces, m->size, m->size, 3);
     for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
         if (indirect) memcpy(bounces.data, indirect + i * values, values * sizeof *indirect);
