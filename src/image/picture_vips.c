@@ -137,12 +137,16 @@ static status decode_open(VipsImage **image, VipsImage **opacity, const char *pa
 
 status picture_decode(const char *path, picture_colour how, img *color, img *alpha)
 {
-    VipsImage *image = NULL, *opacity = NULL;
+    VipsImage *opened = NULL, *image = NULL, *opacity = NULL;
     status s = vips_begin();
-    if (s == OK) s = open_picture(path, &image);
-    if (s == OK) s = decode_open(&image, &opacity, path, how, color, alpha);
-    if (image) vips()->g_object_unref(image);
+    if (s == OK) s = open_picture(path, &opened);
+    if (s != OK) return s;
+    image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
+    s = decode_open(&image, &opacity, path, how, color, alpha);
+    vips()->g_object_unref(image);
     if (opacity) vips()->g_object_unref(opacity);
+    /* last: with it goes the colour profile of a HEIF, which no copy keeps alive */
+    vips()->g_object_unref(opened);
     return s;
 }
 

@@ -54,6 +54,7 @@
     USE(free)                                                                                                          \
     USE(log_set_handler)                                                                                               \
     USE(markup_escape_text)                                                                                            \
+    USE(object_ref)                                                                                                    \
     USE(object_unref)                                                                                                  \
     USE(utf8_make_valid)
 

@@ -301,6 +301,10 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
 
 static status read_config(const st_file *file, const char *weights, model_config *config)
 {
+    if (st_metadata(file, "checkpoint"))
+        return fail(ERROR_INPUT,
+                    "%s is a checkpoint of training, no model: that is weights.safetensors, once training wrote it",
+                    weights);
     const char *json = st_metadata(file, "config");
     if (json) return model_config_parse(json, strlen(json), weights, config);
     return fail(ERROR_INPUT, "%s has no model configuration: these are not weights of merlin", weights);

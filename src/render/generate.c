@@ -203,6 +203,16 @@ static status open_run(const render_options *o, run *r)
     return s;
 }
 
+/* Tries the mesh before the folder is claimed for it: a wrong name shall not stand in the way of the right one. */
+static status check_mesh(const run *r)
+{
+    scn_object object;
+    if (!r->options->mesh) return OK;
+    status s = make_object(r, r->options->first, &object);
+    if (s == OK) scn_object_free(&object);
+    return s;
+}
+
 status render_samples(const render_options *options, render_stats *stats)
 {
     run r;
@@ -210,7 +220,8 @@ status render_samples(const render_options *options, render_stats *stats)
     status s = open_run(options, &r);
     if (s != OK) return s;
     r.stats = stats;
-    if (options->folder) s = claim_folder(options);
+    if (options->folder) s = check_mesh(&r);
+    if (s == OK && options->folder) s = claim_folder(options);
     if (s == OK) {
         double start = clock_seconds();
         progress_begin(&r.bar, "rendering", "samples", 0, options->count, options->quiet);

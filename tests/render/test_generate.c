@@ -130,6 +130,19 @@ static void impossible_options_are_refused(void **state)
     assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
 }
 
+static void an_unreadable_mesh_claims_no_folder(void **state)
+{
+    (void)state;
+    render_stats stats;
+    char *above = scratch_new(), *folder = file_join(above, "samples");
+    render_options o = small(folder);
+    o.mesh = "/nonexistent/mesh.obj";
+    assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
+    assert_false(file_exists(folder));
+    free(folder);
+    scratch_remove(above);
+}
+
 static void an_object_elsewhere_keeps_its_maps_and_flash_picture(void **state)
 {
     (void)state;
@@ -242,6 +255,7 @@ int main(void)
         cmocka_unit_test(interrupted_set_is_continued_to_the_same_files),
         cmocka_unit_test(samples_of_other_options_are_not_mixed_in),
         cmocka_unit_test(impossible_options_are_refused),
+        cmocka_unit_test(an_unreadable_mesh_claims_no_folder),
         cmocka_unit_test(an_object_elsewhere_keeps_its_maps_and_flash_picture),
         cmocka_unit_test(maps_are_zero_outside_the_mask_and_within_their_ranges_inside),
         cmocka_unit_test(direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps),
