@@ -10,8 +10,8 @@
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
 const char *const model_losses[MODEL_LOSSES] = {
-    "albedo",   "normal",         "depth",   "roughness",    "roughness_gradient", "direct",
-    "indirect", "reconstruction", "relight", "relight_brdf", "environment"};
+    "albedo",   "normal",         "depth",   "roughness",   "roughness_gradient", "direct",
+    "indirect", "reconstruction", "relight", "environment", "relight_brdf"};
 
 typedef struct maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */

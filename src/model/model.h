@@ -33,7 +33,8 @@ enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 11, MODEL_SH =
 #define MODEL_FOV 60.0f
 #define MODEL_LIGHT_POWER 5.95f
 
-/* The losses by name; a variant may lack some (nn_loss: NAN). */
+/* The losses by name; a variant may lack some (nn_loss: NAN). New ones come last, behind the columns of older curves.
+ */
 extern const char *const model_losses[MODEL_LOSSES];
 
 typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
