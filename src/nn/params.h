@@ -7,7 +7,7 @@
 struct nn_params {
     nn_param *items;
     size_t count;
-    uint64_t version;          /* grows whenever values change */
+    uint64_t version; /* grows whenever values change */
     size_t value_count;
     float *values, *gradients; /* what the items point into */
 };
