@@ -1,4 +1,5 @@
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "image/picture.h"
@@ -23,10 +24,35 @@ static bool is_photograph(const char *loader)
     return false;
 }
 
+static bool is_heif(const char *head)
+{
+    static const char *const brands[] = {"heic", "heix", "hevc", "heim", "heis",
+                                         "hevm", "hevs", "mif1", "msf1", "avif"};
+    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++)
+        if (memcmp(head + 4, "ftyp", 4) == 0 && memcmp(head + 8, brands[i], 4) == 0) return true;
+    return false;
+}
+
+/* The same by its first bytes: on any other file libvips tries all that it knows, and CFITSIO, one of the libraries
+ * behind it, crashes now and then on what is not its own. */
+static bool begins_like_photograph(const char *path)
+{
+    char b[12] = {0};
+    FILE *f = fopen(path, "rb");
+    size_t count = f ? fread(b, 1, sizeof b, f) : 0;
+    if (f) fclose(f);
+    if (count < sizeof b) return false;
+    if (is_heif(b)) return vips_load_heif();
+    static const char tiff[][4] = {{'I', 'I', '*', 0}, {'M', 'M', 0, '*'}, {'I', 'I', '+', 0}, {'M', 'M', 0, '+'}};
+    for (size_t i = 0; i < sizeof tiff / sizeof *tiff; i++)
+        if (memcmp(b, tiff[i], sizeof *tiff) == 0) return true;
+    return memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0 || memcmp(b, "\xff\xd8\xff", 3) == 0 ||
+           memcmp(b, "#?RADIANCE", 10) == 0 || (memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0);
+}
+
 static status open_picture(const char *path, VipsImage **out)
 {
-    const char *loader = vips()->foreign_find_load(path);
-    if (!loader && vips_load_heif()) loader = vips()->foreign_find_load(path);
+    const char *loader = begins_like_photograph(path) ? vips()->foreign_find_load(path) : NULL;
     if (!loader || !is_photograph(loader)) {
         vips()->error_clear();
         return fail(ERROR_INPUT,
