@@ -33,9 +33,17 @@ static bool is_heif(const char *head)
     return false;
 }
 
+static bool is_tiff(const char *head)
+{
+    static const char tiff[][4] = {{'I', 'I', '*', 0}, {'M', 'M', 0, '*'}, {'I', 'I', '+', 0}, {'M', 'M', 0, '+'}};
+    for (size_t i = 0; i < sizeof tiff / sizeof *tiff; i++)
+        if (memcmp(head, tiff[i], sizeof *tiff) == 0) return true;
+    return false;
+}
+
 /* The same by its first bytes: on any other file libvips tries all that it knows, and CFITSIO, one of the libraries
  * behind it, crashes now and then on what is not its own. */
-static bool begins_like_photograph(const char *path)
+static bool begins_like_photograph(const char *path, bool *tiff)
 {
     char b[12] = {0};
     FILE *f = fopen(path, "rb");
@@ -43,23 +51,30 @@ static bool begins_like_photograph(const char *path)
     if (f) fclose(f);
     if (count < sizeof b) return false;
     if (is_heif(b)) return vips_load_heif();
-    static const char tiff[][4] = {{'I', 'I', '*', 0}, {'M', 'M', 0, '*'}, {'I', 'I', '+', 0}, {'M', 'M', 0, '+'}};
-    for (size_t i = 0; i < sizeof tiff / sizeof *tiff; i++)
-        if (memcmp(b, tiff[i], sizeof *tiff) == 0) return true;
+    if (is_tiff(b)) {
+        *tiff = true;
+        return true;
+    }
     return memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0 || memcmp(b, "\xff\xd8\xff", 3) == 0 ||
            memcmp(b, "#?RADIANCE", 10) == 0 || (memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0);
 }
 
 static status open_picture(const char *path, VipsImage **out)
 {
-    const char *loader = begins_like_photograph(path) ? vips()->foreign_find_load(path) : NULL;
+    bool tiff = false; /* is read by its own loader: one cut short would be taken for none, and shown to the others */
+    const char *loader = NULL;
+    if (begins_like_photograph(path, &tiff)) loader = tiff ? "Tiff" : vips()->foreign_find_load(path);
     if (!loader || !is_photograph(loader)) {
         vips()->error_clear();
         return fail(ERROR_INPUT,
                     "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR)",
                     path);
     }
-    VipsImage *image = vips()->image_new_from_file(path, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    VipsImage *image = NULL;
+    if (tiff)
+        vips()->tiffload(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    else
+        image = vips()->image_new_from_file(path, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
     if (!image) return vips_refusal(ERROR_INPUT, "read", path);
     int width = vips()->image_get_width(image), height = vips()->image_get_height(image);
     status s = picture_check_size(path, width, height);

@@ -45,6 +45,7 @@
     USE(init)                                                                                                          \
     USE(rad2float)                                                                                                     \
     USE(svgload_buffer)                                                                                                \
+    USE(tiffload)                                                                                                      \
     USE(type_find)                                                                                                     \
     USE(version)                                                                                                       \
     USE(webpsave_buffer)
