@@ -52,6 +52,8 @@ status maps_check(const merlin_maps *maps);
 
 /* The maps of the crop, brought to side × side pixels, their mask 0 or 1. */
 status maps_surface(const merlin_maps *maps, int side, surface *out);
+/* Their albedo alone; enlarged, it may be zero beside the object. */
+status maps_albedo(const merlin_maps *maps, int side, img *out);
 
 /* Which part of a photograph is the object. */
 typedef struct photo_object {

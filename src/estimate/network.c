@@ -117,17 +117,12 @@ double network_take_compile_seconds(network *n)
 
 /* ---- between images and the program's buffers ---- */
 
-static size_t value_count(const img *image)
-{
-    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-}
-
 /* scale·x + shift. */
 static void put(nn_program *p, const char *name, const img *from, float scale, float shift)
 {
     float *to = nn_input_data(p, name);
     if (!to) return;
-    size_t count = value_count(from);
+    size_t count = img_value_count(from);
     for (size_t i = 0; i < count; i++)
         to[i] = scale * from->data[i] + shift;
 }
@@ -138,7 +133,7 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     if (!from) return fail(ERROR_USAGE, "this model has no output \"%s\"", name);
     status s = img_new(out, size, size, channels);
     if (s != OK) return s;
-    size_t count = value_count(out);
+    size_t count = img_value_count(out);
     for (size_t i = 0; i < count; i++)
         out->data[i] = scale * from[i] + shift;
     return OK;
@@ -151,7 +146,7 @@ static status run_whole(network *n, const img *photo, const img *mask, const net
     status s = compile(n, MODEL_WHOLE, outputs, photo->width, c);
     if (s != OK) return s;
     nn_program *p = c->program;
-    model_encode_image(photo->data, nn_input_data(p, "image"), value_count(photo));
+    model_encode_image(photo->data, nn_input_data(p, "image"), img_value_count(photo));
     put(p, "mask", mask, 1, 0);
     float position[3] = {light->place.x, light->place.y, light->place.z};
     memcpy(nn_input_data(p, "light_position"), position, sizeof position);
@@ -266,7 +261,7 @@ status network_relight(network *n, const img *photo, const img *mask, const netw
 static void put_direct(nn_program *p, const img *direct, const img *environment)
 {
     float *to = nn_input_data(p, "direct"), *apart = nn_input_data(p, "environment");
-    size_t count = value_count(direct);
+    size_t count = img_value_count(direct);
     for (size_t i = 0; i < count; i++) {
         float more = environment ? environment->data[i] : 0;
         to[i] = apart ? fminf(fmaxf(direct->data[i], 0), 1) + more : fminf(fmaxf(direct->data[i] + more, 0), 1);

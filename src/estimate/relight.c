@@ -1,161 +1,20 @@
 /* merlin_relight and merlin_relight_environment: maps under other light. */
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 #include "estimate/api.h"
 #include "estimate/bounce.h"
 #include "estimate/relight_env.h"
-#include "image/resize.h"
 
-/* Shadows are cast by maps of at most this side and looked for at this many points a side; a light costs a few
- * hundredths of a second then. */
+/* Shadows are looked for at most at this many points a side. */
 enum { SHADOW_SIDE = 512 };
-
-static size_t value_count(const img *image)
-{
-    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-}
 
 /* Here and below zeros are left alone (image.h). */
 static void multiply_mask(img *image, const img *mask)
 {
-    for (size_t i = 0; i < value_count(image); i++)
+    for (size_t i = 0; i < img_value_count(image); i++)
         if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
 }
-
-/* ---- the stage ---- */
-
-void stage_free(stage *s)
-{
-    surface_free(&s->full);
-    surface_free(&s->low);
-    img_free(&s->low_photo);
-    img_free(&s->flash);
-    shadow_caster_free(&s->caster);
-    horizon_free(&s->horizon);
-}
-
-status maps_check(const merlin_maps *maps)
-{
-    const merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,
-                                    &maps->depth,  &maps->mask,   &maps->photo};
-    const int channels[] = {3, 3, 1, 1, 1, 3};
-    bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE &&
-                 maps->size <= NETWORK_LARGEST_SIZE && maps->gain > 0 && isfinite(maps->gain);
-    for (int i = 0; i < 6; i++)
-        sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
-                 images[i]->height == maps->albedo.height;
-    return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");
-}
-
-static status crop_surface(const merlin_maps *maps, surface *out)
-{
-    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
-    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
-    status s = OK;
-    img mask = img_of(&maps->mask);
-    for (int i = 0; i < 5 && s == OK; i++) {
-        img whole = img_of(from[i]);
-        s = crop_take(&whole, crop_of(maps), &mask, to[i]);
-    }
-    return s;
-}
-
-static status surface_at(const surface *from, int side, bool hard, surface *out)
-{
-    img mask = {0};
-    status s = img_resize(&from->mask, side, side, &mask);
-    if (s == OK && hard) harden_mask(NULL, &mask);
-    if (s == OK) s = surface_resize(from, &mask, out);
-    img_free(&mask);
-    return s;
-}
-
-/* The crop at another size, a map after the other: those of a large photograph would fill the memory side by side. */
-static status take_surface(const merlin_maps *maps, const img *mask, int side, bool hard, surface *out)
-{
-    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth};
-    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
-    status s = img_resize(mask, side, side, &out->mask);
-    if (s == OK && hard) harden_mask(NULL, &out->mask);
-    img cover = img_of(&maps->mask);
-    for (int i = 0; i < 4 && s == OK; i++) {
-        img whole = img_of(from[i]), part = {0};
-        s = crop_take(&whole, crop_of(maps), &cover, &part);
-        if (s == OK) s = surface_resize_image(&part, mask, &out->mask, to[i]);
-        img_free(&part);
-    }
-    if (s == OK) surface_tidy(out);
-    return s;
-}
-
-/* The photograph as the network saw it. */
-status maps_surface(const merlin_maps *maps, int side, surface *out)
-{
-    *out = (surface){0};
-    img mask = {0}, whole = img_of(&maps->mask);
-    status s = maps_check(maps);
-    if (s == OK) s = crop_take(&whole, crop_of(maps), &whole, &mask);
-    if (s == OK) s = take_surface(maps, &mask, side, true, out);
-    img_free(&mask);
-    if (s != OK) surface_free(out);
-    return s;
-}
-
-static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
-{
-    img whole = img_of(&maps->photo), cover = img_of(&maps->mask), part = {0};
-    status s = crop_take(&whole, crop_of(maps), &cover, &part);
-    if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
-    img_free(&part);
-    if (s != OK) return s;
-    harden_mask(out, mask);
-    for (size_t i = 0; i < value_count(out); i++)
-        out->data[i] *= maps->gain;
-    return OK;
-}
-
-/* Of the maps as the network gave them: the photograph's resolution adds nothing to their shape. */
-static status caster_of(const surface *low, shadow_caster *out)
-{
-    surface less = {0};
-    bool large = low->mask.width > SHADOW_SIDE;
-    status s = large ? surface_at(low, SHADOW_SIDE, true, &less) : OK;
-    const surface *from = large ? &less : low;
-    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, SURFACE_FOV, out);
-    surface_free(&less);
-    return s;
-}
-
-status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
-{
-    *out = (stage){.how = how, .white = maps->gain};
-    img mask = {0};
-    status s = maps_check(maps);
-    img whole = img_of(&maps->mask);
-    if (s == OK) s = crop_take(&whole, crop_of(maps), &whole, &mask);
-    if (s == OK) s = take_surface(maps, &mask, maps->size, true, &out->low);
-    if (s == OK && side != 0 && side != maps->crop.side)
-        s = take_surface(maps, &mask, side, false, &out->full);
-    else if (s == OK)
-        s = crop_surface(maps, &out->full);
-    img_free(&mask);
-    if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
-    if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
-    if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
-    if (s != OK) stage_free(out);
-    return s;
-}
-
-status stage_surround(stage *s, const env_map *environment)
-{
-    s->environment = environment;
-    bool first = environment && s->how == MERLIN_BY_BRDF && !s->horizon.closed;
-    return first ? horizon_new(&s->caster, &s->horizon) : OK;
-}
-
-/* ---- light ---- */
 
 static int least(int a, int b)
 {
@@ -204,7 +63,7 @@ static status add_environment(const stage *s, img *low, img *full, img *ambient)
     if (result != OK) return result;
     surface_add_ambient(&s->low, sh, ambient);
     if (s->how == MERLIN_BY_NETWORK) {
-        for (size_t i = 0; i < value_count(low); i++)
+        for (size_t i = 0; i < img_value_count(low); i++)
             low->data[i] -= ambient->data[i];
     } else {
         surface_add_ambient(&s->full, sh, full);
@@ -232,7 +91,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
 
 static void expose(img *radiance, float white)
 {
-    for (size_t i = 0; i < value_count(radiance); i++)
+    for (size_t i = 0; i < img_value_count(radiance); i++)
         if (radiance->data[i] != 0) radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
 }
 

@@ -29,14 +29,9 @@ void eval_maps_free(eval_maps *maps)
     img_free(&maps->depth);
 }
 
-static size_t value_count(const img *image)
-{
-    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-}
-
 static void to_network_range(img *image)
 {
-    for (size_t i = 0, n = value_count(image); i < n; i++)
+    for (size_t i = 0, n = img_value_count(image); i < n; i++)
         image->data[i] = 2 * image->data[i] - 1;
 }
 
@@ -117,7 +112,7 @@ status eval_binary_mask(const img *coverage, img *out)
 {
     status s = img_new(out, coverage->width, coverage->height, 1);
     if (s != OK) return s;
-    for (size_t i = 0, n = value_count(out); i < n; i++)
+    for (size_t i = 0, n = img_value_count(out); i < n; i++)
         out->data[i] = coverage->data[i] > EVAL_MASK_LEVEL;
     return OK;
 }
@@ -131,7 +126,7 @@ status eval_photograph(const img *a, const img *b, const img *mask, float white,
 {
     status s = img_copy(out, a);
     if (s != OK) return s;
-    for (size_t i = 0, n = value_count(out); i < n; i++)
+    for (size_t i = 0, n = img_value_count(out); i < n; i++)
         out->data[i] = brdf_clamp(a->data[i] + (b ? b->data[i] : 0), 0, white) * mask->data[i / 3];
     return OK;
 }

@@ -28,6 +28,11 @@ img_span img_row_span(const img *mask, int y);
 /* sum += part, of the same size; its zeros leave the sum alone. */
 void img_add(const img *part, img *sum);
 
+static inline size_t img_value_count(const img *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
 static inline float *img_at(const img *image, int x, int y)
 {
     return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;

@@ -13,14 +13,26 @@ typedef enum picture_colour {
     PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and nothing else */
 } picture_colour;
 
+/* By a file's first bytes, never by its name. */
+typedef enum picture_kind {
+    PICTURE_UNKNOWN,
+    PICTURE_EXR,
+    PICTURE_PNG,
+    PICTURE_JPEG,
+    PICTURE_TIFF,
+    PICTURE_WEBP,
+    PICTURE_HEIC,
+    PICTURE_HDR,
+} picture_kind;
+
 /* A PNG as most are: *plain; one with a colour profile or an orientation is left to picture_decode, and *plain false.
  * color, alpha as below, bits (8 or 16): any may be NULL. */
 status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, int *bits, bool *plain);
 
-/* color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
-status picture_decode(const char *path, picture_colour how, img *color, img *alpha);
+/* Any kind but EXR. color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
+status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha);
 /* Bits of a sample, from the file's head alone: 8, 16 or 32. Not for EXR. */
-status picture_bits(const char *path, int *bits);
+status picture_bits(const char *path, picture_kind kind, int *bits);
 status picture_check_size(const char *path, int width, int height);
 /* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
  * they mean as sRGB, or else scaled to [0, 1]. */

@@ -1,5 +1,4 @@
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "image/picture.h"
@@ -14,68 +13,38 @@ static bool replace(VipsImage **image, VipsImage *made, int failed)
     return true;
 }
 
-/* The formats this project promises; libvips would also try vector graphics, documents and whatever ImageMagick takes.
- */
-static bool is_photograph(const char *loader)
-{
-    static const char *const kinds[] = {"Png", "Jpeg", "Tiff", "Webp", "Heif", "Rad", "Spng"};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (strstr(loader, kinds[i])) return true;
-    return false;
-}
+typedef int loader(const char *path, VipsImage **out, ...);
 
-static bool is_heif(const char *head)
+/* Each kind by its own: asked to find one, libvips shows what it does not know, such as a file cut short, to all that
+ * it has, and CFITSIO, one of the libraries behind it, crashes now and then on what is not its own. */
+static loader *loader_of(picture_kind kind)
 {
-    static const char *const brands[] = {"heic", "heix", "hevc", "heim", "heis",
-                                         "hevm", "hevs", "mif1", "msf1", "avif"};
-    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++)
-        if (memcmp(head + 4, "ftyp", 4) == 0 && memcmp(head + 8, brands[i], 4) == 0) return true;
-    return false;
-}
-
-static bool is_tiff(const char *head)
-{
-    static const char tiff[][4] = {{'I', 'I', '*', 0}, {'M', 'M', 0, '*'}, {'I', 'I', '+', 0}, {'M', 'M', 0, '+'}};
-    for (size_t i = 0; i < sizeof tiff / sizeof *tiff; i++)
-        if (memcmp(head, tiff[i], sizeof *tiff) == 0) return true;
-    return false;
-}
-
-/* The same by its first bytes: on any other file libvips tries all that it knows, and CFITSIO, one of the libraries
- * behind it, crashes now and then on what is not its own. */
-static bool begins_like_photograph(const char *path, bool *tiff)
-{
-    char b[12] = {0};
-    FILE *f = fopen(path, "rb");
-    size_t count = f ? fread(b, 1, sizeof b, f) : 0;
-    if (f) fclose(f);
-    if (count < sizeof b) return false;
-    if (is_heif(b)) return vips_load_heif();
-    if (is_tiff(b)) {
-        *tiff = true;
-        return true;
+    switch (kind) {
+    case PICTURE_PNG:
+        return vips()->pngload;
+    case PICTURE_JPEG:
+        return vips()->jpegload;
+    case PICTURE_TIFF:
+        return vips()->tiffload;
+    case PICTURE_WEBP:
+        return vips()->webpload;
+    case PICTURE_HDR:
+        return vips()->radload;
+    case PICTURE_HEIC:
+        return vips_load_heif() ? vips()->heifload : NULL;
+    case PICTURE_EXR:
+    case PICTURE_UNKNOWN:
+        break;
     }
-    return memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0 || memcmp(b, "\xff\xd8\xff", 3) == 0 ||
-           memcmp(b, "#?RADIANCE", 10) == 0 || (memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0);
+    return NULL;
 }
 
-static status open_picture(const char *path, VipsImage **out)
+static status open_picture(const char *path, picture_kind kind, VipsImage **out)
 {
-    bool tiff = false; /* is read by its own loader: one cut short would be taken for none, and shown to the others */
-    const char *loader = NULL;
-    if (begins_like_photograph(path, &tiff)) loader = tiff ? "Tiff" : vips()->foreign_find_load(path);
-    if (!loader || !is_photograph(loader)) {
-        vips()->error_clear();
-        return fail(ERROR_INPUT,
-                    "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR)",
-                    path);
-    }
     VipsImage *image = NULL;
-    if (tiff)
-        vips()->tiffload(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
-    else
-        image = vips()->image_new_from_file(path, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
-    if (!image) return vips_refusal(ERROR_INPUT, "read", path);
+    loader *load = loader_of(kind);
+    if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
+    if (load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL)) return vips_refusal(ERROR_INPUT, "read", path);
     int width = vips()->image_get_width(image), height = vips()->image_get_height(image);
     status s = picture_check_size(path, width, height);
     if (s == OK)
@@ -176,11 +145,11 @@ static status decode_open(VipsImage **image, VipsImage **opacity, const char *pa
     return s;
 }
 
-status picture_decode(const char *path, picture_colour how, img *color, img *alpha)
+status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
 {
     VipsImage *opened = NULL, *image = NULL, *opacity = NULL;
     status s = vips_begin();
-    if (s == OK) s = open_picture(path, &opened);
+    if (s == OK) s = open_picture(path, kind, &opened);
     if (s != OK) return s;
     image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
     s = decode_open(&image, &opacity, path, how, color, alpha);
@@ -191,11 +160,11 @@ status picture_decode(const char *path, picture_colour how, img *color, img *alp
     return s;
 }
 
-status picture_bits(const char *path, int *bits)
+status picture_bits(const char *path, picture_kind kind, int *bits)
 {
     VipsImage *image = NULL;
     status s = vips_begin();
-    if (s == OK) s = open_picture(path, &image);
+    if (s == OK) s = open_picture(path, kind, &image);
     if (s != OK) return s;
     VipsBandFormat format = vips()->image_get_format(image);
     *bits = format == VIPS_FORMAT_UCHAR ? 8 : format == VIPS_FORMAT_USHORT ? 16 : 32;

@@ -12,17 +12,39 @@
 #include "image/color.h"
 #include "image/picture.h"
 
-typedef enum file_kind { KIND_OTHER, KIND_PNG, KIND_EXR } file_kind;
+enum { HEAD_BYTES = 12 };
 
-static file_kind kind_of(const unsigned char head[8])
+/* An ISO base media file of one of the still picture's brands; HEIC and AVIF share a decoder. */
+static bool is_heic(const unsigned char *head)
 {
-    static const unsigned char exr[4] = {0x76, 0x2f, 0x31, 0x01},
-                               png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    return !memcmp(head, exr, sizeof exr) ? KIND_EXR : !memcmp(head, png, sizeof png) ? KIND_PNG : KIND_OTHER;
+    static const char *const brands[] = {"heic", "heix", "hevc", "heim", "heis",
+                                         "hevm", "hevs", "mif1", "msf1", "avif"};
+    if (memcmp(head + 4, "ftyp", 4) != 0) return false;
+    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++)
+        if (memcmp(head + 8, brands[i], 4) == 0) return true;
+    return false;
+}
+
+static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
+{
+    static const struct {
+        picture_kind kind;
+        size_t count;
+        char bytes[HEAD_BYTES];
+    } known[] = {
+        {PICTURE_EXR, 4, "\x76\x2f\x31\x01"}, {PICTURE_PNG, 8, "\x89PNG\r\n\x1a\n"},
+        {PICTURE_JPEG, 3, "\xff\xd8\xff"},    {PICTURE_TIFF, 4, "II*\0"},
+        {PICTURE_TIFF, 4, "MM\0*"},           {PICTURE_TIFF, 4, "II+\0"},
+        {PICTURE_TIFF, 4, "MM\0+"},           {PICTURE_HDR, 10, "#?RADIANCE"},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (memcmp(head, known[i].bytes, known[i].count) == 0) return known[i].kind;
+    if (memcmp(head, "RIFF", 4) == 0 && memcmp(head + 8, "WEBP", 4) == 0) return PICTURE_WEBP;
+    return is_heic(head) ? PICTURE_HEIC : PICTURE_UNKNOWN;
 }
 
 /* Says what is wrong with a path before any decoder sees it, and which of them is to. */
-static status look_at(const char *path, file_kind *kind)
+static status look_at(const char *path, picture_kind *kind)
 {
     struct stat about;
     FILE *f = file_open(path);
@@ -31,7 +53,7 @@ static status look_at(const char *path, file_kind *kind)
         if (f) fclose(f);
         return s;
     }
-    unsigned char head[8] = {0};
+    unsigned char head[HEAD_BYTES] = {0};
     bool regular = S_ISREG(about.st_mode);
     size_t got = regular ? fread(head, 1, sizeof head, f) : 0;
     fclose(f);
@@ -39,7 +61,10 @@ static status look_at(const char *path, file_kind *kind)
     if (!regular) return fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
     if (got == 0) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
     *kind = kind_of(head);
-    return OK;
+    if (*kind != PICTURE_UNKNOWN) return OK;
+    return fail(ERROR_INPUT,
+                "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR)",
+                path);
 }
 
 status picture_check_size(const char *path, int width, int height)
@@ -77,12 +102,12 @@ static status check_finite(const char *path, const img *image)
 
 static status read_any(const char *path, picture_colour how, img *color, img *alpha)
 {
-    file_kind kind;
+    picture_kind kind;
     bool plain = false;
     status s = look_at(path, &kind);
-    if (s == OK && kind == KIND_PNG) s = picture_read_png(path, how, color, alpha, NULL, &plain);
-    if (s == OK && kind == KIND_EXR) s = picture_read_exr(path, color, alpha);
-    if (s == OK && kind != KIND_EXR && !plain) s = picture_decode(path, how, color, alpha);
+    if (s == OK && kind == PICTURE_PNG) s = picture_read_png(path, how, color, alpha, NULL, &plain);
+    if (s == OK && kind == PICTURE_EXR) s = picture_read_exr(path, color, alpha);
+    if (s == OK && kind != PICTURE_EXR && !plain) s = picture_decode(path, kind, how, color, alpha);
     if (s == OK) s = check_finite(path, color);
     if (s == OK && alpha && alpha->data) s = check_finite(path, alpha);
     return s;
@@ -129,16 +154,16 @@ static picture_colour colour_of_samples(int bits, bool decode_8_bit)
 
 static status read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
 {
-    file_kind kind;
+    picture_kind kind;
     bool plain = false;
     *bits = 32;
     status s = look_at(path, &kind);
-    if (s != OK || kind == KIND_EXR) return s == OK ? picture_read_exr(path, color, NULL) : s;
-    if (kind == KIND_PNG) s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, bits, &plain);
+    if (s != OK || kind == PICTURE_EXR) return s == OK ? picture_read_exr(path, color, NULL) : s;
+    if (kind == PICTURE_PNG) s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, bits, &plain);
     if (s == OK && plain)
         return picture_read_png(path, colour_of_samples(*bits, decode_8_bit), color, NULL, bits, &plain);
-    if (s == OK) s = picture_bits(path, bits);
-    return s == OK ? picture_decode(path, colour_of_samples(*bits, decode_8_bit), color, NULL) : s;
+    if (s == OK) s = picture_bits(path, kind, bits);
+    return s == OK ? picture_decode(path, kind, colour_of_samples(*bits, decode_8_bit), color, NULL) : s;
 }
 
 status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits)

@@ -24,8 +24,8 @@
     USE(error_buffer)                                                                                                  \
     USE(error_clear)                                                                                                   \
     USE(extract_band)                                                                                                  \
-    USE(foreign_find_load)                                                                                             \
     USE(gifsave_buffer)                                                                                                \
+    USE(heifload)                                                                                                      \
     USE(icc_transform)                                                                                                 \
     USE(image_copy_memory)                                                                                             \
     USE(image_get_bands)                                                                                               \
@@ -37,17 +37,20 @@
     USE(image_get_typeof)                                                                                              \
     USE(image_get_width)                                                                                               \
     USE(image_hasalpha)                                                                                                \
-    USE(image_new_from_file)                                                                                           \
     USE(image_new_from_memory)                                                                                         \
     USE(image_set_array_int)                                                                                           \
     USE(image_set_int)                                                                                                 \
     USE(image_write_to_memory)                                                                                         \
     USE(init)                                                                                                          \
+    USE(jpegload)                                                                                                      \
+    USE(pngload)                                                                                                       \
     USE(rad2float)                                                                                                     \
+    USE(radload)                                                                                                       \
     USE(svgload_buffer)                                                                                                \
     USE(tiffload)                                                                                                      \
     USE(type_find)                                                                                                     \
     USE(version)                                                                                                       \
+    USE(webpload)                                                                                                      \
     USE(webpsave_buffer)
 
 /* And of GLib below it: g_NAME. */

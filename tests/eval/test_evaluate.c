@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "estimate/network.h"
 #include "eval/evaluate.h"
 #include "eval/maps.h"
 #include "eval/report.h"
@@ -205,6 +206,20 @@ static void more_views_change_the_maps(void **state)
     }
 }
 
+static void views_are_those_of_estimate_where_none_are_given(void **state)
+{
+    const fixture *f = *state;
+    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    eval_report silent, given;
+    assert_int_equal(eval_run(&options, &silent), OK);
+    options.views = NETWORK_VIEWS;
+    assert_int_equal(eval_run(&options, &given), OK);
+    for (int row = 0; row < EVAL_ROWS; row++)
+        if (silent.all.count[row][EVAL_MODEL])
+            assert_true(eval_score(&silent.all, (eval_row)row, EVAL_MODEL) ==
+                        eval_score(&given.all, (eval_row)row, EVAL_MODEL));
+}
+
 static void a_model_without_extras_leaves_its_rows_empty(void **state)
 {
     const fixture *f = *state;
@@ -368,6 +383,7 @@ int main(void)
         cmocka_unit_test(samples_are_sorted_by_how_much_of_them_is_saturated),
         cmocka_unit_test(evaluation_is_deterministic),
         cmocka_unit_test(more_views_change_the_maps),
+        cmocka_unit_test(views_are_those_of_estimate_where_none_are_given),
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),

@@ -1,0 +1,162 @@
+/* The maps of a crop at the size that is asked for, and made ready for many lights. */
+#include <math.h>
+#include <stdbool.h>
+
+#include "estimate/api.h"
+#include "image/resize.h"
+
+/* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
+enum { CASTER_SIDE = 512 };
+
+void stage_free(stage *s)
+{
+    surface_free(&s->full);
+    surface_free(&s->low);
+    img_free(&s->low_photo);
+    img_free(&s->flash);
+    shadow_caster_free(&s->caster);
+    horizon_free(&s->horizon);
+}
+
+status maps_check(const merlin_maps *maps)
+{
+    const merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                    &maps->depth,  &maps->mask,   &maps->photo};
+    const int channels[] = {3, 3, 1, 1, 1, 3};
+    bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE &&
+                 maps->size <= NETWORK_LARGEST_SIZE && maps->gain > 0 && isfinite(maps->gain);
+    for (int i = 0; i < 6; i++)
+        sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
+                 images[i]->height == maps->albedo.height;
+    return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");
+}
+
+static status crop_surface(const merlin_maps *maps, surface *out)
+{
+    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
+    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
+    status s = OK;
+    img mask = img_of(&maps->mask);
+    for (int i = 0; i < 5 && s == OK; i++) {
+        img whole = img_of(from[i]);
+        s = crop_take(&whole, crop_of(maps), &mask, to[i]);
+    }
+    return s;
+}
+
+static status surface_at(const surface *from, int side, surface *out)
+{
+    img mask = {0};
+    status s = img_resize(&from->mask, side, side, &mask);
+    if (s == OK) harden_mask(NULL, &mask);
+    if (s == OK) s = surface_resize(from, &mask, out);
+    img_free(&mask);
+    return s;
+}
+
+static status take_mask(const merlin_maps *maps, img *out)
+{
+    img whole = img_of(&maps->mask);
+    return crop_take(&whole, crop_of(maps), &whole, out);
+}
+
+/* One map of the crop at another size; mask: of the crop, and at the other size. */
+static status take_map(const merlin_maps *maps, const merlin_image *map, const img *mask, const img *resized_mask,
+                       img *out)
+{
+    img whole = img_of(map), cover = img_of(&maps->mask), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &cover, &part);
+    if (s == OK) s = surface_resize_image(&part, mask, resized_mask, out);
+    img_free(&part);
+    return s;
+}
+
+/* A map after the other: those of a large photograph would fill the memory side by side. */
+static status take_surface(const merlin_maps *maps, const img *mask, int side, bool hard, surface *out)
+{
+    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth};
+    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
+    status s = img_resize(mask, side, side, &out->mask);
+    if (s == OK && hard) harden_mask(NULL, &out->mask);
+    for (int i = 0; i < 4 && s == OK; i++)
+        s = take_map(maps, from[i], mask, &out->mask, to[i]);
+    if (s == OK) surface_tidy(out);
+    return s;
+}
+
+status maps_surface(const merlin_maps *maps, int side, surface *out)
+{
+    *out = (surface){0};
+    img mask = {0};
+    status s = maps_check(maps);
+    if (s == OK) s = take_mask(maps, &mask);
+    if (s == OK) s = take_surface(maps, &mask, side, true, out);
+    img_free(&mask);
+    if (s != OK) surface_free(out);
+    return s;
+}
+
+status maps_albedo(const merlin_maps *maps, int side, img *out)
+{
+    *out = (img){0};
+    img mask = {0}, resized = {0};
+    status s = maps_check(maps);
+    if (s == OK) s = take_mask(maps, &mask);
+    if (s == OK) s = img_resize(&mask, side, side, &resized);
+    if (s == OK) s = take_map(maps, &maps->albedo, &mask, &resized, out);
+    img_free(&mask);
+    img_free(&resized);
+    return s;
+}
+
+/* The photograph as the network saw it. */
+static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
+{
+    img whole = img_of(&maps->photo), cover = img_of(&maps->mask), part = {0};
+    status s = crop_take(&whole, crop_of(maps), &cover, &part);
+    if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
+    img_free(&part);
+    if (s != OK) return s;
+    harden_mask(out, mask);
+    for (size_t i = 0; i < img_value_count(out); i++)
+        out->data[i] *= maps->gain;
+    return OK;
+}
+
+/* Of the maps as the network gave them: the photograph's resolution adds nothing to their shape. */
+static status caster_of(const surface *low, shadow_caster *out)
+{
+    surface less = {0};
+    bool large = low->mask.width > CASTER_SIDE;
+    status s = large ? surface_at(low, CASTER_SIDE, &less) : OK;
+    const surface *from = large ? &less : low;
+    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, SURFACE_FOV, out);
+    surface_free(&less);
+    return s;
+}
+
+status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
+{
+    *out = (stage){.how = how, .white = maps->gain};
+    img mask = {0};
+    status s = maps_check(maps);
+    if (s == OK) s = take_mask(maps, &mask);
+    if (s == OK) s = take_surface(maps, &mask, maps->size, true, &out->low);
+    if (s == OK && side != 0 && side != maps->crop.side)
+        s = take_surface(maps, &mask, side, false, &out->full);
+    else if (s == OK)
+        s = crop_surface(maps, &out->full);
+    img_free(&mask);
+    if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
+    if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
+    if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
+    if (s != OK) stage_free(out);
+    return s;
+}
+
+status stage_surround(stage *s, const env_map *environment)
+{
+    s->environment = environment;
+    bool first = environment && s->how == MERLIN_BY_BRDF && !s->horizon.closed;
+    return first ? horizon_new(&s->caster, &s->horizon) : OK;
+}
