@@ -1,11 +1,11 @@
 /* merlin estimate: photographs to maps. */
-#include <cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photo_mesh.h"
@@ -72,16 +72,14 @@ static void print_json(const photo_job *job, const merlin_maps *maps, const lap_
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
-    cJSON_AddStringToObject(report, "photo", job->photo);
-    cJSON_AddStringToObject(report, "output", job->output);
+    json_line_text(report, "photo", job->photo);
+    json_line_text(report, "output", job->output);
     cJSON_AddNumberToObject(seconds, "start", laps->start);
     cJSON_AddNumberToObject(seconds, "model", laps->model);
     cJSON_AddNumberToObject(seconds, "read", laps->read);
     cJSON_AddNumberToObject(seconds, "write", laps->write);
     cJSON_AddNumberToObject(report, "seconds_total", laps->total);
-    char *line = cJSON_PrintUnformatted(report);
-    if (line) puts(line);
-    cJSON_free(line);
+    json_line_print(report);
     cJSON_Delete(report);
     free(text);
 }

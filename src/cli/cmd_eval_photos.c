@@ -22,7 +22,8 @@ static const char help[] =
     "  -o, --output F.png   the picture\n"
     "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
     "      --quiet          no progress\n"
-    "  -h, --help           this text\n";
+    "  -h, --help           this text\n\n"
+    "Goes on after a photograph that fails, leaves it out, and then exits with 1.\n";
 
 enum { MOST_MODELS = 4, MOST_PHOTOS = 64, TILE = 160, LABEL_SIZE = 48 };
 typedef struct request {
@@ -62,6 +63,7 @@ typedef struct comparison {
     int columns;
     img *images;                /* photographs × columns, of the tiles' size */
     char (*labels)[LABEL_SIZE]; /* of as many */
+    bool *failed;               /* of photographs: left out of the picture */
     progress progress;
 } comparison;
 
@@ -77,7 +79,8 @@ static status comparison_new(const request *r, const photo_list *photos, compari
         return fail(ERROR_USAGE, "%zu photographs are too many for one picture; %d fit", photos->count, MOST_PHOTOS);
     c->images = calloc(tile_count(c), sizeof *c->images);
     c->labels = calloc(tile_count(c), sizeof *c->labels);
-    return c->images && c->labels ? OK : fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
+    c->failed = calloc(photos->count, sizeof *c->failed);
+    return c->images && c->labels && c->failed ? OK : fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
 }
 
 static void comparison_free(comparison *c)
@@ -86,6 +89,7 @@ static void comparison_free(comparison *c)
         img_free(&c->images[i]);
     free(c->images);
     free(c->labels);
+    free(c->failed);
 }
 
 static status put_tiles(comparison *c, size_t photo, int model, const overview *o)
@@ -122,6 +126,14 @@ static status take_apart(comparison *c, merlin_model *m, size_t photo, int model
     return s == OK ? OK : fail_in(s, "%s", job->photo);
 }
 
+/* The others' rows are worth having. */
+static void leave_out_bad(comparison *c, size_t photo, status s)
+{
+    if (s == OK) return;
+    c->failed[photo] = true;
+    cli_fail("eval photos", s);
+}
+
 static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
@@ -131,7 +143,8 @@ static status run_model(comparison *c, int model)
     if (s == OK) s = (status)merlin_model_open(weights, &m);
     free(weights);
     for (size_t i = 0; i < count && s == OK; i++) {
-        s = cli_interrupted() ? fail(ERROR_STOPPED, "interrupted; nothing was written") : take_apart(c, m, i, model);
+        if (cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written");
+        if (s == OK && !c->failed[i]) leave_out_bad(c, i, take_apart(c, m, i, model));
         if (s == OK) progress_update(&c->progress, (size_t)model * count + i + 1, NULL);
     }
     merlin_model_close(m);
@@ -140,17 +153,30 @@ static status run_model(comparison *c, int model)
 
 static status write_sheet(const comparison *c)
 {
-    size_t count = tile_count(c);
-    figure_tile *tiles = malloc(count * sizeof *tiles);
-    if (!tiles) return fail(ERROR_MEMORY, "no memory for %zu tiles", count);
-    for (size_t i = 0; i < count; i++)
-        tiles[i] = (figure_tile){c->labels[i], &c->images[i]};
+    size_t count = 0;
+    figure_tile *tiles = malloc(tile_count(c) * sizeof *tiles);
+    if (!tiles) return fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
+    for (size_t i = 0; i < tile_count(c); i++)
+        if (!c->failed[i / (size_t)c->columns]) tiles[count++] = (figure_tile){c->labels[i], &c->images[i]};
     status s = figure_sheet(c->request->output, tiles, (int)count, c->columns, TILE);
     free(tiles);
     return s;
 }
 
-static status compare(const request *r, const photo_list *photos)
+static status show(const comparison *c)
+{
+    size_t shown = c->photos->count;
+    for (size_t i = 0; i < c->photos->count; i++)
+        shown -= c->failed[i];
+    if (shown == 0) return OK; /* each has said why */
+    status s = write_sheet(c);
+    if (s == OK && !c->request->quiet)
+        printf("%s: %zu photographs by %d weights\n", c->request->output, shown, c->request->model_count);
+    return s;
+}
+
+/* *all: whether every photograph is in the picture. */
+static status compare(const request *r, const photo_list *photos, bool *all)
 {
     comparison c;
     status s = comparison_new(r, photos, &c);
@@ -160,8 +186,9 @@ static status compare(const request *r, const photo_list *photos)
             s = run_model(&c, model);
         progress_end(&c.progress);
     }
-    if (s == OK) s = write_sheet(&c);
-    if (s == OK && !r->quiet) printf("%s: %zu photographs by %d weights\n", r->output, photos->count, r->model_count);
+    if (s == OK) s = show(&c);
+    for (size_t i = 0; s == OK && i < photos->count; i++)
+        *all &= !c.failed[i];
     comparison_free(&c);
     return s;
 }
@@ -175,7 +202,8 @@ int eval_photos(int argc, char **argv)
     status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
-    s = compare(&r, &photos);
+    bool all = true;
+    s = compare(&r, &photos, &all);
     photo_list_free(&photos);
-    return s == OK ? 0 : cli_fail("eval photos", s);
+    return s == OK ? !all : cli_fail("eval photos", s);
 }

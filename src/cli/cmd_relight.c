@@ -7,6 +7,7 @@
 #include "base/light_list.h"
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
@@ -19,8 +20,9 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
     "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x right, y up; the\n"
-    "object is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
+    "merlin estimate, or its maps.exr; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x "
+    "right,\n"
+    "y up; the object is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
     "      --light x,y,z    a light's position; may be given again\n"
     "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
     "      --orbit N        N frames (2 to 240) with the light on a circle in front of the object, also as orbit.webp\n"
@@ -91,6 +93,17 @@ static status check(request *r)
     return OK;
 }
 
+/* DIR/maps.exr is what stands in the folder, for shells that complete names: the folder is meant. */
+static void leave_name_of_maps(char *input)
+{
+    char *slash = strrchr(input, '/');
+    if (strcmp(slash ? slash + 1 : input, "maps.exr") != 0 || !file_exists(input)) return;
+    if (slash)
+        slash[slash == input] = 0;
+    else
+        strcpy(input, ".");
+}
+
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
@@ -121,6 +134,7 @@ static status parse(int *argc, char ***argv, request *r)
     if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
     if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
     r->input = (*argv)[0];
+    leave_name_of_maps((*argv)[0]);
     return check(r);
 }
 
@@ -160,13 +174,25 @@ static char *choose_output(const request *r)
     return out;
 }
 
+static void print_json(const request *r, const relight_job *job, double seconds)
+{
+    cJSON *report = cJSON_CreateObject();
+    json_line_text(report, "input", r->input);
+    json_line_text(report, "output", job->output);
+    cJSON_AddNumberToObject(report, "lights", (double)job->lights.count);
+    cJSON_AddNumberToObject(report, "orbit", job->orbit);
+    cJSON_AddNumberToObject(report, "dome", job->dome);
+    cJSON_AddStringToObject(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
+    cJSON_AddStringToObject(report, "model", merlin_model_name(job->model));
+    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    json_line_print(report);
+    cJSON_Delete(report);
+}
+
 static void announce(const request *r, const relight_job *job, double seconds)
 {
     if (r->json)
-        printf("{\"lights\": %zu, \"orbit\": %d, \"dome\": %d, \"by\": \"%s\", \"model\": \"%s\", \"seconds_total\": "
-               "%.4f}\n",
-               job->lights.count, job->orbit, job->dome, r->how == MERLIN_BY_NETWORK ? "network" : "brdf",
-               merlin_model_name(job->model), seconds);
+        print_json(r, job, seconds);
     else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
 }

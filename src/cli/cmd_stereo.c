@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "cli/stereo_commands.h"
@@ -152,9 +153,7 @@ static void announce(const request *r, const char *output, const stereo_result *
                      double seconds)
 {
     if (r->json) {
-        char *text = cJSON_PrintUnformatted(report);
-        puts(text ? text : "{}");
-        free(text);
+        json_line_print(report);
     } else if (!r->quiet) {
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
     }
@@ -169,7 +168,7 @@ static status work(request *r, const char *output, cJSON *report)
 {
     double began = clock_seconds();
     stereo_result result = {0};
-    cJSON_AddStringToObject(report, "input", r->input);
+    json_line_text(report, "input", r->input);
     status s =
         file_is_folder(r->input) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
     if (s == OK) {

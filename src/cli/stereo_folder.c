@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/progress.h"
+#include "cli/json_line.h"
 #include "stereo/integrate.h"
 
 static const float RESIDUAL_WHITE = 0.25f, KEEP_DEPTH = 1e-4f;
@@ -57,7 +58,7 @@ static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s
     for (int i = 0; i < c->count; i++) {
         cJSON *o = cJSON_CreateObject();
         cJSON_AddItemToArray(list, o);
-        cJSON_AddStringToObject(o, "name", c->name[i]);
+        json_line_text(o, "name", c->name[i]);
         const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
         cJSON_AddItemToObject(o, "direction", cJSON_CreateFloatArray(d, 3));
         const float at[3] = {light[i].position.x, light[i].position.y, light[i].position.z};

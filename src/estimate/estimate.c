@@ -131,6 +131,13 @@ static status take_out(work *w, merlin_image *object)
     return s;
 }
 
+static status check_lit(const img *photo)
+{
+    for (size_t i = 0; i < img_value_count(photo); i++)
+        if (photo->data[i] > 0) return OK;
+    return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
+}
+
 /* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
  * area-averaged, the mask hard. */
 static status make_input(work *w, merlin_maps *maps)
@@ -142,10 +149,11 @@ static status make_input(work *w, merlin_maps *maps)
     if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
     if (s != OK) return s;
     harden_mask(&w->low_photo, &w->low_mask);
+    s = check_lit(&w->low_photo);
+    if (s != OK) return s;
     *gain =
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
-    size_t count = 3 * (size_t)size * (size_t)size;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < img_value_count(&w->low_photo); i++)
         w->low_photo.data[i] *= *gain;
     return OK;
 }

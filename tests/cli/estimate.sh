@@ -26,6 +26,11 @@ succeeds '^{.*"exposure_gain".*}$' estimate disc.hdr "${small[@]}" --json
 succeeds --exposure estimate --help
 rm -rf out.merlin
 
+echo "a name that is not UTF-8 leaves the JSON valid"
+cp disc.hdr $'d\351sc\303\251\355\240\200.hdr'
+succeeds $'"photo":"d\357\277\275sc\303\251\357\277\275\357\277\275\357\277\275.hdr"' estimate d*c*.hdr --size 64 -o named --json
+rm -r d*sc?*.hdr named
+
 echo "--mesh adds the front as a mesh"
 succeeds disc.merlin/overview.png estimate disc.hdr --size 64 --mesh
 [ "$(head -c 4 disc.merlin/mesh.glb)" = glTF ] || complain "mesh.glb is none"
@@ -44,6 +49,9 @@ refuses 1 'pipe: it is not a plain file' estimate pipe "${small[@]}"
 refuses 1 'pipe' estimate disc.hdr --model pipe
 refuses 1 'no object stands out' estimate empty.hdr "${small[@]}"
 refuses 1 'missing.png' estimate disc.hdr --mask missing.png "${small[@]}"
+openexr black.exr '\0\0\0\0'
+radiance round.hdr 16 6
+refuses 1 'black.exr: the object is black' estimate black.exr --mask round.hdr "${small[@]}"
 absent out.merlin
 
 echo "wrong use"

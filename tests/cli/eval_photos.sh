@@ -29,7 +29,11 @@ refuses 2 'unknown option' photos folder --nonsense
 refuses 1 'missing' photos missing --model weights.safetensors -o none.png --quiet
 refuses 1 'missing.safetensors' photos --quiet folder --model missing.safetensors -o none.png
 echo "not an image" >folder/worse.png
+refuses 1 'worse.png' photos folder --model weights.safetensors --model weights.safetensors -o rest.png --quiet
+cmp -s rest.png two.png || complain "the others' rows are not those of a folder without the bad photograph"
+rm folder/*.hdr
 refuses 1 'worse.png' photos folder --model weights.safetensors -o none.png --quiet
+radiance folder/disc.hdr 64 22
 refuses 1 'nowhere' photos --quiet folder/disc.hdr --model weights.safetensors -o nowhere/none.png
 absent none.png
 finish

@@ -23,13 +23,19 @@ cmp -s network/relit_000.png disc.merlin/relit/relit_000.png && complain "networ
 succeeds plain relight disc.merlin --light 0.5,0.2,-0.4 --no-shadows -o plain
 present plain/relit_000.png
 
+succeeds disc.merlin/relit relight disc.merlin/maps.exr --light 0.5,0.2,-0.4 -o disc.merlin/relit
+(cd disc.merlin && succeeds ./relit relight maps.exr --light 0.5,0.2,-0.4)
+absent disc.merlin/maps.merlin
+
 echo "the same light gives the same picture"
 succeeds again relight disc.merlin --light 0.5,0.2,-0.4 -o again
 cmp -s again/relit_000.png disc.merlin/relit/relit_000.png || complain "relighting is not deterministic"
 
 echo "a photograph can be relit at once"
-succeeds '^{.*"lights": 1.*}$' relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
+succeeds '^{.*"lights":1,.*}$' relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
 present at-once/relit_000.png
+
+succeeds '"input":"disc.hdr","output":"at-once"' relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
 
 echo "lists of lights"
 printf '0.5 0.2 -0.4\n# another\n-0.5 0.2 -0.4\n' >lights.txt
