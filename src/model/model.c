@@ -10,8 +10,8 @@
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
 const char *const model_losses[MODEL_LOSSES] = {
-    "albedo",   "normal",         "depth",   "roughness",   "roughness_gradient", "direct",
-    "indirect", "reconstruction", "relight", "environment", "relight_brdf"};
+    "albedo",         "normal",  "depth",       "roughness",    "roughness_gradient", "direct",           "indirect",
+    "reconstruction", "relight", "environment", "relight_brdf", "relight_ssim",       "relight_brdf_ssim"};
 
 typedef struct maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
@@ -235,8 +235,21 @@ static void name_outputs(const network *n)
     if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
 }
 
-/* The paper's losses: weight 2 for normals and 1 for the rest. */
-static void add_losses(network *n)
+/* Relighting by the maps' BRDF is worth a loss of its own beside the network's. */
+static void add_relighting_losses(network *n, model_part part, nn_node *mask)
+{
+    nn_graph *g = n->g;
+    bool both = n->relit_direct && n->relit_brdf;
+    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf, *relit_true = nn_input(g, "relit_true", 3, 1);
+    nn_masked_l2(g, relit, relit_true, mask, "relight", 1.0f);
+    if (both) nn_masked_l2(g, n->relit_brdf, relit_true, mask, "relight_brdf", 1.0f);
+    if (part != MODEL_TRAINING_SSIM) return;
+    nn_masked_dssim(g, relit, relit_true, mask, "relight_ssim", 1.0f);
+    if (both) nn_masked_dssim(g, n->relit_brdf, relit_true, mask, "relight_brdf_ssim", 1.0f);
+}
+
+/* The paper's losses, weight 2 for normals and 1 for the rest, and what is beside them. */
+static void add_losses(network *n, model_part part)
 {
     nn_graph *g = n->g;
     nn_node *mask = nn_input(g, "loss_mask", 1, 1);
@@ -258,9 +271,7 @@ static void add_losses(network *n)
         nn_node *code = nn_input(g, "environment_true", MODEL_SH, NN_VECTOR);
         nn_masked_l2(g, n->environment_code, code, one, "environment", 1.0f);
     }
-    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf, *relit_true = nn_input(g, "relit_true", 3, 1);
-    nn_masked_l2(g, relit, relit_true, mask, "relight", 1.0f);
-    if (n->relit_direct && n->relit_brdf) nn_masked_l2(g, n->relit_brdf, relit_true, mask, "relight_brdf", 1.0f);
+    add_relighting_losses(n, part, mask);
 }
 
 static status build_indirect(nn_graph *g, const model_config *config)
@@ -289,7 +300,7 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
         network n = {.g = g, .config = config};
         build_network(&n, part);
         name_outputs(&n);
-        if (part != MODEL_WHOLE) add_losses(&n);
+        if (part != MODEL_WHOLE) add_losses(&n, part);
     }
     if (s != OK) {
         nn_graph_free(g);

@@ -27,7 +27,7 @@
 #include "base/status.h"
 #include "nn/nn.h"
 
-enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 11, MODEL_SH = 27 };
+enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 13, MODEL_SH = 27 };
 
 /* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
 #define MODEL_FOV 60.0f
@@ -81,6 +81,7 @@ typedef enum model_part {
     MODEL_WHOLE,         /* everything a photograph goes through once */
     MODEL_TRAINING,      /* the same with losses */
     MODEL_TRAINING_BRDF, /* beside them "relight_brdf", of "relit_brdf", where "relight" is the network's */
+    MODEL_TRAINING_SSIM, /* beside these "relight_ssim" and "relight_brdf_ssim", structural dissimilarity of both */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                        "mask", for both lights "environment"; output "indirect" */
 } model_part;

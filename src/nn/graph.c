@@ -60,7 +60,8 @@ const char *op_name(nn_op op)
                                         "render",
                                         "environment",
                                         "masked_l2",
-                                        "masked_gradient_l2"};
+                                        "masked_gradient_l2",
+                                        "masked_dssim"};
     return names[op];
 }
 
@@ -465,4 +466,9 @@ void nn_masked_gradient_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn
                            float weight)
 {
     append_loss(g, OP_MASKED_GRADIENT_L2, (nn_node *[]){prediction, target, mask}, name, weight);
+}
+
+void nn_masked_dssim(nn_graph *g, nn_node *prediction, nn_node *target, nn_node *mask, const char *name, float weight)
+{
+    append_loss(g, OP_MASKED_DSSIM, (nn_node *[]){prediction, target, mask}, name, weight);
 }

@@ -34,6 +34,7 @@ typedef enum nn_op {
     OP_ENVIRONMENT,
     OP_MASKED_L2,
     OP_MASKED_GRADIENT_L2,
+    OP_MASKED_DSSIM,
 } nn_op;
 
 enum { NN_MAX_INPUTS = 8 };
@@ -79,7 +80,7 @@ const char *op_name(nn_op op);
 
 static inline bool op_is_loss(nn_op op)
 {
-    return op == OP_MASKED_L2 || op == OP_MASKED_GRADIENT_L2;
+    return op == OP_MASKED_L2 || op == OP_MASKED_GRADIENT_L2 || op == OP_MASKED_DSSIM;
 }
 
 /* Convolution, transposed convolution and fully connected: a weight and maybe a bias. */

@@ -41,6 +41,7 @@ static const optional optionals[] = {
     {"jpeg", 1, offsetof(train_config, jpeg)},
     {"perfect_camera", 1, offsetof(train_config, perfect_camera)},
     {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight)},
+    {"ssim_weight", 1e4, offsetof(train_config, ssim_weight)},
     {"average_decay", 0.999999, offsetof(train_config, average_decay)},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };

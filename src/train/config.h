@@ -28,6 +28,8 @@ typedef struct train_config {
     /* Optional, too: */
     double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF beside the network's; 0: none, as the
                                    paper */
+    double ssim_weight;   /* of structural dissimilarity of the relit images, by network and by BRDF; 0: none, as the
+                             paper */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
     double memory_gib;    /* samples beyond this are read from disk each time */
     int validation_count; /* the folder's last samples are held back; a multiple of batch */

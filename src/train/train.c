@@ -104,7 +104,16 @@ static status open_data(run *r)
 static void weigh_losses(nn_program *p, const train_config *c)
 {
     nn_set_loss_weight(p, "depth", (float)c->depth_weight);
-    if (c->relight_brdf_weight > 0) nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
+    nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
+    nn_set_loss_weight(p, "relight_ssim", (float)c->ssim_weight);
+    nn_set_loss_weight(p, "relight_brdf_ssim", (float)c->ssim_weight);
+}
+
+/* No more of the graph than there are losses for. */
+static model_part part_of(const train_config *c)
+{
+    if (c->ssim_weight > 0) return MODEL_TRAINING_SSIM;
+    return c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
 }
 
 static status build(run *r)
@@ -113,8 +122,7 @@ static status build(run *r)
     nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
     trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
-    model_part part = c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
-    status s = model_build(&r->model, part, &r->graph);
+    status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK && r->options->init)
         s = r->options->init_shared ? nn_params_load_shared(r->params, r->options->init)

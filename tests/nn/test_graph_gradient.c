@@ -53,6 +53,7 @@ static nn_graph *build_net(void)
     nn_masked_l2(g, radiance, image, mask, "radiance", 2);
     nn_masked_gradient_l2(g, roughness, mask, mask, "roughness_gradient", 0.7f);
     nn_masked_gradient_l2(g, depth, mask, mask, "depth_gradient", 0.3f);
+    nn_masked_dssim(g, radiance, image, mask, "radiance_ssim", 0.5f);
     return g;
 }
 

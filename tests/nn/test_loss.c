@@ -7,6 +7,7 @@ typedef struct loss {
     void (*backward)(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask, double mask_sum,
                      float scale, cpu_tensor *dprediction, bool accumulate);
     double (*definition)(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask);
+    double rounding, step; /* of the loss in float, relative; of central differences */
 } loss;
 
 static double mask_total(const cpu_tensor *mask)
@@ -46,9 +47,63 @@ static double masked_gradient_l2(const cpu_tensor *p, const cpu_tensor *t, const
     return sum / mask_total(m);
 }
 
+/* The five moments of the 11 × 11 window around a pixel, black beyond the frame. */
+static double dissimilarity_at(const cpu_tensor *p, const cpu_tensor *t, const cpu_tensor *m, size_t n, int row,
+                               int column, size_t channel)
+{
+    double moment[5] = {0}, total = 0;
+    for (int dy = -5; dy <= 5; dy++)
+        for (int dx = -5; dx <= 5; dx++) {
+            double weight = exp(-(dx * dx + dy * dy) / (2 * 1.5 * 1.5));
+            int y = row + dy, x = column + dx;
+            total += weight;
+            if (x < 0 || y < 0 || x >= p->w || y >= p->h) continue;
+            size_t pixel = (n * (size_t)p->h + (size_t)y) * (size_t)p->w + (size_t)x,
+                   i = pixel * (size_t)p->c + channel;
+            double a = tensor_get(p, i) * tensor_get(m, pixel), b = tensor_get(t, i) * tensor_get(m, pixel);
+            const double values[5] = {a, b, a * a, b * b, a * b};
+            for (int k = 0; k < 5; k++)
+                moment[k] += weight * values[k];
+        }
+    for (int k = 0; k < 5; k++)
+        moment[k] /= total;
+    double a = moment[0], b = moment[1], c1 = 1e-4, c2 = 9e-4;
+    return 1 - (2 * a * b + c1) * (2 * (moment[4] - a * b) + c2) /
+                   ((a * a + b * b + c1) * (moment[2] - a * a + moment[3] - b * b + c2));
+}
+
+static double masked_dssim(const cpu_tensor *p, const cpu_tensor *t, const cpu_tensor *m)
+{
+    double sum = 0;
+    for (int n = 0; n < p->n; n++)
+        for (int y = 0; y < p->h; y++)
+            for (int x = 0; x < p->w; x++)
+                for (int c = 0; c < p->c; c++)
+                    sum += dissimilarity_at(p, t, m, (size_t)n, y, x, (size_t)c);
+    return sum / (mask_total(m) * p->c);
+}
+
+static float dssim_forward(const cpu_tensor *p, const cpu_tensor *t, const cpu_tensor *m, double *mask_sum)
+{
+    float value = NAN;
+    assert_int_equal(cpu_masked_dssim(p, t, m, mask_sum, &value), OK);
+    return value;
+}
+
+static void dssim_backward(const cpu_tensor *p, const cpu_tensor *t, const cpu_tensor *m, double mask_sum, float scale,
+                           cpu_tensor *dp, bool accumulate)
+{
+    assert_int_equal(cpu_masked_dssim_backward(p, t, m, mask_sum, scale, dp, accumulate), OK);
+}
+
+/* Differences are rounded to float before they are squared; moments before they are subtracted from each other. The
+ * first two are quadratic, so that a wide step of central differences is exact but for the float grid; the third is
+ * not. */
 static const loss losses[] = {
-    {"masked_l2", cpu_masked_l2, cpu_masked_l2_backward, masked_l2},
-    {"masked_gradient_l2", cpu_masked_gradient_l2, cpu_masked_gradient_l2_backward, masked_gradient_l2},
+    {"masked_l2", cpu_masked_l2, cpu_masked_l2_backward, masked_l2, 1e-6, 1.0 / 1024},
+    {"masked_gradient_l2", cpu_masked_gradient_l2, cpu_masked_gradient_l2_backward, masked_gradient_l2, 1e-6,
+     1.0 / 1024},
+    {"masked_dssim", dssim_forward, dssim_backward, masked_dssim, 2e-6, 1.0 / 16384},
 };
 enum { LOSSES = sizeof losses / sizeof *losses };
 
@@ -83,8 +138,7 @@ static void losses_follow_their_definitions(void **state)
             operands o = operands_new(bases[b]);
             double sum = 0, expected = losses[l].definition(&o.prediction, &o.target, &o.mask);
             double found = (double)losses[l].forward(&o.prediction, &o.target, &o.mask, &sum);
-            /* differences are rounded to float before they are squared */
-            assert_true(fabs(found - expected) <= 1e-6 * expected);
+            assert_true(fabs(found - expected) <= losses[l].rounding * expected);
             assert_true(fabs(sum - mask_total(&o.mask)) < 1e-9);
             operands_free(&o);
         }
@@ -93,7 +147,6 @@ static void losses_follow_their_definitions(void **state)
 static void gradients_are_those_of_central_differences(void **state)
 {
     (void)state;
-    const double h = 1.0 / 1024;
     const float scale = 0.3f;
     for (int l = 0; l < LOSSES; l++)
         for (int b = 0; b < BASES - 1; b++)
@@ -101,6 +154,7 @@ static void gradients_are_those_of_central_differences(void **state)
                 operands o = operands_new(bases[b]);
                 cpu_tensor d = tensor_random(NN_FLOAT32, bases[b][0], bases[b][1], bases[b][2], bases[b][3], 3);
                 cpu_tensor expected = tensor_like(&d);
+                double h = losses[l].step;
                 for (size_t i = 0; i < cpu_count(&d); i++) {
                     double at = tensor_get(&o.prediction, i);
                     tensor_set(&o.prediction, i, at + h);
@@ -114,7 +168,6 @@ static void gradients_are_those_of_central_differences(void **state)
                 }
                 double sum = mask_total(&o.mask);
                 losses[l].backward(&o.prediction, &o.target, &o.mask, sum, scale, &d, accumulate);
-                /* quadratic, so central differences are exact but for the float grid that at ± h is rounded to */
                 assert_near(losses[l].name, &d, &expected, 1e-4, 1e-6);
                 tensor_free(&d), tensor_free(&expected);
                 operands_free(&o);

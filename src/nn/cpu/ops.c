@@ -151,6 +151,8 @@ static status kernel_forward(nn_step *step)
     case OP_MASKED_GRADIENT_L2:
         step->loss = cpu_masked_gradient_l2(x, x + 1, x + 2, &step->mask_sum);
         break;
+    case OP_MASKED_DSSIM:
+        return cpu_masked_dssim(x, x + 1, x + 2, &step->mask_sum, &step->loss);
     default:
         return fail(ERROR_DEVICE, "%s has no kernel", op_name(step->op));
     }
@@ -231,6 +233,8 @@ static status kernel_backward(nn_step *step)
     case OP_MASKED_GRADIENT_L2:
         cpu_masked_gradient_l2_backward(x, x + 1, x + 2, step->mask_sum, at->weight, dx, add);
         break;
+    case OP_MASKED_DSSIM:
+        return cpu_masked_dssim_backward(x, x + 1, x + 2, step->mask_sum, at->weight, dx, add);
     default:
         return fail(ERROR_DEVICE, "%s has no gradient", op_name(step->op));
     }
