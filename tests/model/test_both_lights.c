@@ -190,7 +190,7 @@ static void gradients_of_the_whole_network_match_finite_differences(void **unuse
                                         "lighting.fc1.weight",    "material.head.weight",        "indirect.head.weight",
                                         "relight.head.weight",    "encoder.level4.c.conv.weight"};
     nn_params *params = NULL;
-    nn_program *p = compile(&both, MODEL_TRAINING_BRDF, NN_TRAIN, &params);
+    nn_program *p = compile(&both, MODEL_TRAINING_SSIM, NN_TRAIN, &params);
     fill_inputs(p);
     fill_targets(p);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

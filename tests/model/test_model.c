@@ -82,6 +82,31 @@ static void relighting_by_brdf_can_be_trained_beside_the_network(void **unused)
     nn_params_free(params);
 }
 
+static void similarity_of_relit_images_is_trained_only_where_asked_for(void **unused)
+{
+    (void)unused;
+    enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
+    static const char *const names[] = {"relight_ssim", "relight_brdf_ssim"};
+    model_config c;
+    read_config("merlin-point", &c);
+    nn_params *params = NULL;
+    nn_program *p = compile(&c, MODEL_TRAINING_BRDF, NN_TRAIN, SIZE, &params);
+    for (int i = 0; i < 2; i++)
+        assert_true(isnan(nn_loss(p, names[i])));
+    nn_program_free(p);
+    p = compile(&c, MODEL_TRAINING_SSIM, NN_TRAIN, SIZE, &params);
+    fill(nn_input_data(p, "mask"), SIZE * SIZE, 1);
+    fill(nn_input_data(p, "loss_mask"), SIZE * SIZE, 1);
+    nn_input_data(p, "light_position")[0] = 0.5f;
+    assert_int_equal(nn_forward(p), OK);
+    memcpy(nn_input_data(p, "relit_true"), nn_output_data(p, "relit_brdf"), VALUES * sizeof(float));
+    assert_int_equal(nn_forward(p), OK);
+    assert_true(fabsf(nn_loss(p, "relight_brdf_ssim")) < 1e-5f);
+    assert_true(nn_loss(p, "relight_ssim") > 0.01f);
+    nn_program_free(p);
+    nn_params_free(params);
+}
+
 static void every_row_of_table_1_speaks_the_fixed_names(void **unused)
 {
     (void)unused;
@@ -214,6 +239,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_row_of_table_1_compiles_for_training),
         cmocka_unit_test(relighting_by_brdf_can_be_trained_beside_the_network),
+        cmocka_unit_test(similarity_of_relit_images_is_trained_only_where_asked_for),
         cmocka_unit_test(every_row_of_table_1_speaks_the_fixed_names),
         cmocka_unit_test(rows_of_table_1_differ_in_the_papers_switches),
         cmocka_unit_test(default_model_keeps_the_budget),

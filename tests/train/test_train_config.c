@@ -82,7 +82,8 @@ static void configurations_of_both_lights_differ_from_the_point_settings_in_that
     (void)unused;
     static const char *const pairs[][2] = {{"merlin-point", "merlin-env"},
                                            {"merlin-point-256", "merlin-env-256"},
-                                           {"merlin-point-mean-256", "merlin-env-mean-256"}};
+                                           {"merlin-point-mean-256", "merlin-env-mean-256"},
+                                           {"merlin-point-ssim-256", "merlin-env-ssim-256"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         model_config m[2];
         for (int k = 0; k < 2; k++) {
