@@ -77,7 +77,7 @@ typedef struct merlin_params {
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
 } merlin_params;
 
-merlin_params merlin_params_default(void); /* 256, 2 views, automatic, never stopped */
+merlin_params merlin_params_default(void); /* 256, 4 views, automatic, never stopped */
 
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 

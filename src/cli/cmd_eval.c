@@ -27,7 +27,7 @@ static const char help[] =
     "  --count N          only the first N samples\n"
     "  --white W          the photograph is exposed so that radiance W saturates (default 1, as in the paper)\n"
     "  --environments N   relight the first N samples by environments, too (seconds each)\n"
-    "  --views N          maps as merlin estimate --views N makes them (default 2, as there)\n"
+    "  --views N          maps as merlin estimate --views N makes them (default 4, as there)\n"
     "  --precision P      float32 (default) or bfloat16\n"
     "  --figure F.png     a picture of predictions beside the truth\n"
     "  --figure-rows N    samples shown in it (default 8)\n"
