@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/progress.h"
-#include "estimate/black.h"
 #include "estimate/fuse.h"
 #include "estimate/smooth.h"
 #include "estimate/view.h"
@@ -240,6 +239,24 @@ void network_estimation_free(network_estimation *e)
     img_free(&e->indirect);
 }
 
+/* In one orientation, added to the mean. */
+static status relight_view(network *n, const img *photo, const img *mask, const network_light *light, int view,
+                           img *mean)
+{
+    float sh[9][3];
+    network_light turned = view_turn_light(light, view, sh);
+    img turned_photo = {0}, turned_mask = {0}, relit = {0};
+    status s = view_turn(photo, view, &turned_photo);
+    if (s == OK) s = view_turn(mask, view, &turned_mask);
+    if (s == OK) s = run_whole(n, &turned_photo, &turned_mask, &turned, relit_outputs, &n->relit);
+    if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, &relit);
+    if (s == OK) view_add(mean, &relit, view, 1.0f / NETWORK_VIEWS);
+    img_free(&turned_photo);
+    img_free(&turned_mask);
+    img_free(&relit);
+    return s;
+}
+
 status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct)
 {
     *direct = (img){0};
@@ -249,10 +266,11 @@ status network_relight(network *n, const img *photo, const img *mask, const netw
         return fail(ERROR_USAGE, "model \"%s\" relights by point lights only, not by environments; relight by BRDF",
                     n->config.name);
     pthread_mutex_lock(&n->lock);
-    status s = run_whole(n, photo, mask, light, relit_outputs, &n->relit);
-    if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, direct);
+    status s = img_new(direct, photo->width, photo->height, 3);
+    for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
+        s = relight_view(n, photo, mask, light, view, direct);
     pthread_mutex_unlock(&n->lock);
-    if (s == OK && !light->sh) relit_black_level(direct); /* an environment leaves nothing black */
+    if (s != OK) img_free(direct);
     return s;
 }
 

@@ -49,8 +49,8 @@ typedef struct network_light {
     const float (*sh)[3]; /* of an environment beside it (9 of them), or NULL */
 } network_light;
 
-/* The same photograph under other light, by the relighting decoder; without bounces. ERROR_USAGE if the model has none
- * or it does not take environments. */
+/* The same photograph under other light, by the relighting decoder, the mean of NETWORK_VIEWS orientations; without
+ * bounces. ERROR_USAGE if the model has none or it does not take environments. */
 status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct);
 
 /* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point lights and

@@ -32,6 +32,16 @@ status view_turn(const img *image, int view, img *turned)
     return OK;
 }
 
+network_light view_turn_light(const network_light *light, int view, float sh[9][3])
+{
+    float place[3] = {light->place.x, light->place.y, light->place.z};
+    orientation_turn(view, place);
+    if (!light->sh) return (network_light){vec3_of(place), NULL};
+    memcpy(sh, light->sh, 9 * sizeof *sh);
+    orientation_turn_sh(view, sh);
+    return (network_light){vec3_of(place), (const float(*)[3])sh};
+}
+
 void view_add(img *mean, const img *turned, int view, float weight)
 {
     size_t channels = (size_t)mean->channels;

@@ -16,6 +16,9 @@
 /* A square image in this orientation (optics/orientation.h); made here. */
 status view_turn(const img *image, int view, img *turned);
 
+/* A light as it stands to the turned photograph; its environment, if any, is kept in sh. */
+network_light view_turn_light(const network_light *light, int view, float sh[9][3]);
+
 /* Adds weight times an image of the turned frame, turned back; of unit normals, whose sum is not unit. */
 void view_add(img *mean, const img *turned, int view, float weight);
 void view_add_normals(img *mean, const img *turned, int view, float weight);

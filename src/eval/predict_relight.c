@@ -1,9 +1,9 @@
 #include <string.h>
 
-#include "estimate/black.h"
 #include "estimate/bounce.h"
 #include "estimate/shadow.h"
 #include "estimate/smooth.h"
+#include "estimate/view.h"
 #include "eval/predict_parts.h"
 
 /* The target's lighting code: the light's place and, in setting B, its surroundings. */
@@ -91,17 +91,51 @@ static status add_bounces(eval_model *m, const eval_prediction *p, const img *ma
     return s;
 }
 
+/* By the network, in one orientation; added to what the others say. */
+static status relight_view(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
+                           int view, eval_prediction *out)
+{
+    float sh[EVAL_LIGHTS][9][3];
+    eval_lighting turned[EVAL_LIGHTS];
+    img turned_image = {0}, turned_mask = {0}, relit = {0};
+    for (int i = 0; i < EVAL_LIGHTS; i++) {
+        network_light light = view_turn_light(&(network_light){lights[i].light, lights[i].sh}, view, sh[i]);
+        turned[i] = (eval_lighting){light.place, light.sh};
+    }
+    status s = view_turn(image, view, &turned_image);
+    if (s == OK) s = view_turn(mask, view, &turned_mask);
+    if (s == OK) s = img_new(&relit, m->size, m->size, 3);
+    if (s == OK) {
+        fill_inputs(m, &turned_image, &turned_mask, turned);
+        s = nn_forward(m->relit.program);
+    }
+    for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
+        eval_take(m->relit.program, "relit_direct", i, &relit);
+        clip_image(&relit);
+        view_add(&out->by_network[i], &relit, view, 1 / (float)m->views);
+    }
+    img_free(&turned_image);
+    img_free(&turned_mask);
+    img_free(&relit);
+    return s;
+}
+
+static void clear(img *image)
+{
+    memset(image->data, 0, img_value_count(image) * sizeof *image->data);
+}
+
 /* By the network, and while maps are of a single view by its rendering layer, too. */
 static status relight(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
                       eval_prediction *out)
 {
-    fill_inputs(m, image, mask, lights);
-    status s = nn_forward(m->relit.program);
-    for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
-        eval_take(m->relit.program, "relit_direct", i, &out->by_network[i]);
+    status s = OK;
+    for (int i = 0; i < EVAL_LIGHTS; i++)
+        clear(&out->by_network[i]);
+    for (int view = 0; view < m->views && s == OK; view++)
+        s = relight_view(m, image, mask, lights, view, out);
+    for (size_t i = 0; i < EVAL_LIGHTS && s == OK && m->views == 1; i++) {
         eval_take(m->relit.program, "relit_brdf", i, &out->by_brdf[i]);
-        if (!lights[i].sh) relit_black_level(&out->by_network[i]); /* surroundings leave nothing black */
-        clip_image(&out->by_network[i]);
         clip_image(&out->by_brdf[i]);
     }
     return s;
