@@ -94,6 +94,44 @@ static void the_mean_over_all_views_turns_with_the_photograph(void **state)
     network_close(n);
 }
 
+/* The first four views are the flips, any of which makes one of the others of each. */
+static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask, relit;
+    const float environment[9][3] = {{0.8f, 0.7f, 0.6f}, {0.1f, 0.2f, 0.3f}, {-0.2f, 0, 0.1f}, {0.3f, -0.1f, 0.2f}};
+    float turned_environment[9][3];
+    const network_light light = {{0.6f, 0.3f, -0.4f}, environment};
+    assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    assert_int_equal(network_relight(n, &photo, &mask, &light, &relit), OK);
+    for (int o = 1; o < 4; o++) {
+        img turned_photo, turned_mask, other, back;
+        network_light turned = view_turn_light(&light, o, turned_environment);
+        assert_int_equal(view_turn(&photo, o, &turned_photo), OK);
+        assert_int_equal(view_turn(&mask, o, &turned_mask), OK);
+        assert_int_equal(network_relight(n, &turned_photo, &turned_mask, &light, &other), OK);
+        assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
+        view_add(&back, &other, o, 1);
+        assert_true(largest_difference(&back, &relit) > 1e-3f); /* the light stood still */
+        img_free(&other);
+        assert_int_equal(network_relight(n, &turned_photo, &turned_mask, &turned, &other), OK);
+        memset(back.data, 0, img_value_count(&back) * sizeof *back.data);
+        view_add(&back, &other, o, 1);
+        assert_true(largest_difference(&back, &relit) < 1e-5f);
+        img_free(&turned_photo);
+        img_free(&turned_mask);
+        img_free(&other);
+        img_free(&back);
+    }
+    img_free(&relit);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
 static void a_wrong_number_of_views_is_refused(void **state)
 {
     (void)state;
@@ -115,6 +153,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orientations_are_undone_by_their_inverse),
         in_scratch(the_mean_over_all_views_turns_with_the_photograph),
+        in_scratch(a_relit_picture_is_flipped_with_photograph_and_light),
         in_scratch(a_wrong_number_of_views_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
