@@ -64,6 +64,7 @@ typedef struct comparison {
     img *images;                /* photographs × columns, of the tiles' size */
     char (*labels)[LABEL_SIZE]; /* of as many */
     bool *failed;               /* of photographs: left out of the picture */
+    size_t failures;            /* how many they are */
     progress progress;
 } comparison;
 
@@ -131,6 +132,7 @@ static void leave_out_bad(comparison *c, size_t photo, status s)
 {
     if (s == OK) return;
     c->failed[photo] = true;
+    c->failures++;
     cli_fail("eval photos", s);
 }
 
@@ -165,9 +167,7 @@ static status write_sheet(const comparison *c)
 
 static status show(const comparison *c)
 {
-    size_t shown = c->photos->count;
-    for (size_t i = 0; i < c->photos->count; i++)
-        shown -= c->failed[i];
+    size_t shown = c->photos->count - c->failures;
     if (shown == 0) return OK; /* each has said why */
     status s = write_sheet(c);
     if (s == OK && !c->request->quiet)
@@ -175,8 +175,8 @@ static status show(const comparison *c)
     return s;
 }
 
-/* *all: whether every photograph is in the picture. */
-static status compare(const request *r, const photo_list *photos, bool *all)
+/* *failures: photographs that are not in the picture. */
+static status compare(const request *r, const photo_list *photos, size_t *failures)
 {
     comparison c;
     status s = comparison_new(r, photos, &c);
@@ -187,8 +187,7 @@ static status compare(const request *r, const photo_list *photos, bool *all)
         progress_end(&c.progress);
     }
     if (s == OK) s = show(&c);
-    for (size_t i = 0; s == OK && i < photos->count; i++)
-        *all &= !c.failed[i];
+    *failures = c.failures;
     comparison_free(&c);
     return s;
 }
@@ -202,8 +201,8 @@ int eval_photos(int argc, char **argv)
     status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
-    bool all = true;
-    s = compare(&r, &photos, &all);
+    size_t failures;
+    s = compare(&r, &photos, &failures);
     photo_list_free(&photos);
-    return s == OK ? !all : cli_fail("eval photos", s);
+    return s == OK ? failures > 0 : cli_fail("eval photos", s);
 }

@@ -1,7 +1,5 @@
 #include "cli/json_line.h"
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

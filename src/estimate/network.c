@@ -158,6 +158,21 @@ static status run_whole(network *n, const img *photo, const img *mask, const net
     return nn_forward(p);
 }
 
+/* The same for photograph and light in another orientation. */
+static status run_view(network *n, const img *photo, const img *mask, const network_light *light, int view,
+                       const char *const *outputs, compiled *c)
+{
+    float sh[9][3];
+    network_light turned_light = view_turn_light(light, view, sh);
+    img turned_photo = {0}, turned_mask = {0};
+    status s = view_turn(photo, view, &turned_photo);
+    if (s == OK) s = view_turn(mask, view, &turned_mask);
+    if (s == OK) s = run_whole(n, &turned_photo, &turned_mask, &turned_light, outputs, c);
+    img_free(&turned_photo);
+    img_free(&turned_mask);
+    return s;
+}
+
 /* Albedo and roughness leave the network in [-1, 1]. */
 static status take_maps(nn_program *p, int size, surface *maps)
 {
@@ -178,11 +193,11 @@ static void take_environment(nn_program *p, float sh[9][3])
         memset(sh, 0, 9 * sizeof *sh);
 }
 
-/* What the network says of the photograph as it is put in. */
-static status estimate_view(network *n, const img *photo, const img *mask, network_estimation *out)
+/* What the network says of the photograph in an orientation, as it lies there. */
+static status estimate_view(network *n, const img *photo, const img *mask, int view, network_estimation *out)
 {
     int size = photo->width;
-    status s = run_whole(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, maps_outputs, &n->maps);
+    status s = run_view(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, view, maps_outputs, &n->maps);
     if (s == OK) s = take_maps(n->maps.program, size, &out->maps);
     if (s != OK) return s;
     take_environment(n->maps.program, out->environment);
@@ -193,19 +208,14 @@ static status estimate_view(network *n, const img *photo, const img *mask, netwo
 static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                              network_estimation *out)
 {
-    if (views == 1) return estimate_view(n, photo, mask, out);
+    if (views == 1) return estimate_view(n, photo, mask, 0, out);
     status s = view_mean_new(photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};
-        img turned_photo = {0}, turned_mask = {0};
         if (stop && stop()) s = fail(ERROR_STOPPED, "stopped");
-        if (s == OK) s = view_turn(photo, view, &turned_photo);
-        if (s == OK) s = view_turn(mask, view, &turned_mask);
-        if (s == OK) s = estimate_view(n, &turned_photo, &turned_mask, &turned);
+        if (s == OK) s = estimate_view(n, photo, mask, view, &turned);
         if (s == OK) view_mean_add(out, &turned, view, 1.0f / (float)views);
         network_estimation_free(&turned);
-        img_free(&turned_photo);
-        img_free(&turned_mask);
     }
     return s;
 }
@@ -243,16 +253,10 @@ void network_estimation_free(network_estimation *e)
 static status relight_view(network *n, const img *photo, const img *mask, const network_light *light, int view,
                            img *mean)
 {
-    float sh[9][3];
-    network_light turned = view_turn_light(light, view, sh);
-    img turned_photo = {0}, turned_mask = {0}, relit = {0};
-    status s = view_turn(photo, view, &turned_photo);
-    if (s == OK) s = view_turn(mask, view, &turned_mask);
-    if (s == OK) s = run_whole(n, &turned_photo, &turned_mask, &turned, relit_outputs, &n->relit);
+    img relit = {0};
+    status s = run_view(n, photo, mask, light, view, relit_outputs, &n->relit);
     if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, &relit);
     if (s == OK) view_add(mean, &relit, view, 1.0f / NETWORK_VIEWS);
-    img_free(&turned_photo);
-    img_free(&turned_mask);
     img_free(&relit);
     return s;
 }

@@ -111,7 +111,6 @@ static status relight_view(eval_model *m, const img *image, const img *mask, con
     }
     for (size_t i = 0; i < EVAL_LIGHTS && s == OK; i++) {
         eval_take(m->relit.program, "relit_direct", i, &relit);
-        clip_image(&relit);
         view_add(&out->by_network[i], &relit, view, 1 / (float)m->views);
     }
     img_free(&turned_image);

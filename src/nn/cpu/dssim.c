@@ -198,6 +198,34 @@ static status no_memory(const operands *o)
     return fail(ERROR_MEMORY, "no memory to compare pictures of %dx%d", o->prediction->w, o->prediction->h);
 }
 
+/* What is done with a plane once its windows' means are known. */
+typedef void plane_work(const operands *o, plane *p, size_t index, void *context);
+
+static status over_planes(const operands *o, plane_work *work, void *context)
+{
+    size_t planes = (size_t)o->prediction->n * (size_t)o->prediction->c;
+    bool good = true;
+#pragma omp parallel if (cpu_count(o->prediction) > CPU_PARALLEL_MIN) reduction(&& : good)
+    {
+        plane p;
+        good = plane_new(o, &p);
+#pragma omp for schedule(static)
+        for (size_t i = 0; i < planes; i++)
+            if (good) {
+                take_plane(o, i, &p);
+                work(o, &p, i, context);
+            }
+        if (good) free(p.memory);
+    }
+    return good ? OK : no_memory(o);
+}
+
+static void compare(const operands *o, plane *p, size_t index, void *context)
+{
+    (void)o;
+    ((double *)context)[index] = dissimilarity(p);
+}
+
 status cpu_masked_dssim(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                         double *mask_sum, float *loss)
 {
@@ -205,35 +233,30 @@ status cpu_masked_dssim(const cpu_tensor *prediction, const cpu_tensor *target, 
     size_t planes = (size_t)prediction->n * (size_t)prediction->c;
     double *part = calloc(planes, sizeof *part), sum = 0;
     if (!part) return no_memory(&o);
-    bool good = true;
-#pragma omp parallel if (cpu_count(prediction) > CPU_PARALLEL_MIN) reduction(&& : good)
-    {
-        plane p;
-        good = plane_new(&o, &p);
-#pragma omp for schedule(static)
-        for (size_t i = 0; i < planes; i++)
-            if (good) {
-                take_plane(&o, i, &p);
-                part[i] = dissimilarity(&p);
-            }
-        if (good) free(p.memory);
-    }
-    for (size_t i = 0; good && i < planes; i++)
+    status s = over_planes(&o, compare, part);
+    for (size_t i = 0; i < planes; i++)
         sum += part[i];
     free(part);
     *mask_sum = total_mask(mask);
     *loss = *mask_sum > 0 ? (float)(sum / (*mask_sum * prediction->c)) : 0;
-    return good ? OK : no_memory(&o);
+    return s;
 }
 
-static void add_to_gradient(const operands *o, const plane *p, size_t index, float factor, cpu_tensor *gradient)
+typedef struct gradient_sum {
+    cpu_tensor *tensor;
+    float factor;
+} gradient_sum;
+
+static void add_gradient(const operands *o, plane *p, size_t index, void *context)
 {
+    const gradient_sum *to = context;
+    differentiate(o, p);
     size_t channels = (size_t)o->prediction->c, picture = index / channels, channel = index % channels;
     for (size_t y = 0; y < p->height; y++) {
-        float *d = (float *)gradient->data + place(gradient, picture, channel, p, y);
+        float *d = (float *)to->tensor->data + place(to->tensor, picture, channel, p, y);
         const float *m = (const float *)o->mask->data + place(o->mask, picture, 0, p, y);
         for (size_t x = 0, i = y * p->width; x < p->width; x++, i++)
-            d[x * channels] += factor * m[x] * (p->mx[i] + 2 * p->x[i] * p->xx[i] + p->y[i] * p->xy[i]);
+            d[x * channels] += to->factor * m[x] * (p->mx[i] + 2 * p->x[i] * p->xx[i] + p->y[i] * p->xy[i]);
     }
 }
 
@@ -241,22 +264,7 @@ status cpu_masked_dssim_backward(const cpu_tensor *prediction, const cpu_tensor 
                                  double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate)
 {
     operands o = operands_of(prediction, target, mask);
-    size_t planes = (size_t)prediction->n * (size_t)prediction->c;
-    float factor = mask_sum > 0 ? (float)(-(double)scale / (mask_sum * prediction->c)) : 0;
-    bool good = true;
+    gradient_sum to = {dprediction, mask_sum > 0 ? (float)(-(double)scale / (mask_sum * prediction->c)) : 0};
     if (!accumulate) cpu_zero(dprediction);
-#pragma omp parallel if (cpu_count(prediction) > CPU_PARALLEL_MIN) reduction(&& : good)
-    {
-        plane p;
-        good = plane_new(&o, &p);
-#pragma omp for schedule(static)
-        for (size_t i = 0; i < planes; i++)
-            if (good) {
-                take_plane(&o, i, &p);
-                differentiate(&o, &p);
-                add_to_gradient(&o, &p, i, factor, dprediction);
-            }
-        if (good) free(p.memory);
-    }
-    return good ? OK : no_memory(&o);
+    return over_planes(&o, add_gradient, &to);
 }
