@@ -102,13 +102,19 @@ status json_number(json_object *o, const char *key, double low, double high, dou
     return s == OK ? read_number(o, item, key, low, high, out) : s;
 }
 
-status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out)
+static bool has(const json_object *o, const char *key)
 {
     const cJSON *item;
     cJSON_ArrayForEach(item, o->root)
     {
-        if (strcmp(item->string, key) == 0) return json_number(o, key, low, high, out);
+        if (strcmp(item->string, key) == 0) return true;
     }
+    return false;
+}
+
+status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out)
+{
+    if (has(o, key)) return json_number(o, key, low, high, out);
     *out = fallback;
     return OK;
 }
@@ -165,6 +171,14 @@ status json_ints(json_object *o, const char *key, int low, int high, int count, 
         s = read_int(o, element, key, low, high, out++);
         if (s != OK) return s;
     }
+    return OK;
+}
+
+status json_ints_or(json_object *o, const char *key, int low, int high, int count, int fallback, int *out)
+{
+    if (has(o, key)) return json_ints(o, key, low, high, count, out);
+    for (int i = 0; i < count; i++)
+        out[i] = fallback;
     return OK;
 }
 

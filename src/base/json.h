@@ -33,6 +33,8 @@ status json_choice(json_object *o, const char *key, const char *const *words, in
 status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out);
 /* An array of exactly count integers. */
 status json_ints(json_object *o, const char *key, int low, int high, int count, int *out);
+/* One that may be missing: then count times fallback. */
+status json_ints_or(json_object *o, const char *key, int low, int high, int count, int fallback, int *out);
 /* The text of an object inside this one, malloc'ed. */
 status json_inner(json_object *o, const char *key, char **text);
 

@@ -18,21 +18,38 @@ nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stri
     return nn_relu(g, nn_batch_norm(g, y, join(buffer, name, "norm")));
 }
 
-void block_encoder(nn_graph *g, nn_node *x, const char *name, const int *widths, nn_node *features[MODEL_LEVELS])
+nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width)
 {
     char buffer[NAME];
+    nn_node *y = block_conv(g, x, join(buffer, name, "a"), width, 1);
+    y = nn_conv2d(g, y, join(buffer, name, "b.conv"), width, 3, 1, NN_NO_BIAS);
+    return nn_add(g, x, nn_batch_norm_zero(g, y, join(buffer, name, "b.norm")));
+}
+
+/* `name.block0`, `name.block1`, ...: *blocks of them; blocks NULL: none. */
+static nn_node *residual_blocks(nn_graph *g, nn_node *x, const char *name, const int *blocks, int width)
+{
+    for (int i = 0; blocks && i < *blocks; i++) {
+        char block[NAME];
+        snprintf(block, sizeof block, "%.63s.block%d", name, i);
+        x = block_residual(g, x, block, width);
+    }
+    return x;
+}
+
+void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
+                   nn_node *features[MODEL_LEVELS])
+{
     /* packing 2×2 pixels into channels gives the first layer the channels that vector units want */
     nn_node *y = nn_space_to_depth(g, nn_compute(g, x), 2);
-    features[0] = y = block_conv(g, y, join(buffer, name, "level0.a"), widths[0], 1);
-    for (int i = 1; i < MODEL_LEVELS; i++) {
-        char level[32];
-        snprintf(level, sizeof level, "level%d.a", i);
-        y = block_conv(g, y, join(buffer, name, level), widths[i], 2);
-        snprintf(level, sizeof level, "level%d.b", i);
-        y = block_conv(g, y, join(buffer, name, level), widths[i], 1);
-        features[i] = y;
+    for (int i = 0; i < MODEL_LEVELS; i++) {
+        char level[NAME], buffer[NAME];
+        snprintf(level, sizeof level, "%.48s.level%d", name, i);
+        y = block_conv(g, y, join(buffer, level, "a"), shape->widths[i], i ? 2 : 1);
+        if (i) y = block_conv(g, y, join(buffer, level, "b"), shape->widths[i], 1);
+        if (i == MODEL_LEVELS - 1) y = block_conv(g, y, join(buffer, level, "c"), shape->widths[i], 1);
+        features[i] = y = residual_blocks(g, y, level, shape->blocks ? &shape->blocks[i] : NULL, shape->widths[i]);
     }
-    features[MODEL_LEVELS - 1] = block_conv(g, y, join(buffer, name, "level4.c"), widths[MODEL_LEVELS - 1], 1);
 }
 
 /* Oktay et al. 2018: sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the coarse signal's resolution,
@@ -68,7 +85,8 @@ void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *feature
         if (in->shared)
             parts[count++] = skip_through(g, in, in->shared[i], d, join(buffer, stage, "shared_gate"), width / 2);
         nn_node *y = block_conv(g, nn_concat(g, parts, count), join(buffer, stage, "fuse"), width, 1);
-        features[i] = d = nn_add(g, y, in->skips[i]); /* residual skips S1 to S4 */
+        y = nn_add(g, y, in->skips[i]); /* residual skips S1 to S4 */
+        features[i] = d = residual_blocks(g, y, stage, in->blocks ? &in->blocks[i] : NULL, width);
     }
 }
 

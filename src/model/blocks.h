@@ -8,12 +8,22 @@
 /* 3×3 convolution, batch norm, ReLU: parameters `name.conv.*` and `name.norm.*`. */
 nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stride);
 
+/* A residual block: two 3×3 convolutions beside x, whose width is `width`, parameters `name.a.*` and `name.b.*`; x
+ * itself until it is trained (nn_batch_norm_zero). He et al. 2016, without the last ReLU. */
+nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width);
+
+typedef struct block_encoder_shape {
+    const int *widths, *blocks; /* MODEL_LEVELS of each; blocks NULL: none */
+} block_encoder_shape;
+
 /* The packed full-size input (float, any channels) to features at every level. */
-void block_encoder(nn_graph *g, nn_node *x, const char *name, const int *widths, nn_node *features[MODEL_LEVELS]);
+void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
+                   nn_node *features[MODEL_LEVELS]);
 
 typedef struct block_decoder_inputs {
     const char *name;
     const int *widths;
+    const int *blocks; /* residual blocks behind levels 0 to 3; NULL: none */
     bool gated;
     nn_node *bottleneck;    /* at level 4 */
     nn_node *const *skips;  /* the encoder's features, levels 0 to 4 */

@@ -7,7 +7,7 @@
 #include "base/json.h"
 #include "model/model.h"
 
-enum { MAX_WIDTH = 1024, MAX_CONFIG_BYTES = 1 << 20 };
+enum { MAX_WIDTH = 1024, MAX_BLOCKS = 9, MAX_CONFIG_BYTES = 1 << 20 };
 
 static const char *const relight_words[] = {"network", "brdf"};
 static const char *const lighting_words[] = {"point", "both"};
@@ -44,6 +44,8 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = json_choice(o, "lighting", lighting_words, 2, &lighting);
     if (s == OK) s = json_ints(o, "widths", 8, MAX_WIDTH, MODEL_LEVELS, out->widths);
     if (s == OK) s = json_ints(o, "gi_widths", 8, MAX_WIDTH, MODEL_LEVELS, out->gi_widths);
+    if (s == OK) s = json_ints_or(o, "encoder_blocks", 0, MAX_BLOCKS, MODEL_LEVELS, 0, out->encoder_blocks);
+    if (s == OK) s = json_ints_or(o, "material_blocks", 0, MAX_BLOCKS, MODEL_LEVELS - 1, 0, out->material_blocks);
     if (s == OK) s = check_widths(where, "widths", out->widths);
     if (s == OK) s = check_widths(where, "gi_widths", out->gi_widths);
     out->relight = (model_relight)relight;
@@ -87,15 +89,16 @@ static const char *word(bool yes)
 char *model_config_write(const model_config *c)
 {
     char *text = NULL;
-    const int *w = c->widths, *gi = c->gi_widths;
-    int length =
-        asprintf(&text,
-                 "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
-                 "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
-                 "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d]}",
-                 c->name, word(c->input_global), c->material_decoders, word(c->feature_sharing),
-                 word(c->gated_attention), relight_words[c->relight], word(c->global_illumination),
-                 lighting_words[c->lighting], w[0], w[1], w[2], w[3], w[4], gi[0], gi[1], gi[2], gi[3], gi[4]);
+    const int *w = c->widths, *gi = c->gi_widths, *e = c->encoder_blocks, *m = c->material_blocks;
+    int length = asprintf(
+        &text,
+        "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
+        "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
+        "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d], "
+        "\"encoder_blocks\": [%d, %d, %d, %d, %d], \"material_blocks\": [%d, %d, %d, %d]}",
+        c->name, word(c->input_global), c->material_decoders, word(c->feature_sharing), word(c->gated_attention),
+        relight_words[c->relight], word(c->global_illumination), lighting_words[c->lighting], w[0], w[1], w[2], w[3],
+        w[4], gi[0], gi[1], gi[2], gi[3], gi[4], e[0], e[1], e[2], e[3], e[4], m[0], m[1], m[2], m[3]);
     return length < 0 ? NULL : text;
 }
 

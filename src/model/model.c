@@ -75,6 +75,7 @@ static void decode_material(network *n, const char *name, nn_node *features[MODE
 {
     block_decoder_inputs in = {.name = name,
                                .widths = n->config->widths,
+                               .blocks = n->config->material_blocks,
                                .gated = n->config->gated_attention,
                                .bottleneck = n->encoder[MODEL_LEVELS - 1],
                                .skips = n->encoder};
@@ -163,7 +164,7 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
     /* maps mean nothing outside the mask */
     nn_node *x = nn_gate(g, nn_concat(g, parts, light->environment ? 7 : 6), mask);
     nn_node *encoder[MODEL_LEVELS], *features[MODEL_LEVELS - 1];
-    block_encoder(g, x, "indirect.encoder", config->gi_widths, encoder);
+    block_encoder(g, x, "indirect.encoder", &(block_encoder_shape){.widths = config->gi_widths}, encoder);
     block_decoder_inputs in = {.name = "indirect.decoder",
                                .widths = config->gi_widths,
                                .gated = config->gated_attention,
@@ -212,7 +213,8 @@ static void build_network(network *n, model_part part)
     n->mask = nn_input(g, "mask", 1, 1);
     n->light_position = nn_input(g, "light_position", 3, NN_VECTOR);
     nn_node *parts[2] = {image, n->mask};
-    block_encoder(g, nn_concat(g, parts, 2), "encoder", n->config->widths, n->encoder);
+    block_encoder_shape shape = {n->config->widths, n->config->encoder_blocks};
+    block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->encoder);
     if (n->config->material_decoders == 1)
         material_by_one_decoder(n);
     else

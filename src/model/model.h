@@ -51,9 +51,12 @@ typedef struct model_config {
     model_lighting lighting;  /* the paper's settings A (point) and B (point and environment) */
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
+    int encoder_blocks[MODEL_LEVELS];      /* residual blocks behind each level's convolutions */
+    int material_blocks[MODEL_LEVELS - 1]; /* behind each stage of the material decoders */
 } model_config;
 
-/* From JSON; every key is required, unknown keys are refused, values are range-checked; messages name the key. */
+/* From JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
+ * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
 /* The "model" object of a file like configs/NAME.json. */
 status model_config_read(const char *path, model_config *out);

@@ -259,9 +259,16 @@ nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
     return node;
 }
 
-nn_node *nn_batch_norm(nn_graph *g, nn_node *x, const char *name)
+nn_node *nn_batch_norm_zero(nn_graph *g, nn_node *x, const char *name)
 {
     return append_named(g, OP_NORM, x, name, x ? x->channels : 1);
+}
+
+nn_node *nn_batch_norm(nn_graph *g, nn_node *x, const char *name)
+{
+    nn_node *node = nn_batch_norm_zero(g, x, name);
+    if (node) node->at.first_weight = 1;
+    return node;
 }
 
 nn_node *nn_relu(nn_graph *g, nn_node *x)

@@ -44,7 +44,8 @@ typedef struct nn_attributes {
     bool bias;
     float scale, shift;
     float fov, light_power;
-    float weight; /* of a loss */
+    float weight;       /* of a loss */
+    float first_weight; /* batch norm's, before training */
 } nn_attributes;
 
 struct nn_node {

@@ -57,6 +57,9 @@ nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out);
 /* Per channel over N, H, W (Ioffe & Szegedy 2015); eps 1e-5, running statistics as nn_set_norm_momentum says.
  * `name.weight`, `name.bias`, `name.running_mean`, `name.running_var`. */
 nn_node *nn_batch_norm(nn_graph *g, nn_node *x, const char *name);
+/* The same with a weight that starts at 0 instead of 1: a residual branch that ends in it begins as nothing (Goyal et
+ * al. 2017), so that it can be added to a network that is trained already. */
+nn_node *nn_batch_norm_zero(nn_graph *g, nn_node *x, const char *name);
 nn_node *nn_relu(nn_graph *g, nn_node *x);
 nn_node *nn_tanh(nn_graph *g, nn_node *x);
 nn_node *nn_sigmoid(nn_graph *g, nn_node *x);

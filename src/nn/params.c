@@ -51,7 +51,7 @@ static int node_specs(const nn_node *node, param_spec specs[PARAMS_PER_NODE])
         specs[count++] = weight_spec(node);
         if (node->at.bias) specs[count++] = vector_spec(node, "bias", 0, true);
     } else if (node->op == OP_NORM) {
-        specs[count++] = vector_spec(node, "weight", 1, true);
+        specs[count++] = vector_spec(node, "weight", node->at.first_weight, true);
         specs[count++] = vector_spec(node, "bias", 0, true);
         specs[count++] = vector_spec(node, "running_mean", 0, false);
         specs[count++] = vector_spec(node, "running_var", 1, false);
