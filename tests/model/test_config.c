@@ -59,6 +59,29 @@ static void configuration_survives_writing_and_reading(void **unused)
     free(text);
 }
 
+static void blocks_may_be_left_out(void **unused)
+{
+    (void)unused;
+    model_config a, b;
+    assert_int_equal(parse(good, &a), OK);
+    char *given = with("96]}", "96], \"encoder_blocks\": [0, 1, 2, 3, 4], \"material_blocks\": [5, 6, 7, 8]}");
+    assert_int_equal(parse(given, &b), OK);
+    free(given);
+    for (int i = 0; i < MODEL_LEVELS; i++) {
+        assert_int_equal(a.encoder_blocks[i], 0);
+        assert_int_equal(b.encoder_blocks[i], i);
+    }
+    for (int i = 0; i < MODEL_LEVELS - 1; i++) {
+        assert_int_equal(a.material_blocks[i], 0);
+        assert_int_equal(b.material_blocks[i], 5 + i);
+    }
+    char *text = model_config_write(&b);
+    assert_non_null(text);
+    assert_int_equal(parse(text, &a), OK);
+    assert_memory_equal(&a, &b, sizeof a);
+    free(text);
+}
+
 static void wrong_configurations_are_refused_by_key(void **unused)
 {
     (void)unused;
@@ -75,6 +98,9 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("[32, 64", "[-32, 64", "widths");
     refuses("[32, 64", "[64", "widths");
     refuses("[32, 64", "[1e30, 64", "widths");
+    refuses("96]}", "96], \"encoder_blocks\": [0, 0, 0, 0, -1]}", "encoder_blocks");
+    refuses("96]}", "96], \"material_blocks\": [0, 0, 0, 0, 0]}", "material_blocks");
+    refuses("96]}", "96], \"material_blocks\": 1}", "material_blocks");
     refuses("\"name\": \"m\"", "\"name\": \"\"", "name");
     refuses("\"name\": \"m\"", "\"name\": \"a b\"", "name");
 }
@@ -108,6 +134,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(configuration_survives_writing_and_reading),
+        cmocka_unit_test(blocks_may_be_left_out),
         cmocka_unit_test(wrong_configurations_are_refused_by_key),
         cmocka_unit_test(text_that_is_not_one_object_is_refused),
         cmocka_unit_test(light_code_has_3_or_30_values),

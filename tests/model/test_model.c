@@ -144,21 +144,57 @@ static void rows_of_table_1_differ_in_the_papers_switches(void **unused)
 }
 
 /* The budget of the project: 12 M parameters and 10 GMAC at 256×256 for everything together. */
-static void default_model_keeps_the_budget(void **unused)
+static void keeps_the_budget(const char *name)
 {
-    (void)unused;
     model_config c;
-    read_config("merlin-point", &c);
+    read_config(name, &c);
     nn_params *params = NULL;
     nn_program *p = compile(&c, MODEL_WHOLE, NN_INFER, 256, &params);
     nn_cost cost = nn_program_cost(p);
     double gmac = cost.forward_flops / 2e9;
-    print_message("%.2f M parameters, %.2f GMAC at 256x256\n", (double)cost.parameter_count / 1e6, gmac);
+    print_message("%s: %.2f M parameters, %.2f GMAC at 256x256\n", name, (double)cost.parameter_count / 1e6, gmac);
     assert_true(cost.parameter_count <= 12000000);
     assert_true(gmac <= 10);
     assert_true(gmac >= 1); /* a cost of nothing would keep any budget */
     nn_program_free(p);
     nn_params_free(params);
+}
+
+static void default_models_keep_the_budget(void **unused)
+{
+    (void)unused;
+    keeps_the_budget("merlin-point");
+    keeps_the_budget("merlin-point-deep");
+    keeps_the_budget("merlin-env");
+}
+
+/* So that they can be added to weights that are trained already. */
+static void residual_blocks_begin_as_nothing(void **unused)
+{
+    (void)unused;
+    enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
+    model_config plain, deep;
+    read_config("merlin-point", &plain);
+    read_config("merlin-point-deep", &deep);
+    nn_params *a = NULL, *b = NULL;
+    /* drawn by name and seed, what both have is the same */
+    nn_program *p = compile(&plain, MODEL_WHOLE, NN_INFER, SIZE, &a),
+               *q = compile(&deep, MODEL_WHOLE, NN_INFER, SIZE, &b);
+    assert_true(nn_params_count(b) > nn_params_count(a));
+    fill(nn_input_data(p, "image"), VALUES, 0.7f), fill(nn_input_data(q, "image"), VALUES, 0.7f);
+    fill(nn_input_data(p, "mask"), SIZE * SIZE, 1), fill(nn_input_data(q, "mask"), SIZE * SIZE, 1);
+    assert_int_equal(nn_forward(p), OK);
+    assert_int_equal(nn_forward(q), OK);
+    const float *without = nn_output_data(p, "albedo"), *with = nn_output_data(q, "albedo");
+    assert_memory_equal(without, with, VALUES * sizeof(float));
+    nn_param *weight = nn_params_find(b, "material.level1.block1.b.norm.weight");
+    assert_non_null(weight);
+    fill(weight->value, weight->count, 1);
+    nn_params_touch(b);
+    assert_int_equal(nn_forward(q), OK);
+    assert_memory_not_equal(without, with, VALUES * sizeof(float));
+    nn_program_free(p), nn_program_free(q);
+    nn_params_free(a), nn_params_free(b);
 }
 
 /* The same weights through MODEL_INDIRECT give what the whole model gives for the same maps. */
@@ -242,7 +278,8 @@ int main(void)
         cmocka_unit_test(similarity_of_relit_images_is_trained_only_where_asked_for),
         cmocka_unit_test(every_row_of_table_1_speaks_the_fixed_names),
         cmocka_unit_test(rows_of_table_1_differ_in_the_papers_switches),
-        cmocka_unit_test(default_model_keeps_the_budget),
+        cmocka_unit_test(default_models_keep_the_budget),
+        cmocka_unit_test(residual_blocks_begin_as_nothing),
         cmocka_unit_test(indirect_part_equals_the_whole_models),
         cmocka_unit_test(maps_stay_in_their_ranges),
         cmocka_unit_test(image_is_encoded_as_square_root),

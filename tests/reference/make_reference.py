@@ -94,10 +94,18 @@ class Network:
         weight = self.p.get(name + ".weight", out, x.shape[1], kernel, kernel)
         return F.conv2d(x, weight, self.p.get(name + ".bias", out) if bias else None, stride, (kernel - 1) // 2)
 
-    def block(self, x, name, out, stride=1):
+    def normed(self, x, name, out, stride=1):
         y = self.conv(x, name + ".conv", out, 3, stride, bias=False)
         statistics = [self.p.get(f"{name}.norm.{s}", out) for s in ("running_mean", "running_var", "weight", "bias")]
-        return F.relu(F.batch_norm(y, *statistics, training=self.training, momentum=0.1, eps=1e-5))
+        return F.batch_norm(y, *statistics, training=self.training, momentum=0.1, eps=1e-5)
+
+    def block(self, x, name, out, stride=1):
+        return F.relu(self.normed(x, name, out, stride))
+
+    def residual(self, x, name, count):
+        for i in range(count):
+            x = x + self.normed(self.block(x, f"{name}.block{i}.a", WIDTH), f"{name}.block{i}.b", WIDTH)
+        return x
 
     def linear(self, x, name, out):
         return torch.tanh(F.linear(x, self.p.get(name + ".weight", out, x.shape[1]), self.p.get(name + ".bias", out)))
@@ -105,12 +113,14 @@ class Network:
     def encoder(self, x, name):
         n, c, h, w = x.shape
         x = x.reshape(n, c, h // 2, 2, w // 2, 2).permute(0, 3, 5, 1, 2, 4).reshape(n, 4 * c, h // 2, w // 2)
-        features = [self.block(x, name + ".level0.a", WIDTH)]
-        for i in range(1, LEVELS):
-            y = self.block(features[-1], f"{name}.level{i}.a", WIDTH, 2)
-            y = self.block(y, f"{name}.level{i}.b", WIDTH)
-            features.append(y)
-        features[-1] = self.block(features[-1], name + ".level4.c", WIDTH)
+        blocks = self.variant["encoder_blocks"] if name == "encoder" else [0] * LEVELS
+        features = []
+        for i in range(LEVELS):
+            x = self.block(x, f"{name}.level{i}.a", WIDTH, 2 if i else 1)
+            for convolution in ([], ["b"], ["b"], ["b"], ["b", "c"])[i]:
+                x = self.block(x, f"{name}.level{i}.{convolution}", WIDTH)
+            x = self.residual(x, f"{name}.level{i}", blocks[i])
+            features.append(x)
         return features
 
     def gate(self, skip, signal, name):
@@ -126,13 +136,15 @@ class Network:
         return F.interpolate(x, scale_factor=2, mode="bilinear", align_corners=False)
 
     def decoder(self, name, bottleneck, skips, shared=None):
+        blocks = self.variant["material_blocks"] if name.startswith("material") else [0] * LEVELS
         d, features = bottleneck, [None] * (LEVELS - 1)
         for i in reversed(range(LEVELS - 1)):
             stage = f"{name}.level{i}"
             parts = [self.double(self.conv(d, stage + ".up", WIDTH, 1)), self.gate(skips[i], d, stage + ".gate")]
             if shared:
                 parts.append(self.gate(shared[i], d, stage + ".shared_gate"))
-            features[i] = d = self.block(torch.cat(parts, 1), stage + ".fuse", WIDTH) + skips[i]
+            d = self.block(torch.cat(parts, 1), stage + ".fuse", WIDTH) + skips[i]
+            features[i] = d = self.residual(d, stage, blocks[i])
         return features
 
     def head(self, x, name, channels):
@@ -287,7 +299,9 @@ if __name__ == "__main__":
     folder = os.path.dirname(os.path.abspath(__file__))
     make(os.path.join(folder, "merlin.safetensors"),
          {"material_decoders": 1, "feature_sharing": True, "gated_attention": True, "relight_by_network": True,
-          "global_illumination": True, "keep_steps": True})
+          "global_illumination": True, "encoder_blocks": [1, 0, 2, 0, 1], "material_blocks": [0, 1, 0, 2],
+          "keep_steps": True})
     make(os.path.join(folder, "four_decoders.safetensors"),
          {"material_decoders": 4, "feature_sharing": False, "gated_attention": False, "relight_by_network": False,
-          "global_illumination": False, "keep_steps": False})
+          "global_illumination": False, "encoder_blocks": [0, 1, 0, 0, 0], "material_blocks": [0, 0, 1, 0],
+          "keep_steps": False})
