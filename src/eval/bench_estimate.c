@@ -74,7 +74,7 @@ static status write_picture(const char *path)
     s = img_new(&mask, PICTURE, PICTURE, 1);
     if (s == OK) {
         draw_ball(&maps, &mask);
-        s = eval_render(&maps, &mask, 60, 5.95f, &(eval_lighting){{0, 0, 0}, NULL}, &picture);
+        s = eval_render(&maps, &mask, 60, 5.95f, &(illumination){{0, 0, 0}, NULL}, &picture);
         if (s == OK) s = img_write_png(path, &picture, IMG_SRGB8);
     }
     img_free(&picture);
