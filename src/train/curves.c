@@ -29,10 +29,9 @@ static void write_header(FILE *f)
 
 status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l)
 {
-    bool fresh = !file_exists(path);
     FILE *f = fopen(path, "a");
     if (!f) return fail(ERROR_OUTPUT, "cannot append to %s: %s", path, strerror(errno));
-    if (fresh) write_header(f);
+    if (fseek(f, 0, SEEK_END) == 0 && ftell(f) == 0) write_header(f);
     double n = l->count ? (double)l->count : 1;
     fprintf(f, "%lld,%lld,%.6g,%lld,%.6g", (long long)row->step, (long long)row->presentations, row->learning_rate,
             (long long)row->skipped, l->total / n);

@@ -286,7 +286,7 @@ static void even_surroundings_show_the_albedo(void **state)
     float radiance = 0.7f, even[9][3] = {0};
     for (int c = 0; c < 3; c++)
         even[0][c] = radiance / 0.28209479f;
-    eval_lighting surroundings = {{0, 0, 0}, (const float(*)[3])even};
+    illumination surroundings = {{0, 0, 0}, (const float(*)[3])even};
     assert_int_equal(eval_render(&maps, &s.mask, 60, 0, &surroundings, &lit), OK);
     for (int c = 0; c < 3; c++)
         assert_float_equal(img_at(&lit, 32, 32)[c], radiance * of.albedo[c], 1e-5);

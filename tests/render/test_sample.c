@@ -155,6 +155,22 @@ static void sample_with_nan_or_infinity_is_refused(void **state)
     }
 }
 
+static void sample_whose_light_or_environment_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    sample s = make_sample(), r;
+    float sh[9][3];
+    s.sh[4][1] = NAN;
+    assert_int_equal(sample_write(path, &s), OK);
+    assert_int_equal(sample_read_training_environment(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read_sh(path, sh), ERROR_INPUT);
+    s.light.x = INFINITY;
+    assert_int_equal(sample_write(path, &s), OK);
+    assert_int_equal(sample_read_training(path, &r), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "light"));
+    sample_free(&s);
+}
+
 static void image_that_is_no_sample_is_refused(void **state)
 {
     (void)state;
@@ -183,6 +199,7 @@ int main(void)
         cmocka_unit_test(training_reads_the_environment_where_it_is_asked_to),
         cmocka_unit_test(sample_without_a_layer_is_refused_by_name),
         cmocka_unit_test(sample_with_nan_or_infinity_is_refused),
+        cmocka_unit_test(sample_whose_light_or_environment_is_not_finite_is_refused),
         cmocka_unit_test(image_that_is_no_sample_is_refused),
     };
     return cmocka_run_group_tests(tests, open_folder, scratch_close);
