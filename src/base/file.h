@@ -44,6 +44,8 @@ void file_discard(char *temporary);
 
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
+/* Whether two paths lead to one file or folder, which exists. */
+bool file_is_same(const char *one, const char *other);
 /* Makes a folder and those above it. */
 status file_make_folder(const char *path);
 /* "folder/name", malloc'ed. */

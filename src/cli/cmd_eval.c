@@ -66,7 +66,7 @@ static status parse(int argc, char **argv, request *r)
         {"white", .real = &r->options.white, .low = 1, .high = 16},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
-        {"figure", .text = &r->options.figure},
+        {"figure", .picture = &r->options.figure},
         {"figure-rows", .integer = &r->options.figure_rows, .low = 1, .high = 64},
         {"means", .text = &r->means_folder},
         {"output", 'o', .text = &r->output},
