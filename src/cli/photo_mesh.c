@@ -21,11 +21,10 @@ status photo_mesh_write(const merlin_maps *maps, const char *path)
     status s = maps_surface(maps, side, &shape);
     if (s == OK) s = maps_albedo(maps, least(maps->crop.side, TEXTURE_SIDE), &texture);
     float middle = 0.5f * (float)side, tangent = tanf(0.5f * SURFACE_FOV * 0.017453293f);
-    pst_mesh_source source = {&shape.depth,
-                              &shape.mask,
-                              &shape.normal,
-                              &texture,
-                              {.perspective = true, .focal = middle / tangent, .center_x = middle, .center_y = middle}};
+    pst_mesh_source source = {
+        &shape.depth,     &shape.mask,
+        &shape.normal,    &texture,
+        &shape.roughness, {.perspective = true, .focal = middle / tangent, .center_x = middle, .center_y = middle}};
     if (s == OK) s = pst_mesh_write(path, &source);
     surface_free(&shape);
     img_free(&texture);
