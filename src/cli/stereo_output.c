@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "estimate/crop.h"
+#include "estimate/map_png.h"
 #include "image/exr.h"
 #include "image/figure.h"
 #include "image/write.h"
@@ -70,14 +71,7 @@ static status write_exr(const stereo_result *r, const char *path)
 
 static status write_normal(const stereo_result *r, const char *path)
 {
-    img encoded = {0};
-    status s = img_copy(&encoded, &r->normal);
-    if (s != OK) return s;
-    for (size_t i = 0; i < 3 * pixel_count(r); i++)
-        encoded.data[i] = r->mask.data[i / 3] > 0.5f ? 0.5f * encoded.data[i] + 0.5f : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+    return map_write_normals(path, &r->normal, &r->mask);
 }
 
 static status write_albedo(const stereo_result *r, const char *path)
@@ -90,23 +84,9 @@ static status write_mask(const stereo_result *r, const char *path)
     return img_write_png(path, &r->mask, IMG_LINEAR8);
 }
 
-/* Near is bright; the object's depths span 1 down to 0.05. */
 static status write_depth(const stereo_result *r, const char *path)
 {
-    img encoded = {0};
-    status s = img_copy(&encoded, &r->depth);
-    if (s != OK) return s;
-    float near = INFINITY, far = -INFINITY;
-    for (size_t i = 0; i < pixel_count(r); i++) {
-        if (r->mask.data[i] <= 0.5f) continue;
-        near = fminf(near, r->depth.data[i]);
-        far = fmaxf(far, r->depth.data[i]);
-    }
-    for (size_t i = 0; i < pixel_count(r); i++)
-        encoded.data[i] = r->mask.data[i] > 0.5f ? 1 - 0.95f * (encoded.data[i] - near) / (far - near + 1e-9f) : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+    return map_write_depths(path, &r->depth, &r->mask);
 }
 
 static status error_picture(const stereo_result *r, img *out)

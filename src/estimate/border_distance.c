@@ -25,10 +25,10 @@ typedef struct border {
     uint8_t *seed; /* of every pixel of the picture; borrowed */
 } border;
 
-static status border_new(size_t ring, uint8_t *seed, border *out)
+static status border_new(size_t ring, border *out)
 {
     float *colors = malloc(3 * ring * sizeof *colors);
-    *out = (border){.pixel = malloc(ring * sizeof *out->pixel), .r = colors, .seed = seed};
+    *out = (border){.pixel = malloc(ring * sizeof *out->pixel), .r = colors};
     if (!colors || !out->pixel) return no_memory();
     out->g = colors + ring;
     out->b = colors + 2 * ring;
@@ -102,7 +102,8 @@ static status choose_seeds(const img *color, const uint8_t *ring, uint8_t *seed)
     size_t length = 0, seeds = 0;
     for (size_t i = 0, count = (size_t)color->width * (size_t)color->height; i < count; i++)
         length += ring[i];
-    status s = border_new(length, seed, &b);
+    status s = border_new(length, &b);
+    b.seed = seed;
     if (s == OK) {
         list_border(color, ring, &b);
         parallel_blocks(length, find_likes, &b);

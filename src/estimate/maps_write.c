@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/api.h"
+#include "estimate/map_png.h"
 #include "estimate/overview.h"
 #include "image/write.h"
 
@@ -50,43 +51,17 @@ static status write_reconstruction(const job *j, const char *path)
     return write_image(&j->maps->reconstruction, IMG_SRGB8, path);
 }
 
-static void encode_normals(const void *context, size_t first, size_t count, float *values)
-{
-    const merlin_maps *maps = context;
-    for (size_t i = 0; i < 3 * count; i++)
-        values[i] = maps->mask.data[first + i / 3] > 0 ? 0.5f * values[i] + 0.5f : 0;
-}
-
 static status write_normal(const job *j, const char *path)
 {
-    img normal = img_of(&j->maps->normal);
-    return img_write_png_changed(path, &normal, IMG_LINEAR16, encode_normals, j->maps);
+    img normal = img_of(&j->maps->normal), mask = img_of(&j->maps->mask);
+    return map_write_normals(path, &normal, &mask);
 }
 
-typedef struct depth_range {
-    float near, far;
-} depth_range;
-
-static void encode_depths(const void *context, size_t first, size_t count, float *values)
-{
-    const depth_range *r = context;
-    (void)first;
-    for (size_t i = 0; i < count; i++)
-        values[i] = values[i] > 0 ? 1 - 0.95f * (values[i] - r->near) / (r->far - r->near + 1e-6f) : 0;
-}
-
-/* Near is bright; the object's depths (report.json: statistics.depth) span 1 down to 0.05. */
+/* Which depths these are is in report.json: statistics.depth. */
 static status write_depth(const job *j, const char *path)
 {
-    img depth = img_of(&j->maps->depth);
-    size_t count = (size_t)depth.width * (size_t)depth.height;
-    depth_range r = {.near = 1e9f};
-    for (size_t i = 0; i < count; i++) {
-        if (j->maps->mask.data[i] < 0.5f) continue;
-        r.near = depth.data[i] < r.near ? depth.data[i] : r.near;
-        r.far = depth.data[i] > r.far ? depth.data[i] : r.far;
-    }
-    return img_write_png_changed(path, &depth, IMG_LINEAR16, encode_depths, &r);
+    img depth = img_of(&j->maps->depth), mask = img_of(&j->maps->mask);
+    return map_write_depths(path, &depth, &mask);
 }
 
 static status write_report(const job *j, const char *path)

@@ -198,6 +198,7 @@ static status estimate_views(network *n, const img *photo, const img *mask, int 
 
 static status finish(const img *mask, surface *maps)
 {
+    img_free(&maps->mask);
     status s = img_copy(&maps->mask, mask);
     if (s == OK) s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);

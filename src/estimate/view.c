@@ -7,10 +7,7 @@
 status view_mean_new(int size, network_estimation *mean)
 {
     *mean = (network_estimation){0};
-    status s = img_new(&mean->maps.albedo, size, size, 3);
-    if (s == OK) s = img_new(&mean->maps.normal, size, size, 3);
-    if (s == OK) s = img_new(&mean->maps.roughness, size, size, 1);
-    if (s == OK) s = img_new(&mean->maps.depth, size, size, 1);
+    status s = surface_new(size, size, &mean->maps);
     if (s == OK) s = img_new(&mean->indirect, size, size, 3);
     if (s != OK) network_estimation_free(mean);
     return s;
