@@ -135,8 +135,8 @@ typedef enum merlin_relighting {
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
 
-/* Surroundings: a latitude-longitude picture (Radiance HDR or EXR; up is its top row, straight ahead of the camera its
- * middle column, right of that the camera's right). */
+/* Surroundings: a latitude-longitude picture, twice as wide as high (Radiance HDR or EXR; up is its top row, straight
+ * ahead of the camera its middle column, right of that the camera's right). */
 typedef struct merlin_environment merlin_environment;
 
 /* Such files are in no known unit: mean luminance becomes 2^exposure, at 0 a white object about as bright as

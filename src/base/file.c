@@ -241,7 +241,7 @@ bool file_ends_in_any(const char *name, const char *const *endings)
 
 static int compare_names(const void *a, const void *b)
 {
-    return strcmp(*(char *const *)a, *(char *const *)b);
+    return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
 static bool append(char ***names, size_t *count, size_t *room, char *path)

@@ -28,7 +28,7 @@ static const char help[] =
     "      --size N         side of the square the network sees, a multiple of 32 from 64 to 1024 (default 256)\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
-    "      --mesh           write mesh.glb, too: the object's front with albedo and normals\n"
+    "      --mesh           write mesh.glb, too: the object's front with albedo, normals and roughness\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"

@@ -24,8 +24,8 @@ static const char help[] =
     "      --json         a report as JSON on standard output\n"
     "      --quiet        no other output than errors\n"
     "  -h, --help         this text\n\n"
-    "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names, and\n"
-    "calibration.png, which shows what was found.\n";
+    "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names (9.png\n"
+    "before 10.png), and calibration.png, which shows what was found.\n";
 
 typedef struct request {
     const char *input, *output;

@@ -196,12 +196,14 @@ static void folders_are_made_with_those_above(void **state)
     free(deep), free(file), free(below);
 }
 
-static void lists_are_sorted_and_of_the_wanted_endings(void **state)
+static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **state)
 {
     (void)state;
-    static const char *const made[] = {"b.png", "a.PNG", "c.jpg", ".hidden.png", "png"};
+    static const char *const made[] = {"b10.png",     "b9.png", "a.PNG",    "c.jpg",
+                                       ".hidden.png", "png",    "0009.png", "0010.png"};
     static const char *const endings[] = {".png", NULL};
-    for (int i = 0; i < 5; i++) {
+    static const char *const listed[] = {"/0009.png", "/0010.png", "/a.PNG", "/b9.png", "/b10.png"};
+    for (int i = 0; i < 8; i++) {
         char *path = in_folder(made[i]);
         assert_int_equal(file_write(path, "", 0), OK);
         free(path);
@@ -209,12 +211,12 @@ static void lists_are_sorted_and_of_the_wanted_endings(void **state)
     char **names;
     size_t count;
     assert_int_equal(file_list(folder, endings, &names, &count), OK);
-    assert_int_equal(count, 2);
-    assert_string_equal(strrchr(names[0], '/'), "/a.PNG");
-    assert_string_equal(strrchr(names[1], '/'), "/b.png");
+    assert_int_equal(count, 5);
+    for (int i = 0; i < 5; i++)
+        assert_string_equal(strrchr(names[i], '/'), listed[i]);
     file_list_free(names, count);
     assert_int_equal(file_list("/nowhere", endings, &names, &count), ERROR_INPUT);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 8; i++) {
         char *path = in_folder(made[i]);
         unlink(path);
         free(path);
@@ -231,7 +233,7 @@ int main(void)
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(folders_are_made_with_those_above),
-        cmocka_unit_test(lists_are_sorted_and_of_the_wanted_endings),
+        cmocka_unit_test(lists_are_sorted_as_people_count_and_of_the_wanted_endings),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -62,7 +62,7 @@ present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.pn
 absent orbit/frame_005.png
 
 echo "surroundings, alone and beside a light"
-radiance room.hdr 16 5
+radiance room.hdr 8 3 16
 sed -i '1s/.*/#?RGBE/' room.hdr # as some programs spell it
 succeeds room relight disc.merlin --env room.hdr -o room
 present room/relit_000.png room/relit.png
@@ -85,6 +85,7 @@ refuses 2 '--rotate' relight disc.merlin --env room.hdr --rotate left
 refuses 2 'relight by BRDF' relight disc.merlin --env room.hdr --by network -o none
 refuses 2 'point lights only' relight disc.merlin --env room.hdr --light 0,0,0 --by network -o none
 refuses 1 'missing.hdr' relight disc.merlin --env missing.hdr -o none
+refuses 1 'disc.hdr is 64×64 pixels; a latitude-longitude' relight disc.merlin --env disc.hdr -o none
 absent none
 
 echo "wrong use"

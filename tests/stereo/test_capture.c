@@ -106,7 +106,7 @@ static void an_lp_file_says_which_picture_has_which_light(void **state)
     (void)state;
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
-    write_text("dome.lp", "2\nphotos/c.png 0 0 1\nD:\\set\\a.png 0 3 4\n");
+    write_text("dome.lp", "2\nphotos/c.png 0 0 1\nD:\\my set\\A.PNG 0 3 4\n");
     pst_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 2);
