@@ -1,27 +1,37 @@
 # Bash completion for merlin: source it, or install it as share/bash-completion/completions/merlin.
 
 _merlin() {
-    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} more=()
     local -A options=(
         [estimate]="--mask --output --model --size --views --exposure --mesh --json --quiet --help"
         [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --views --exposure --json --quiet --help"
         [stereo]="--lights --near --fov --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
-            --sphere --json --quiet --help"
+            --json --quiet --help"
+        ["stereo calibrate"]="--sphere --mask --linear --fov --output --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --white --environments --views --precision --figure --figure-rows --means --output
             --json --quiet --help"
+        ["eval stereo"]="--data --model --count --figure --json --quiet --help"
+        ["eval photos"]="--model --output --mask --quiet --help"
         [bench]="--model --config --batch --stereo --quick --json --quiet --help"
         [info]="--tensors --json --help"
     )
+    local commands="estimate relight stereo render train eval bench info"
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "${!options[*]} --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "$commands help --help --version" -- "$current")
         return
     fi
-    if [[ $command == eval ]] && ((COMP_CWORD == 2)) && [[ $current != -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "stereo photos" -- "$current")
-        return
+    if ((COMP_CWORD == 2)); then
+        case $command in # words that may stand where a file may
+        help) mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current") && return ;;
+        eval) mapfile -t more < <(compgen -W "stereo photos" -- "$current") ;;
+        stereo) mapfile -t more < <(compgen -W "calibrate" -- "$current") ;;
+        info) mapfile -t more < <(compgen -W "merlin-point merlin-env" -- "$current") ;;
+        esac
+    elif [[ -n ${options["$command ${COMP_WORDS[2]}"]-} ]]; then
+        command+=" ${COMP_WORDS[2]}"
     fi
     case $previous in
     --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
@@ -29,12 +39,14 @@ _merlin() {
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
     --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
+    --model) mapfile -t COMPREPLY < <(compgen -W "merlin-point merlin-env" -f -- "$current") ;;
     --data | --means | --env-dir | --material-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     *)
         if [[ $current == -* ]]; then
-            mapfile -t COMPREPLY < <(compgen -W "${options[$command]}" -- "$current")
+            mapfile -t COMPREPLY < <(compgen -W "${options[$command]-}" -- "$current")
         else
             mapfile -t COMPREPLY < <(compgen -f -- "$current")
+            COMPREPLY+=("${more[@]}")
         fi
         ;;
     esac

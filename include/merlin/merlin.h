@@ -51,11 +51,12 @@ typedef struct merlin_image {
 } merlin_image;
 
 /* PNG, JPEG, TIFF, WebP, HEIC, EXR or Radiance HDR into 3 linear channels; alpha (may be NULL) gets 1 channel in [0, 1]
- * where the file has one that is not opaque everywhere, else no image. On failure both are left without data. */
+ * where the file has one that is not opaque everywhere, else no image. An alpha that nowhere reaches one half shows no
+ * object: MERLIN_BAD_INPUT, unless alpha is NULL. On failure both are left without data. */
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
 /* 1 channel in [0, 1]. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
-/* 8-bit sRGB PNG, values clamped to [0, 1]. */
+/* 8-bit sRGB PNG, values clamped to [0, 1]; path ends in .png. */
 merlin_status merlin_image_write(const char *path, const merlin_image *image);
 void merlin_image_free(merlin_image *image);
 
@@ -134,8 +135,8 @@ typedef enum merlin_relighting {
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
 
-/* Surroundings: a latitude-longitude picture (Radiance HDR or EXR; up is its top row, straight ahead of the camera its
- * middle column, right of that the camera's right). */
+/* Surroundings: a latitude-longitude picture, twice as wide as high (Radiance HDR or EXR; up is its top row, straight
+ * ahead of the camera its middle column, right of that the camera's right). */
 typedef struct merlin_environment merlin_environment;
 
 /* Such files are in no known unit: mean luminance becomes 2^exposure, at 0 a white object about as bright as

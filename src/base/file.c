@@ -24,6 +24,12 @@ bool file_is_folder(const char *path)
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
 }
 
+bool file_is_same(const char *one, const char *other)
+{
+    struct stat a, b;
+    return stat(one, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 /* A plain file's size. */
 static status check_size(int descriptor, const char *path, size_t limit, size_t *size)
 {
@@ -152,6 +158,19 @@ static status write_through_temporary(const char *path, const void *data, size_t
     return file_commit(temporary, path);
 }
 
+status file_check_writable(const char *path)
+{
+    char *temporary;
+    if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    if (!f) s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    if (f) fclose(f);
+    file_discard(temporary);
+    return s;
+}
+
 status file_write(const char *path, const void *data, size_t size)
 {
     return write_through_temporary(path, data, size, false);
@@ -222,7 +241,7 @@ bool file_ends_in_any(const char *name, const char *const *endings)
 
 static int compare_names(const void *a, const void *b)
 {
-    return strcmp(*(char *const *)a, *(char *const *)b);
+    return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
 static bool append(char ***names, size_t *count, size_t *room, char *path)

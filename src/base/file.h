@@ -42,8 +42,13 @@ status file_temporary(const char *path, char **temporary);
 status file_commit(char *temporary, const char *path);
 void file_discard(char *temporary);
 
+/* Whether a file could be written there, by making one beside it: for what is to be written after long work. */
+status file_check_writable(const char *path);
+
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
+/* Whether two paths lead to one file or folder, which exists. */
+bool file_is_same(const char *one, const char *other);
 /* Makes a folder and those above it. */
 status file_make_folder(const char *path);
 /* "folder/name", malloc'ed. */
@@ -52,8 +57,9 @@ char *file_join(const char *folder, const char *name);
 bool file_ends_in(const char *name, const char *ending);
 bool file_ends_in_any(const char *name, const char *const *endings);
 
-/* The plain files of a folder whose names end in one of the endings (file_ends_in_any), sorted by name, each joined to
- * the folder; *names and its entries are malloc'ed. endings NULL means all. */
+/* The plain files of a folder whose names end in one of the endings (file_ends_in_any), sorted by name with numbers as
+ * people count, 9.png before 10.png, each joined to the folder; *names and its entries are malloc'ed. endings NULL
+ * means all. */
 status file_list(const char *folder, const char *const *endings, char ***names, size_t *count);
 /* The same with the files of the folders in it. */
 status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count);

@@ -59,8 +59,8 @@ static status next_line(reader *r, char line[LINE_MAX_LENGTH], bool *found)
     const char *begin = r->text, *end = stop ? stop : r->end;
     r->text = stop ? stop + 1 : r->end;
     if (memchr(begin, 0, (size_t)(end - begin))) return fail(ERROR_INPUT, "%s:%d: not a text file", r->where, r->line);
-    const char *comment = memchr(begin, '#', (size_t)(end - begin));
-    if (comment) end = comment;
+    for (const char *c = begin; c < end; c++) /* in a name it is no comment */
+        if (*c == '#' && (c == begin || strchr(" \t", c[-1]))) end = c;
     while (begin < end && strchr(" \t\r\v\f", *begin))
         begin++;
     while (begin < end && strchr(" \t\r\v\f", end[-1]))
@@ -80,15 +80,36 @@ static bool word_number(const char *word, float *out)
     return end != word && *end == 0 && isfinite(*out);
 }
 
-static int split(char *line, char *words[], int most)
+static bool is_between_words(char c)
+{
+    return c && strchr(" \t\r\v\f,", c);
+}
+
+static int count_words(const char *line)
 {
     int count = 0;
-    char *rest = NULL;
-    for (char *w = strtok_r(line, " \t\r\v\f,", &rest); w; w = strtok_r(NULL, " \t\r\v\f,", &rest)) {
-        if (count < most) words[count] = w;
-        count++;
-    }
+    for (const char *c = line; *c; c++)
+        count += !is_between_words(*c) && (c == line || is_between_words(c[-1]));
     return count;
+}
+
+static char *without_blanks_behind(char *line)
+{
+    char *end = line + strlen(line);
+    while (end > line && is_between_words(end[-1]))
+        end--;
+    *end = 0;
+    return end;
+}
+
+/* Cuts the last word off, which must be there. */
+static char *take_last_word(char *line)
+{
+    char *word = without_blanks_behind(line);
+    while (word > line && !is_between_words(word[-1]))
+        word--;
+    if (word > line) word[-1] = 0;
+    return word;
 }
 
 static status direction_to_position(const reader *r, vec3 *v)
@@ -99,19 +120,23 @@ static status direction_to_position(const reader *r, vec3 *v)
     return OK;
 }
 
-static status parse_light(const reader *r, char *const *words, int count, vec3 *out)
+/* Cuts the numbers off: of an .lp file's line the name is left, which may have blanks in it. */
+static status parse_light(const reader *r, char *line, vec3 *out)
 {
-    int wanted = r->lp ? 4 : 3;
-    if (count != wanted)
+    int count = count_words(line);
+    if (r->lp ? count < 4 : count != 3)
         return fail(ERROR_INPUT, "%s:%d: expected %s, found %d word%s", r->where, r->line,
                     r->lp ? "a name and x y z" : "x y z", count, count == 1 ? "" : "s");
+    const char *words[3];
     float v[3];
+    for (int i = 2; i >= 0; i--)
+        words[i] = take_last_word(line);
     for (int i = 0; i < 3; i++) {
-        const char *word = words[wanted - 3 + i];
-        if (!word_number(word, &v[i]))
-            return fail(ERROR_INPUT, "%s:%d: \"%.40s\" is not a finite number", r->where, r->line, word);
+        if (!word_number(words[i], &v[i]))
+            return fail(ERROR_INPUT, "%s:%d: \"%.40s\" is not a finite number", r->where, r->line, words[i]);
         if (fabsf(v[i]) > LARGEST)
-            return fail(ERROR_INPUT, "%s:%d: %.40s is out of range (±%g)", r->where, r->line, word, (double)LARGEST);
+            return fail(ERROR_INPUT, "%s:%d: %.40s is out of range (±%g)", r->where, r->line, words[i],
+                        (double)LARGEST);
     }
     *out = vec3_of(v);
     return r->lp ? direction_to_position(r, out) : OK;
@@ -135,14 +160,13 @@ static status parse_count(reader *r, const char *word)
 
 static status parse_line(reader *r, char *line, bool first, light_list *out)
 {
-    char *words[5];
-    int count = split(line, words, 5);
-    if (first && count == 1) return parse_count(r, words[0]);
+    if (first && count_words(line) == 1) return parse_count(r, line);
     vec3 light;
-    status s = parse_light(r, words, count, &light);
+    status s = parse_light(r, line, &light);
     if (s != OK) return s;
     s = light_list_add(out, light);
-    if (s == OK && r->lp) s = add_name(out, words[0]);
+    without_blanks_behind(line);
+    if (s == OK && r->lp) s = add_name(out, line);
     return s == OK ? OK : fail_in(s, "%s:%d", r->where, r->line);
 }
 
@@ -165,8 +189,11 @@ static status parse_lines(reader *r, light_list *out)
 
 status light_list_parse(const char *text, size_t size, const char *where, light_list *out)
 {
+    static const char byte_order_mark[] = "\xef\xbb\xbf"; /* as Windows puts before a text */
+    size_t mark = sizeof byte_order_mark - 1;
     *out = (light_list){0};
     reader r = {.text = text, .end = text + size, .where = where};
+    if (size >= mark && memcmp(text, byte_order_mark, mark) == 0) r.text += mark;
     status s = parse_lines(&r, out);
     if (s != OK) light_list_free(out);
     return s;

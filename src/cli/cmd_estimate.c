@@ -28,7 +28,7 @@ static const char help[] =
     "      --size N         side of the square the network sees, a multiple of 32 from 64 to 1024 (default 256)\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
-    "      --mesh           write mesh.glb, too: the object's front with albedo and normals\n"
+    "      --mesh           write mesh.glb, too: the object's front with albedo, normals and roughness\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
@@ -68,12 +68,13 @@ typedef struct lap_times {
     double write, total;
 } lap_times;
 
-static void print_json(const photo_job *job, const merlin_maps *maps, const lap_times *laps)
+static void print_json(const photo_job *job, const merlin_maps *maps, const staged_files *written,
+                       const lap_times *laps)
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
-    json_line_text(report, "photo", job->photo);
-    json_line_text(report, "output", job->output);
+    json_line_text(report, "input", job->photo);
+    json_line_files(report, job->output, written->at, written->count);
     cJSON_AddNumberToObject(seconds, "start", laps->start);
     cJSON_AddNumberToObject(seconds, "model", laps->model);
     cJSON_AddNumberToObject(seconds, "read", laps->read);
@@ -84,10 +85,11 @@ static void print_json(const photo_job *job, const merlin_maps *maps, const lap_
     free(text);
 }
 
-static void announce(const request *r, const photo_job *job, const merlin_maps *maps, const lap_times *laps)
+static void announce(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
+                     const lap_times *laps)
 {
     if (r->json)
-        print_json(job, maps, laps);
+        print_json(job, maps, written, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
     if (!r->quiet && maps->mask_confidence < 0.6f)
@@ -110,14 +112,21 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
 {
     double began = clock_seconds(), clock = began;
     merlin_maps maps = {0};
+    staged_files written = {0};
+    maps_output to = {.folder = job->output,
+                      .inputs = (const char *const[STAGING_MOST_INPUTS]){job->photo, job->mask},
+                      .stop = cli_interrupted,
+                      .more = r->mesh ? photo_mesh_write : NULL,
+                      .more_name = "mesh.glb",
+                      .written = &written};
     status s = estimate_object(r->model, photo, object, &r->params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
     lap(&clock);
-    if (s == OK) s = maps_write(r->model, &maps, job->output, cli_interrupted);
-    if (s == OK && r->mesh) s = photo_mesh_write(&maps, job->output);
+    if (s == OK) s = maps_write(r->model, &maps, &to);
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
-    if (s == OK) announce(r, job, &maps, laps);
+    if (s == OK) announce(r, job, &maps, &written, laps);
+    staged_files_free(&written);
     merlin_maps_free(&maps);
     return s;
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "base/progress.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
@@ -44,7 +45,7 @@ static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
         {"model", .take = take_model, .into = r}, {"mask", .text = &r->mask},
-        {"output", 'o', .text = &r->output},      {"quiet", .flag = &r->quiet},
+        {"output", 'o', .picture = &r->output},   {"quiet", .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},          {0},
     };
     status s = cli_read_options(argc, argv, options);
@@ -76,8 +77,8 @@ static size_t tile_count(const comparison *c)
 static status comparison_new(const request *r, const photo_list *photos, comparison *c)
 {
     *c = (comparison){.request = r, .photos = photos, .columns = 1 + (OVERVIEW_TILES - 1) * r->model_count};
-    if (photos->count > MOST_PHOTOS)
-        return fail(ERROR_USAGE, "%zu photographs are too many for one picture; %d fit", photos->count, MOST_PHOTOS);
+    if (photos->count < 1 || photos->count > MOST_PHOTOS)
+        return fail(ERROR_USAGE, "%zu photographs do not fit in one picture; 1 to %d do", photos->count, MOST_PHOTOS);
     c->images = calloc(tile_count(c), sizeof *c->images);
     c->labels = calloc(tile_count(c), sizeof *c->labels);
     c->failed = calloc(photos->count, sizeof *c->failed);
@@ -192,17 +193,27 @@ static status compare(const request *r, const photo_list *photos, size_t *failur
     return s;
 }
 
+static status check_output(const request *r, const photo_list *photos)
+{
+    for (size_t i = 0; i < photos->count; i++)
+        if (file_is_same(r->output, photos->at[i].photo))
+            return fail(ERROR_USAGE, "-o %s is one of the photographs", r->output);
+    return OK;
+}
+
 int eval_photos(int argc, char **argv)
 {
     request r = {0};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     photo_list photos;
-    status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
+    status s = file_check_writable(r.output);
+    if (s == OK) s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
-    size_t failures;
-    s = compare(&r, &photos, &failures);
+    size_t failures = 0;
+    s = check_output(&r, &photos);
+    if (s == OK) s = compare(&r, &photos, &failures);
     photo_list_free(&photos);
     return s == OK ? failures > 0 : cli_fail("eval photos", s);
 }

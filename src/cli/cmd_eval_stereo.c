@@ -37,7 +37,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"data", .text = &r->options.data},
         {"model", .text = &r->model},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
-        {"figure", .text = &r->options.figure},
+        {"figure", .picture = &r->options.figure},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},

@@ -1,10 +1,10 @@
 /* merlin info: what is in a weights file. */
-#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "model/model.h"
@@ -102,7 +102,7 @@ static void add_text(cJSON *o, const char *key, const char *text)
         return;
     }
     cJSON_Delete(value);
-    cJSON_AddStringToObject(o, key, text);
+    json_line_text(o, key, text);
 }
 
 static void add_tensors(cJSON *o, const st_file *file)

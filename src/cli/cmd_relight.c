@@ -172,11 +172,11 @@ static char *choose_output(const request *r)
     return out;
 }
 
-static void print_json(const request *r, const relight_job *job, double seconds)
+static void print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)
 {
     cJSON *report = cJSON_CreateObject();
     json_line_text(report, "input", r->input);
-    json_line_text(report, "output", job->output);
+    json_line_files(report, job->output, written->at, written->count);
     cJSON_AddNumberToObject(report, "lights", (double)job->lights.count);
     cJSON_AddNumberToObject(report, "orbit", job->orbit);
     cJSON_AddNumberToObject(report, "dome", job->dome);
@@ -187,18 +187,34 @@ static void print_json(const request *r, const relight_job *job, double seconds)
     cJSON_Delete(report);
 }
 
-static void announce(const request *r, const relight_job *job, double seconds)
+static void announce(const request *r, const relight_job *job, const staged_files *written, double seconds)
 {
     if (r->json)
-        print_json(r, job, seconds);
+        print_json(r, job, written, seconds);
     else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
+}
+
+/* Where there is something to wait for. */
+static status write_all(const request *r, const relight_job *job, staged_files *written)
+{
+    enum { SOON_DONE = 8 };
+    progress p;
+    relight_job watched = *job;
+    size_t count = relight_count(job);
+    progress_begin(&p, "relighting", "pictures", 0, count, r->quiet || count <= SOON_DONE);
+    watched.progress = &p;
+    status s = relight_output(&watched, written);
+    progress_end(&p);
+    return s;
 }
 
 static status relight(const request *r, const char *weights, const char *output)
 {
     double began = clock_seconds();
+    staged_files written = {0};
     relight_job job = {.output = output,
+                       .inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list},
                        .lights = r->lights,
                        .how = r->how,
                        .dome = r->dome,
@@ -214,8 +230,9 @@ static status relight(const request *r, const char *weights, const char *output)
     if (s == OK) s = (status)merlin_model_open(weights, &job.model);
     if (s == OK) s = get_maps(r, job.model, &maps);
     job.maps = &maps;
-    if (s == OK) s = relight_output(&job);
-    if (s == OK) announce(r, &job, clock_seconds() - began);
+    if (s == OK) s = write_all(r, &job, &written);
+    if (s == OK) announce(r, &job, &written, clock_seconds() - began);
+    staged_files_free(&written);
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
     merlin_environment_free(environment);

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "render/generate.h"
 
@@ -110,14 +111,26 @@ static status parse(int argc, char **argv, request *r)
     return OK;
 }
 
+static void print_json(const request *r, const render_stats *stats, double samples, double rays)
+{
+    cJSON *report = cJSON_CreateObject();
+    json_line_text(report, "output", r->options.folder);
+    cJSON_AddNumberToObject(report, "rendered", (double)stats->rendered);
+    cJSON_AddNumberToObject(report, "kept", (double)stats->kept);
+    cJSON_AddNumberToObject(report, "seconds", stats->seconds);
+    cJSON_AddNumberToObject(report, "samples_per_second", samples);
+    cJSON_AddNumberToObject(report, "rays", (double)stats->rays);
+    cJSON_AddNumberToObject(report, "rays_per_second", rays);
+    json_line_print(report);
+    cJSON_Delete(report);
+}
+
 static void report(const request *r, const render_stats *stats)
 {
     double seconds = stats->seconds > 0 ? stats->seconds : 1e-9;
     double samples = (double)stats->rendered / seconds, rays = (double)stats->rays / seconds;
     if (r->json)
-        printf("{\"rendered\": %zu, \"kept\": %zu, \"seconds\": %.3f, \"samples_per_second\": %.3f, \"rays\": %llu, "
-               "\"rays_per_second\": %.0f}\n",
-               stats->rendered, stats->kept, stats->seconds, samples, (unsigned long long)stats->rays, rays);
+        print_json(r, stats, samples, rays);
     else if (!r->options.quiet)
         printf("%zu rendered, %zu kept, %.1f s: %.2f samples/s, %.2f million rays/s\n", stats->rendered, stats->kept,
                stats->seconds, samples, rays / 1e6);

@@ -22,7 +22,8 @@ static const char help[] =
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
     "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
     "under 50 lights. calibrate finds light directions from pictures of a ball.\n\n"
-    "      --lights FILE    x y z a line, or .lp (default: found in DIR)\n"
+    "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp (default:\n"
+    "                       found in DIR)\n"
     "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
     "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
     "      --method NAME    ls, robust, near, semi, uncalibrated or auto (default)\n"
@@ -168,6 +169,8 @@ static status work(request *r, const char *output, cJSON *report)
 {
     double began = clock_seconds();
     stereo_result result = {0};
+    staged_files written = {0};
+    const pst_read_options *read = &r->folder.read;
     json_line_text(report, "input", r->input);
     status s =
         file_is_folder(r->input) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
@@ -177,11 +180,15 @@ static status work(request *r, const char *output, cJSON *report)
         cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
         cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
         cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
-        r->files.folder = output;
-        r->files.stop = cli_interrupted;
-        s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&r->files, &result, report);
+        stereo_files files = r->files;
+        files.folder = output;
+        files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
+        files.stop = cli_interrupted;
+        s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
+        json_line_files(report, output, written.at, written.count);
     }
     if (s == OK) announce(r, output, &result, report, clock_seconds() - began);
+    staged_files_free(&written);
     stereo_result_free(&result);
     return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
@@ -189,6 +196,11 @@ static status work(request *r, const char *output, cJSON *report)
 static status run(request *r)
 {
     if (!file_exists(r->input)) return fail(ERROR_INPUT, "there is no folder or photograph %s", r->input);
+    if (r->output && file_is_same(r->input, r->output))
+        return fail(ERROR_USAGE,
+                    "-o %s is the folder of the pictures, where results would be taken for pictures the next "
+                    "time; without it they go to stereo inside it",
+                    r->output);
     char *output = choose_output(r);
     cJSON *report = cJSON_CreateObject();
     status s = output && report ? work(r, output, report) : fail(ERROR_MEMORY, "no memory for a report");

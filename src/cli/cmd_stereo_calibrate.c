@@ -1,12 +1,15 @@
 /* merlin stereo calibrate: light directions from pictures of a ball. */
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/progress.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/stereo_commands.h"
+#include "estimate/staging.h"
 #include "stereo/calibrate.h"
 
 static const char help[] =
@@ -21,8 +24,8 @@ static const char help[] =
     "      --json         a report as JSON on standard output\n"
     "      --quiet        no other output than errors\n"
     "  -h, --help         this text\n\n"
-    "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names, and\n"
-    "calibration.png, which shows what was found.\n";
+    "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names (9.png\n"
+    "before 10.png), and calibration.png, which shows what was found.\n";
 
 typedef struct request {
     const char *input, *output;
@@ -66,32 +69,62 @@ static status parse(int *argc, char ***argv, request *r)
     return OK;
 }
 
-static void announce(const request *r, const pst_calibration *c, double seconds)
+static void print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
 {
-    if (r->json) {
-        printf("{\"lights\": %d, \"sphere\": \"%s\", \"circle\": [%.3f, %.3f, %.3f], \"from_mask\": %s, "
-               "\"directions\": [",
-               c->count, c->ball == PST_CHROME ? "chrome" : "matte", (double)c->circle.x, (double)c->circle.y,
-               (double)c->circle.radius, c->from_mask ? "true" : "false");
-        for (int i = 0; i < c->count; i++)
-            printf("%s[%.6f, %.6f, %.6f]", i ? ", " : "", (double)c->direction[i].x, (double)c->direction[i].y,
-                   (double)c->direction[i].z);
-        printf("], \"seconds_total\": %.4f}\n", seconds);
-    } else if (!r->quiet) {
+    cJSON *report = cJSON_CreateObject();
+    json_line_text(report, "input", r->input);
+    json_line_files(report, r->output, written->at, written->count);
+    cJSON_AddNumberToObject(report, "lights", c->count);
+    cJSON_AddStringToObject(report, "sphere", c->ball == PST_CHROME ? "chrome" : "matte");
+    cJSON_AddItemToObject(report, "circle",
+                          cJSON_CreateFloatArray((const float[]){c->circle.x, c->circle.y, c->circle.radius}, 3));
+    cJSON_AddBoolToObject(report, "from_mask", c->from_mask);
+    cJSON *directions = cJSON_AddArrayToObject(report, "directions");
+    for (int i = 0; i < c->count; i++) {
+        vec3 d = c->direction[i];
+        cJSON_AddItemToArray(directions,
+                             cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
+    }
+    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    json_line_print(report);
+    cJSON_Delete(report);
+}
+
+static void announce(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
+{
+    if (r->json)
+        print_json(r, c, written, seconds);
+    else if (!r->quiet)
         printf("%s: %d lights in %s/lights.txt; the ball %s at %.1f, %.1f with radius %.1f (%.2f s)\n", r->input,
                c->count, r->output, c->from_mask ? "of the mask is" : "was found", (double)c->circle.x,
                (double)c->circle.y, (double)c->circle.radius, seconds);
-    }
+}
+
+static status write_files(const request *r, const pst_calibration *c, staged_files *written)
+{
+    const char *const inputs[STAGING_MOST_INPUTS] = {r->options.mask};
+    staging *t;
+    status s = staging_begin(r->output, inputs, &t);
+    if (s != OK) return s;
+    char *lights = staging_path(t, "lights.txt"), *picture = staging_path(t, "calibration.png");
+    s = lights && picture ? pst_calibration_write(c, lights, picture) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(lights);
+    free(picture);
+    if (s == OK && cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written to %s", r->output);
+    return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }
 
 static status run(const request *r)
 {
     double began = clock_seconds();
     pst_calibration c;
+    staged_files written = {0};
     status s = pst_calibrate_sphere(r->input, &r->options, &c);
     if (s != OK) return s;
-    s = pst_calibration_write(&c, r->output);
-    if (s == OK) announce(r, &c, clock_seconds() - began);
+    cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
+    s = write_files(r, &c, &written);
+    if (s == OK) announce(r, &c, &written, clock_seconds() - began);
+    staged_files_free(&written);
     pst_calibration_free(&c);
     return s;
 }

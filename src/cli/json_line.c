@@ -19,11 +19,11 @@ static size_t sequence(const unsigned char *text)
     return length;
 }
 
-void json_line_text(cJSON *object, const char *key, const char *text)
+static cJSON *string_of(const char *text)
 {
     static const char unknown[] = "\xef\xbf\xbd";
     char *valid = malloc(3 * strlen(text) + 1), *to = valid;
-    if (!valid) return;
+    if (!valid) return NULL;
     while (*text) {
         size_t length = sequence((const unsigned char *)text);
         const char *from = length ? text : unknown;
@@ -33,8 +33,22 @@ void json_line_text(cJSON *object, const char *key, const char *text)
         text += length ? length : 1;
     }
     *to = 0;
-    cJSON_AddStringToObject(object, key, valid);
+    cJSON *string = cJSON_CreateString(valid);
     free(valid);
+    return string;
+}
+
+void json_line_text(cJSON *object, const char *key, const char *text)
+{
+    cJSON_AddItemToObject(object, key, string_of(text));
+}
+
+void json_line_files(cJSON *object, const char *folder, char *const *files, size_t count)
+{
+    json_line_text(object, "output", folder);
+    cJSON *list = cJSON_AddArrayToObject(object, "files");
+    for (size_t i = 0; i < count; i++)
+        cJSON_AddItemToArray(list, string_of(files[i]));
 }
 
 void json_line_print(const cJSON *report)

@@ -1,16 +1,22 @@
 /* What commands print with --json: one line of valid JSON, whatever bytes a file's name has.
  *
  *     cJSON *report = cJSON_CreateObject();
- *     json_line_text(report, "photo", path);
+ *     json_line_text(report, "input", path);
+ *     json_line_files(report, folder, files, count);
  *     json_line_print(report);
- */
+ *
+ * Whatever the command, "input" is what it was given, "output" the folder that it wrote and "files" the paths of all
+ * files that it wrote there, ready to be opened. */
 #ifndef MERLIN_CLI_JSON_LINE_H
 #define MERLIN_CLI_JSON_LINE_H
 
 #include <cJSON.h>
+#include <stddef.h>
 
 /* Adds a text, U+FFFD in the place of each byte that is not UTF-8. */
 void json_line_text(cJSON *object, const char *key, const char *text);
+/* Adds "output" and "files". */
+void json_line_files(cJSON *object, const char *folder, char *const *files, size_t count);
 void json_line_print(const cJSON *report);
 
 #endif

@@ -76,6 +76,10 @@ int main(int argc, char **argv)
         print_help(stderr);
         return 2;
     }
+    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help COMMAND is merlin COMMAND --help */
+        argv[1] = argv[2];
+        argv[2] = "--help";
+    }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_help(stdout);
         return finish(0);

@@ -36,6 +36,17 @@ static const cli_option *find(const cli_option *options, int value)
     return options;
 }
 
+/* What getopt_long did not take, value being its answer. A letter it names itself; a long option it has just passed. */
+static status refuse(int value, char *const *argv)
+{
+    char letter[] = {'-', (char)optopt, 0};
+    bool is_letter = optopt > ' ' && optopt < 127, is_long = optopt == 0 || optopt >= FIRST_LONG;
+    const char *given = is_letter ? letter : is_long ? argv[optind - 1] : "that is no letter";
+    if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
+    if (optopt >= FIRST_LONG) return fail(ERROR_USAGE, "%s: this option takes no value", given);
+    return fail(ERROR_USAGE, "unknown option %s", given);
+}
+
 static status take_number(const cli_option *o, const char *value)
 {
     char spelled[64];
@@ -63,10 +74,20 @@ static status take_folder(const cli_option *o, const char *value)
     return OK;
 }
 
+/* Before the work, not after it. */
+static status take_picture(const cli_option *o, const char *value)
+{
+    if (!file_ends_in(value, ".png"))
+        return fail(ERROR_USAGE, "--%s names a picture to write, a PNG: let %s end in .png", o->name, value);
+    *o->picture = value;
+    return OK;
+}
+
 static status take(const cli_option *o, const char *value)
 {
     if (o->take) return o->take(value, o->into);
     if (o->folder) return take_folder(o, value);
+    if (o->picture) return take_picture(o, value);
     if (o->flag)
         *o->flag = true;
     else if (o->text)
@@ -84,9 +105,7 @@ status cli_read_options(int *argc, char ***argv, const cli_option *options)
     opterr = 0;
     optind = 1;
     for (int value; (value = getopt_long(*argc, *argv, letters, longs, NULL)) != -1;) {
-        const char *given = (*argv)[optind - 1];
-        if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
-        if (value == '?') return fail(ERROR_USAGE, "unknown option %s", given);
+        if (value == ':' || value == '?') return refuse(value, *argv);
         const cli_option *option = find(options, value);
         if (optarg && !*optarg) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
         status s = take(option, optarg);

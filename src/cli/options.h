@@ -25,10 +25,11 @@ typedef struct cli_option {
     char letter;      /* of -l, or 0 */
     bool *flag;       /* takes no value; is set to true */
     const char **text;
-    const char **folder; /* a folder to write; a picture's name is refused */
-    int *integer;        /* from low to high */
-    size_t *count;       /* from low to high */
-    float *real;         /* from low to high */
+    const char **folder;  /* a folder to write; a picture's name is refused */
+    const char **picture; /* a picture to write, which ends in .png */
+    int *integer;         /* from low to high */
+    size_t *count;        /* from low to high */
+    float *real;          /* from low to high */
     long low, high;
     status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
     void *into;

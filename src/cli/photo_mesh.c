@@ -1,10 +1,9 @@
 #include "cli/photo_mesh.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/file.h"
 #include "estimate/api.h"
+#include "estimate/fill.h"
 #include "stereo/mesh_write.h"
 
 /* The network's shape has 256 points a side; the photograph adds none to it, but colour in more detail. */
@@ -15,22 +14,21 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-status photo_mesh_write(const merlin_maps *maps, const char *folder)
+status photo_mesh_write(const merlin_maps *maps, const char *path)
 {
     surface shape = {0};
     img texture = {0};
-    char *path = file_join(folder, "mesh.glb");
     int side = least(maps->crop.side, SHAPE_SIDE);
-    status s = path ? maps_surface(maps, side, &shape) : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = maps_surface(maps, side, &shape);
     if (s == OK) s = maps_albedo(maps, least(maps->crop.side, TEXTURE_SIDE), &texture);
+    /* or a texture seen small would mix the zeros beside the object, a mirror, into its outline */
+    if (s == OK) s = fill_outside(&shape.roughness, &shape.mask);
     float middle = 0.5f * (float)side, tangent = tanf(0.5f * SURFACE_FOV * 0.017453293f);
-    pst_mesh_source source = {&shape.depth,
-                              &shape.mask,
-                              &shape.normal,
-                              &texture,
-                              {.perspective = true, .focal = middle / tangent, .center_x = middle, .center_y = middle}};
+    pst_mesh_source source = {
+        &shape.depth,     &shape.mask,
+        &shape.normal,    &texture,
+        &shape.roughness, {.perspective = true, .focal = middle / tangent, .center_x = middle, .center_y = middle}};
     if (s == OK) s = pst_mesh_write(path, &source);
-    free(path);
     surface_free(&shape);
     img_free(&texture);
     return s;

@@ -1,14 +1,14 @@
 /* What a photograph shows of its object, as a mesh.
  *
- *     status s = photo_mesh_write(&maps, "cup.merlin");       cup.merlin/mesh.glb */
+ *     status s = photo_mesh_write(&maps, "cup.merlin/mesh.glb"); */
 #ifndef MERLIN_CLI_PHOTO_MESH_H
 #define MERLIN_CLI_PHOTO_MESH_H
 
 #include "base/status.h"
 #include "merlin/merlin.h"
 
-/* Into a folder that exists. The front alone: a photograph knows nothing of the back. Camera space, the object about
+/* path ends in .glb. The front alone: a photograph knows nothing of the back. Camera space, the object about
  * (0, 0, -1). */
-status photo_mesh_write(const merlin_maps *maps, const char *folder);
+status photo_mesh_write(const merlin_maps *maps, const char *path);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 #include "estimate/api.h"
-#include "estimate/staging.h"
 #include "image/figure.h"
 #include "image/resize.h"
 #include "image/write.h"
@@ -73,7 +72,9 @@ static status sheet_add(sheet *s, const img *picture, const char *label)
 static status relight(const relight_job *job, const stage *st, const vec3 *light, img *out)
 {
     network *n = job->model->network;
-    return light ? stage_relight(n, st, *light, out) : stage_relight_environment(n, st, out);
+    status s = light ? stage_relight(n, st, *light, out) : stage_relight_environment(n, st, out);
+    progress_update(job->progress, job->progress->done + 1, NULL);
+    return s;
 }
 
 /* side as in stage_new; last: no other stage follows. */
@@ -275,14 +276,20 @@ static status write_orbit(const relight_job *job, const staging *t)
     return s;
 }
 
-status relight_output(const relight_job *job)
+size_t relight_count(const relight_job *job)
+{
+    size_t in_the_photograph = job->lights.count > 0 ? job->lights.count : job->environment != NULL;
+    return in_the_photograph + (size_t)job->dome + (size_t)job->orbit;
+}
+
+status relight_output(const relight_job *job, staged_files *written)
 {
     staging *t;
-    status s = staging_begin(job->output, &t);
+    status s = staging_begin(job->output, job->inputs, &t);
     if (s != OK) return s;
     s = write_lights(job, t);
     if (s == OK) s = write_dome(job, t);
     if (s == OK) s = write_orbit(job, t);
     if (s == OK && stopped(job)) s = fail(ERROR_STOPPED, "stopped");
-    return s == OK ? staging_commit(t) : staging_abort(t, s);
+    return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }

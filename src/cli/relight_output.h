@@ -5,7 +5,9 @@
 #include <stdbool.h>
 
 #include "base/light_list.h"
+#include "base/progress.h"
 #include "base/status.h"
+#include "estimate/staging.h"
 #include "merlin/merlin.h"
 
 enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
@@ -14,6 +16,7 @@ typedef struct relight_job {
     merlin_model *model;
     merlin_maps *maps;                     /* but for the mask they are let go when nothing needs them any more */
     const char *output;                    /* folder */
+    const char *const *inputs;             /* as in staging_begin */
     light_list lights;                     /* relit_000.png …, of the photograph's size */
     const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
     merlin_relighting how;
@@ -23,9 +26,13 @@ typedef struct relight_job {
                 * light does */
     int frame; /* their side; 0: the crop's, at most 512 */
     int (*stop)(void);
+    progress *progress; /* moves on by one for each of relight_count */
 } relight_job;
 
-/* All files or none; ERROR_STOPPED if stop said so. */
-status relight_output(const relight_job *job);
+/* How many pictures of the object it takes. */
+size_t relight_count(const relight_job *job);
+
+/* All files, their paths added to *written, or none; ERROR_STOPPED if stop said so. */
+status relight_output(const relight_job *job, staged_files *written);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "estimate/crop.h"
-#include "estimate/staging.h"
+#include "estimate/map_png.h"
 #include "image/exr.h"
 #include "image/figure.h"
 #include "image/write.h"
@@ -71,14 +71,7 @@ static status write_exr(const stereo_result *r, const char *path)
 
 static status write_normal(const stereo_result *r, const char *path)
 {
-    img encoded = {0};
-    status s = img_copy(&encoded, &r->normal);
-    if (s != OK) return s;
-    for (size_t i = 0; i < 3 * pixel_count(r); i++)
-        encoded.data[i] = r->mask.data[i / 3] > 0.5f ? 0.5f * encoded.data[i] + 0.5f : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+    return map_write_normals(path, &r->normal, &r->mask);
 }
 
 static status write_albedo(const stereo_result *r, const char *path)
@@ -91,23 +84,9 @@ static status write_mask(const stereo_result *r, const char *path)
     return img_write_png(path, &r->mask, IMG_LINEAR8);
 }
 
-/* Near is bright; the object's depths span 1 down to 0.05. */
 static status write_depth(const stereo_result *r, const char *path)
 {
-    img encoded = {0};
-    status s = img_copy(&encoded, &r->depth);
-    if (s != OK) return s;
-    float near = INFINITY, far = -INFINITY;
-    for (size_t i = 0; i < pixel_count(r); i++) {
-        if (r->mask.data[i] <= 0.5f) continue;
-        near = fminf(near, r->depth.data[i]);
-        far = fmaxf(far, r->depth.data[i]);
-    }
-    for (size_t i = 0; i < pixel_count(r); i++)
-        encoded.data[i] = r->mask.data[i] > 0.5f ? 1 - 0.95f * (encoded.data[i] - near) / (far - near + 1e-9f) : 0;
-    s = img_write_png(path, &encoded, IMG_LINEAR16);
-    img_free(&encoded);
-    return s;
+    return map_write_depths(path, &r->depth, &r->mask);
 }
 
 static status error_picture(const stereo_result *r, img *out)
@@ -163,7 +142,7 @@ static status write_overview(const stereo_result *r, const char *path)
 
 static status write_mesh(const stereo_result *r, const char *path)
 {
-    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, r->camera};
+    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera};
     return pst_mesh_write(path, &source);
 }
 
@@ -214,13 +193,13 @@ static status write_all(const stereo_files *files, const staging *t, const stere
 }
 
 /* A mesh with a name of its own is made aside in the folder where it is wanted, for it may bring other files along. */
-static status stage_mesh(const char *path, const stereo_result *r, staging **out)
+static status stage_mesh(const stereo_files *files, const char *path, const stereo_result *r, staging **out)
 {
     *out = NULL;
     if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
     const char *slash = strrchr(path, '/');
     char *folder = slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
-    status s = folder ? staging_begin(folder, out) : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = folder ? staging_begin(folder, files->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
     free(folder);
     if (s != OK) return fail_in(s, "cannot write %s", path);
     char *aside = staging_path(*out, slash ? slash + 1 : path);
@@ -230,26 +209,26 @@ static status stage_mesh(const char *path, const stereo_result *r, staging **out
 }
 
 /* The folder first: it has the most to fail. */
-static status commit_all(staging **t, int count)
+static status commit_all(staging **t, int count, staged_files *written)
 {
     status s = OK;
     for (int i = 0; i < count; i++)
-        s = s == OK ? staging_commit(t[i]) : staging_abort(t[i], s);
+        s = s == OK ? staging_commit(t[i], written) : staging_abort(t[i], s);
     return s;
 }
 
-status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report)
+status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
 {
     staging *t[1 + STEREO_MOST_MESHES] = {NULL};
     int count = 1;
-    status s = staging_begin(files->folder, &t[0]);
+    status s = staging_begin(files->folder, files->inputs, &t[0]);
     if (s != OK) return s;
     s = write_all(files, t[0], r, report);
     for (int i = 0; i < files->mesh_count && s == OK; i++) {
-        s = stage_mesh(files->mesh[i], r, &t[count]);
+        s = stage_mesh(files, files->mesh[i], r, &t[count]);
         count += t[count] != NULL;
     }
-    if (s == OK) return commit_all(t, count);
+    if (s == OK) return commit_all(t, count, written);
     while (count > 0)
         s = staging_abort(t[--count], s);
     return s;

@@ -4,6 +4,7 @@
 
 #include <cJSON.h>
 
+#include "estimate/staging.h"
 #include "stereo/capture.h"
 
 enum { STEREO_MOST_MESHES = 8 };
@@ -25,14 +26,15 @@ float stereo_scale_albedo(stereo_result *r);
 
 typedef struct stereo_files {
     const char *folder;
+    const char *const *inputs;            /* as in staging_begin */
     const char *mesh[STEREO_MOST_MESHES]; /* none: mesh.ply, mesh.obj and mesh.glb in the folder */
     int mesh_count;
     int (*stop)(void);
 } stereo_files;
 
 /* maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json and the meshes,
- * wherever those are wanted: all or, after a failure to write, none. */
-status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report);
+ * wherever those are wanted: all, their paths added to *written, or, after a failure to write, none. */
+status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written);
 
 /* The surface turned by 45 degrees about the vertical axis and lit from the camera: side × side, 1 channel, linear. */
 status stereo_side_view(const stereo_result *r, int side, img *out);

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "estimate/mask.h"
 #include "image/read.h"
 #include "image/write.h"
@@ -25,7 +26,16 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
     if (alpha) *alpha = (merlin_image){0};
     img c = {0}, a = {0};
     s = img_read(path, &c, alpha ? &a : NULL);
-    if (s != OK) return result_of(s);
+    if (s == OK && a.data && mask_is_transparent(&a))
+        s = fail(ERROR_INPUT,
+                 "%s is transparent everywhere, so its alpha shows no object; give a mask, or save it "
+                 "without alpha",
+                 path);
+    if (s != OK) {
+        img_free(&c);
+        img_free(&a);
+        return result_of(s);
+    }
     if (a.data && mask_is_opaque(&a)) img_free(&a);
     *color = image_of(&c);
     if (alpha) *alpha = image_of(&a);
@@ -49,6 +59,8 @@ merlin_status merlin_image_write(const char *path, const merlin_image *image)
     img m = img_of(image);
     if (!m.data || m.width < 1 || m.height < 1)
         return result_of(fail(ERROR_USAGE, "cannot write %s: the image has no pixels", path));
+    if (!file_ends_in(path, ".png"))
+        return result_of(fail(ERROR_USAGE, "cannot write %s: a PNG is written, so let its name end in .png", path));
     return result_of(img_write_png(path, &m, IMG_SRGB8));
 }
 

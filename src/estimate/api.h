@@ -8,6 +8,7 @@
 #include "estimate/mask.h"
 #include "estimate/network.h"
 #include "estimate/shadow.h"
+#include "estimate/staging.h"
 #include "estimate/surface.h"
 #include "image/image.h"
 #include "merlin/merlin.h"
@@ -93,8 +94,16 @@ status stage_relight(network *n, const stage *s, vec3 light, img *out);
 /* Under its environment alone, which it must have. */
 status stage_relight_environment(network *n, const stage *s, img *out);
 
-/* What merlin_maps_write does; stop (may be NULL) is asked between files. */
-status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void));
+/* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
+typedef struct maps_output {
+    const char *folder;
+    const char *const *inputs;                                 /* as in staging_begin */
+    int (*stop)(void);                                         /* asked between files */
+    status (*more)(const merlin_maps *maps, const char *path); /* writes another file beside the others, */
+    const char *more_name;                                     /* called so */
+    staged_files *written;
+} maps_output;
+status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to);
 /* report.json's text, malloc'ed; NULL if memory ran out. */
 char *maps_report(const merlin_maps *maps);
 status maps_write_exr(const merlin_maps *maps, const char *path);

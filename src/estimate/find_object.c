@@ -1,21 +1,20 @@
 #include "estimate/find_object.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/parallel.h"
+#include "estimate/border_distance.h"
 #include "image/resize.h"
 
 /* The search runs on a small copy: what cannot be reached from the border without crossing an edge starts a two-sided
  * colour model (object, background), which is refined in a few rounds of "classify, smooth, keep one filled region,
  * learn the colours again" (the idea of GrabCut, Rother et al. 2004, with histograms instead of mixtures and a blur
  * instead of a cut). */
-enum { WORKING_SIDE = 192, SCANS = 6, ROUNDS = 4, SMOOTHING = 2, BINS = 12, OTSU_BINS = 128 };
-static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f, LIKE_COLOR = 0.06f;
+enum { WORKING_SIDE = 192, ROUNDS = 4, SMOOTHING = 2, BINS = 12, OTSU_BINS = 128 };
+static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f;
 static const float KEPT_SHARE = 0.1f;
 static const float COLOR_WEIGHT = 0.5f, LEAST_AREA = 0.005f, LARGEST_AREA = 0.9f;
 
@@ -71,146 +70,7 @@ static status search_new(const img *photo, search *s)
     return OK;
 }
 
-/* ---- how far from the border ---- */
-
-enum { SIDES = 4 };
-
-/* The ring's pixels, side after side, the colours of neighbours in a row of numbers. */
-typedef struct border {
-    size_t first[SIDES + 1];
-    size_t *pixel; /* borrowed */
-    float *r, *g, *b;
-    uint8_t *seed; /* borrowed: the search's object */
-} border;
-
-/* Of the picture's four sides, the nearest. */
-static int side_of(const search *s, size_t i)
-{
-    int x = (int)(i % (size_t)s->width), y = (int)(i / (size_t)s->width);
-    const int away[SIDES] = {x, s->width - 1 - x, y, s->height - 1 - y};
-    int best = 0;
-    for (int k = 1; k < SIDES; k++)
-        if (away[k] < away[best]) best = k;
-    return best;
-}
-
-static status list_border(search *s, border *out)
-{
-    size_t ring = 0;
-    for (size_t i = 0; i < s->count; i++)
-        ring += s->ring[i];
-    float *colors = malloc(3 * (ring + 1) * sizeof *colors);
-    if (!colors) return fail(ERROR_MEMORY, "no memory to look for the object");
-    *out = (border){.pixel = s->stack, .r = colors, .g = colors + ring, .b = colors + 2 * ring, .seed = s->object};
-    size_t n = 0;
-    for (int side = 0; side < SIDES; side++) {
-        for (size_t i = 0; i < s->count; i++) {
-            if (!s->ring[i] || side_of(s, i) != side) continue;
-            out->pixel[n] = i;
-            out->r[n] = s->color.data[3 * i];
-            out->g[n] = s->color.data[3 * i + 1];
-            out->b[n++] = s->color.data[3 * i + 2];
-        }
-        out->first[side + 1] = n;
-    }
-    return OK;
-}
-
-/* The least squared distance of entry i's colour to one of begin .. end - 1. */
-static float nearest_color(const border *b, size_t i, size_t begin, size_t end)
-{
-    const float *red = b->r, *green = b->g, *blue = b->b;
-    float nearest = FLT_MAX, r = red[i], g = green[i], c = blue[i];
-#pragma omp simd reduction(min : nearest)
-    for (size_t j = begin; j < end; j++) {
-        float dr = red[j] - r, dg = green[j] - g, db = blue[j] - c;
-        float distance = dr * dr + dg * dg + db * db;
-        nearest = distance < nearest ? distance : nearest;
-    }
-    return nearest;
-}
-
-/* Whether border pixels have a like colour on another side. */
-static void find_likes(void *context, size_t begin, size_t end)
-{
-    const border *b = context;
-    int side = 0;
-    for (size_t i = begin; i < end; i++) {
-        while (i >= b->first[side + 1])
-            side++;
-        float before = nearest_color(b, i, 0, b->first[side]);
-        float behind = nearest_color(b, i, b->first[side + 1], b->first[SIDES]);
-        b->seed[b->pixel[i]] = (before < behind ? before : behind) < LIKE_COLOR * LIKE_COLOR;
-    }
-}
-
-/* Which border pixels are background: those with a like colour on another side. An object that the picture cuts off at
- * one side has none. */
-static status choose_seeds(search *s)
-{
-    border b;
-    status result = list_border(s, &b);
-    if (result != OK) return result;
-    size_t ring = b.first[SIDES], seeds = 0;
-    parallel_blocks(ring, find_likes, &b);
-    for (size_t i = 0; i < ring; i++)
-        seeds += s->object[b.pixel[i]];
-    for (size_t i = 0; i < ring && 3 * seeds < ring; i++)
-        s->object[b.pixel[i]] = 1;
-    free(b.r);
-    return OK;
-}
-
-/* One channel's barrier: the least (maximum - minimum) of any path from a seed (Strand et al. 2013), found by a few
- * raster scans (Zhang et al. 2015). */
-typedef struct barrier {
-    const float *value; /* every third */
-    float *cost, *high, *low;
-    int width, height;
-} barrier;
-
-static void barrier_visit(barrier *b, size_t at, size_t from)
-{
-    float x = b->value[3 * at], high = fmaxf(b->high[from], x), low = fminf(b->low[from], x);
-    if (high - low >= b->cost[at]) return;
-    b->cost[at] = high - low;
-    b->high[at] = high;
-    b->low[at] = low;
-}
-
-static void barrier_scan(barrier *b, bool backward)
-{
-    size_t width = (size_t)b->width, height = (size_t)b->height, count = width * height;
-    for (size_t k = 0; k < count; k++) {
-        size_t i = backward ? count - 1 - k : k, x = i % width, y = i / width;
-        if (!backward && x > 0) barrier_visit(b, i, i - 1);
-        if (!backward && y > 0) barrier_visit(b, i, i - width);
-        if (backward && x + 1 < width) barrier_visit(b, i, i + 1);
-        if (backward && y + 1 < height) barrier_visit(b, i, i + width);
-    }
-}
-
-/* probability = the barriers of all channels, seeds (in object) having none. */
-static status measure_barriers(search *s)
-{
-    float *memory = calloc(s->count, 3 * sizeof *memory);
-    if (!memory) return fail(ERROR_MEMORY, "no memory to look for the object");
-    memset(s->probability.data, 0, s->count * sizeof(float));
-    for (int c = 0; c < 3; c++) {
-        barrier b = {s->color.data + c, memory, memory + s->count, memory + 2 * s->count, s->width, s->height};
-        for (size_t i = 0; i < s->count; i++) {
-            bool seed = s->ring[i] && s->object[i];
-            b.cost[i] = seed ? 0 : FLT_MAX;
-            b.high[i] = b.low[i] = b.value[3 * i];
-        }
-        for (int scan = 0; scan < SCANS; scan++)
-            barrier_scan(&b, scan & 1);
-        for (size_t i = 0; i < s->count; i++)
-            s->probability.data[i] += fminf(b.cost[i], 1);
-    }
-    free(memory);
-    return OK;
-}
+/* ---- a first guess ---- */
 
 /* Threshold that separates two groups best (Otsu 1979), for values in [0, FARTHEST]. */
 static float otsu(const float *value, size_t count)
@@ -238,16 +98,16 @@ static float otsu(const float *value, size_t count)
 
 static status start_from_border(search *s)
 {
-    status result = choose_seeds(s);
-    if (result == OK) result = measure_barriers(s);
+    img away = {0};
+    status result = border_distance(&s->color, s->ring, &away);
     if (result != OK) return result;
-    const float *away = s->probability.data;
-    float threshold = fmaxf(OTSU_SHARE * otsu(away, s->count), LEAST_BARRIER);
+    float threshold = fmaxf(OTSU_SHARE * otsu(away.data, s->count), LEAST_BARRIER);
     for (size_t i = 0; i < s->count; i++) {
-        s->object[i] = away[i] > threshold;
+        s->object[i] = away.data[i] > threshold;
         /* odds 1 at the threshold, e² twice as far */
-        s->prior[i] = 2 * (away[i] / threshold - 1);
+        s->prior[i] = 2 * (away.data[i] / threshold - 1);
     }
+    img_free(&away);
     return OK;
 }
 

@@ -1,4 +1,5 @@
 /* merlin_maps_write: a folder with everything, or nothing. */
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +7,8 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/api.h"
+#include "estimate/map_png.h"
 #include "estimate/overview.h"
-#include "estimate/staging.h"
 #include "image/write.h"
 
 /* ---- one file each ---- */
@@ -50,43 +51,17 @@ static status write_reconstruction(const job *j, const char *path)
     return write_image(&j->maps->reconstruction, IMG_SRGB8, path);
 }
 
-static void encode_normals(const void *context, size_t first, size_t count, float *values)
-{
-    const merlin_maps *maps = context;
-    for (size_t i = 0; i < 3 * count; i++)
-        values[i] = maps->mask.data[first + i / 3] > 0 ? 0.5f * values[i] + 0.5f : 0;
-}
-
 static status write_normal(const job *j, const char *path)
 {
-    img normal = img_of(&j->maps->normal);
-    return img_write_png_changed(path, &normal, IMG_LINEAR16, encode_normals, j->maps);
+    img normal = img_of(&j->maps->normal), mask = img_of(&j->maps->mask);
+    return map_write_normals(path, &normal, &mask);
 }
 
-typedef struct depth_range {
-    float near, far;
-} depth_range;
-
-static void encode_depths(const void *context, size_t first, size_t count, float *values)
-{
-    const depth_range *r = context;
-    (void)first;
-    for (size_t i = 0; i < count; i++)
-        values[i] = values[i] > 0 ? 1 - 0.95f * (values[i] - r->near) / (r->far - r->near + 1e-6f) : 0;
-}
-
-/* Near is bright; the object's depths (report.json: statistics.depth) span 1 down to 0.05. */
+/* Which depths these are is in report.json: statistics.depth. */
 static status write_depth(const job *j, const char *path)
 {
-    img depth = img_of(&j->maps->depth);
-    size_t count = (size_t)depth.width * (size_t)depth.height;
-    depth_range r = {.near = 1e9f};
-    for (size_t i = 0; i < count; i++) {
-        if (j->maps->mask.data[i] < 0.5f) continue;
-        r.near = depth.data[i] < r.near ? depth.data[i] : r.near;
-        r.far = depth.data[i] > r.far ? depth.data[i] : r.far;
-    }
-    return img_write_png_changed(path, &depth, IMG_LINEAR16, encode_depths, &r);
+    img depth = img_of(&j->maps->depth), mask = img_of(&j->maps->mask);
+    return map_write_depths(path, &depth, &mask);
 }
 
 static status write_report(const job *j, const char *path)
@@ -127,15 +102,20 @@ enum { OUTPUTS = sizeof outputs / sizeof outputs[0], MESSAGE_SIZE = 512 };
 typedef struct batch {
     job job;
     staging *staging;
-    int (*stop)(void);
+    const maps_output *output;
     status results[OUTPUTS];
     char messages[OUTPUTS][MESSAGE_SIZE]; /* words are kept per thread, and these threads go away */
 } batch;
 
+static bool stopped(const batch *b)
+{
+    return b->output->stop && b->output->stop();
+}
+
 static void write_one(void *context, size_t i)
 {
     batch *b = context;
-    if (b->stop && b->stop()) {
+    if (stopped(b)) {
         b->results[i] = fail(ERROR_STOPPED, "stopped");
     } else {
         char *path = staging_path(b->staging, outputs[i].name);
@@ -153,24 +133,36 @@ static status write_all(batch *b)
     return OK;
 }
 
-static status write_through(batch *b, const char *folder)
+/* A mesh is no part of merlin_maps_write, but of the same all or none. */
+static status write_more(const batch *b)
 {
-    status s = staging_begin(folder, &b->staging);
-    if (s != OK) return s;
-    s = write_all(b);
-    if (s == OK && b->stop && b->stop()) s = fail(ERROR_STOPPED, "stopped");
-    return s == OK ? staging_commit(b->staging) : staging_abort(b->staging, s);
+    if (!b->output->more) return OK;
+    char *path = staging_path(b->staging, b->output->more_name);
+    status s = path ? b->output->more(b->job.maps, path) : fail(ERROR_MEMORY, "no memory for a file name");
+    free(path);
+    return s;
 }
 
-status maps_write(merlin_model *model, const merlin_maps *maps, const char *folder, int (*stop)(void))
+static status write_through(batch *b)
+{
+    const maps_output *o = b->output;
+    status s = staging_begin(o->folder, o->inputs, &b->staging);
+    if (s != OK) return s;
+    s = write_all(b);
+    if (s == OK) s = write_more(b);
+    if (s == OK && stopped(b)) s = fail(ERROR_STOPPED, "stopped");
+    return s == OK ? staging_commit(b->staging, o->written) : staging_abort(b->staging, s);
+}
+
+status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to)
 {
     batch *b = calloc(1, sizeof *b);
-    if (!b) return fail(ERROR_MEMORY, "no memory to write %s", folder);
+    if (!b) return fail(ERROR_MEMORY, "no memory to write %s", to->folder);
     b->job.maps = maps;
-    b->stop = stop;
+    b->output = to;
     /* before the files are written side by side, because the network uses every processor itself */
     status s = overview_new(model->network, maps, &b->job.overview);
-    if (s == OK) s = write_through(b, folder);
+    if (s == OK) s = write_through(b);
     overview_free(&b->job.overview);
     free(b);
     return s;
@@ -179,5 +171,5 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const char *fold
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder)
 {
     status s = api_needs(__func__, model && maps && folder);
-    return result_of(s == OK ? maps_write(model, maps, folder, NULL) : s);
+    return result_of(s == OK ? maps_write(model, maps, &(maps_output){.folder = folder}) : s);
 }

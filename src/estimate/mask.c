@@ -12,6 +12,14 @@ bool mask_is_opaque(const img *mask)
     return true;
 }
 
+bool mask_is_transparent(const img *mask)
+{
+    size_t count = (size_t)mask->width * (size_t)mask->height;
+    for (size_t i = 0; i < count; i++)
+        if (mask->data[i] >= 0.5f) return false;
+    return true;
+}
+
 static void clean(img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;

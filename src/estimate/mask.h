@@ -17,5 +17,7 @@ status mask_choose(const img *photo, const img *given, img *mask, mask_choice *c
 
 /* Says nothing: 1 everywhere. */
 bool mask_is_opaque(const img *mask);
+/* Shows nothing: less than half everywhere. */
+bool mask_is_transparent(const img *mask);
 
 #endif

@@ -138,39 +138,15 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     return OK;
 }
 
-/* Every value of the photograph passes through once, so a fresh image and light are put in for each run. */
-static status run_whole(network *n, const img *photo, const img *mask, const network_light *light,
-                        const char *const *outputs, compiled *c)
+/* The network on photograph and light in an orientation. */
+static status run_view(network *n, const img *photo, const img *mask, const illumination *light, int view,
+                       const char *const *outputs, compiled *c)
 {
     status s = compile(n, MODEL_WHOLE, outputs, photo->width, c);
     if (s != OK) return s;
-    nn_program *p = c->program;
-    model_encode_image(photo->data, nn_input_data(p, "image"), img_value_count(photo));
-    put(p, "mask", mask, 1, 0);
-    float position[3] = {light->place.x, light->place.y, light->place.z};
-    memcpy(nn_input_data(p, "light_position"), position, sizeof position);
-    float *code = nn_input_data(p, "light");
-    if (code) {
-        memset(code, 0, (size_t)model_light_size(&n->config) * sizeof *code);
-        memcpy(code, position, sizeof position);
-        if (light->sh) model_encode_sh(light->sh, code + 3);
-    }
-    return nn_forward(p);
-}
-
-/* The same for photograph and light in another orientation. */
-static status run_view(network *n, const img *photo, const img *mask, const network_light *light, int view,
-                       const char *const *outputs, compiled *c)
-{
-    float sh[9][3];
-    network_light turned_light = view_turn_light(light, view, sh);
-    img turned_photo = {0}, turned_mask = {0};
-    status s = view_turn(photo, view, &turned_photo);
-    if (s == OK) s = view_turn(mask, view, &turned_mask);
-    if (s == OK) s = run_whole(n, &turned_photo, &turned_mask, &turned_light, outputs, c);
-    img_free(&turned_photo);
-    img_free(&turned_mask);
-    return s;
+    view_put(c->program, 0, view, photo, mask);
+    view_put_light(c->program, &n->config, 0, view, light);
+    return nn_forward(c->program);
 }
 
 /* Albedo and roughness leave the network in [-1, 1]. */
@@ -197,7 +173,7 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, network_estimation *out)
 {
     int size = photo->width;
-    status s = run_view(n, photo, mask, &(network_light){{0, 0, 0}, NULL}, view, maps_outputs, &n->maps);
+    status s = run_view(n, photo, mask, &(illumination){{0, 0, 0}, NULL}, view, maps_outputs, &n->maps);
     if (s == OK) s = take_maps(n->maps.program, size, &out->maps);
     if (s != OK) return s;
     take_environment(n->maps.program, out->environment);
@@ -222,6 +198,7 @@ static status estimate_views(network *n, const img *photo, const img *mask, int 
 
 static status finish(const img *mask, surface *maps)
 {
+    img_free(&maps->mask);
     status s = img_copy(&maps->mask, mask);
     if (s == OK) s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);
@@ -250,7 +227,7 @@ void network_estimation_free(network_estimation *e)
 }
 
 /* In one orientation, added to the mean. */
-static status relight_view(network *n, const img *photo, const img *mask, const network_light *light, int view,
+static status relight_view(network *n, const img *photo, const img *mask, const illumination *light, int view,
                            img *mean)
 {
     img relit = {0};
@@ -261,7 +238,7 @@ static status relight_view(network *n, const img *photo, const img *mask, const 
     return s;
 }
 
-status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct)
+status network_relight(network *n, const img *photo, const img *mask, const illumination *light, img *direct)
 {
     *direct = (img){0};
     if (n->config.relight != MODEL_RELIGHT_NETWORK)

@@ -9,10 +9,10 @@
 #ifndef MERLIN_ESTIMATE_NETWORK_H
 #define MERLIN_ESTIMATE_NETWORK_H
 
-#include "base/vec.h"
 #include "estimate/surface.h"
 #include "image/image.h"
 #include "model/model.h"
+#include "optics/light.h"
 
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_LARGEST_SIZE = 1024 };
 
@@ -44,14 +44,9 @@ status network_estimate(network *n, const img *photo, const img *mask, int views
                         network_estimation *out);
 void network_estimation_free(network_estimation *e);
 
-typedef struct network_light {
-    vec3 place;           /* of the point light */
-    const float (*sh)[3]; /* of an environment beside it (9 of them), or NULL */
-} network_light;
-
 /* The same photograph under other light, by the relighting decoder, the mean of NETWORK_VIEWS orientations; without
  * bounces. ERROR_USAGE if the model has none or it does not take environments. */
-status network_relight(network *n, const img *photo, const img *mask, const network_light *light, img *direct);
+status network_relight(network *n, const img *photo, const img *mask, const illumination *light, img *direct);
 
 /* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point lights and
  * `environment` (diffuse only; may be NULL) under an environment. */

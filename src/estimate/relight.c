@@ -46,7 +46,7 @@ static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
 
 static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
 {
-    network_light both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
+    illumination both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, &s->low_photo, &s->low.mask, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     if (result == OK && full->width != low->width) multiply_mask(full, &s->full.mask);

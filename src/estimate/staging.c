@@ -15,7 +15,15 @@
 struct staging {
     char *folder, *hidden;
     size_t kept; /* length of the part of folder's path that was there before */
+    const char *inputs[STAGING_MOST_INPUTS];
 };
+
+static bool is_input(const staging *t, const char *path)
+{
+    for (int i = 0; i < STAGING_MOST_INPUTS; i++)
+        if (t->inputs[i] && file_is_same(t->inputs[i], path)) return true;
+    return false;
+}
 
 static void staging_free(staging *t)
 {
@@ -67,13 +75,14 @@ static status begin(staging *t)
     return s;
 }
 
-status staging_begin(const char *folder, staging **out)
+status staging_begin(const char *folder, const char *const *inputs, staging **out)
 {
     *out = NULL;
     staging *t = calloc(1, sizeof *t);
     if (!t) return fail(ERROR_MEMORY, "no memory to write %s", folder);
     t->folder = strdup(folder);
     t->hidden = file_join(folder, ".merlin-XXXXXX");
+    if (inputs) memcpy(t->inputs, inputs, sizeof t->inputs);
     status s = t->folder && t->hidden ? begin(t) : fail(ERROR_MEMORY, "no memory to write %s", folder);
     if (s != OK)
         staging_free(t);
@@ -101,39 +110,76 @@ static void remove_hidden(const staging *t)
     rmdir(t->hidden);
 }
 
-static status move(const staging *t, const char *name, bool check_only)
+/* ---- what was written ---- */
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static status add_written(staged_files *files, const char *path)
+{
+    char **larger = realloc(files->at, (files->count + 1) * sizeof *larger);
+    if (larger) files->at = larger;
+    char *copy = larger ? strdup(path) : NULL;
+    if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
+    files->at[files->count++] = copy;
+    return OK;
+}
+
+void staged_files_free(staged_files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        free(files->at[i]);
+    free(files->at);
+    *files = (staged_files){0};
+}
+
+/* ---- into place ---- */
+
+static status check(const staging *t, const char *to, staged_files *written)
+{
+    if (file_is_folder(to)) return fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
+    if (is_input(t, to))
+        return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another output folder", to);
+    return written ? add_written(written, to) : OK;
+}
+
+static status move(const char *from, const char *to)
+{
+    return rename(from, to) == 0 ? OK : fail(ERROR_OUTPUT, "cannot write %s: %s", to, strerror(errno));
+}
+
+static status check_or_move(const staging *t, const char *name, bool only_check, staged_files *written)
 {
     char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
-    status s = OK;
-    if (!from || !to)
-        s = fail(ERROR_MEMORY, "no memory for a file name");
-    else if (file_is_folder(to))
-        s = fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
-    else if (!check_only && rename(from, to) != 0)
-        s = fail(ERROR_OUTPUT, "cannot write %s: %s", to, strerror(errno));
+    status s = !from || !to ? fail(ERROR_MEMORY, "no memory for a file name")
+               : only_check ? check(t, to, written)
+                            : move(from, to);
     free(from);
     free(to);
     return s;
 }
 
 /* Looks at all before moving any. */
-static status move_all(const staging *t)
+static status move_all(const staging *t, staged_files *written)
 {
     status s = OK;
     for (int pass = 0; pass < 2 && s == OK; pass++) {
         DIR *d = opendir(t->hidden);
         if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
         for (struct dirent *e; s == OK && (e = readdir(d));)
-            if (!is_dots(e->d_name)) s = move(t, e->d_name, pass == 0);
+            if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, pass == 0, written);
         closedir(d);
     }
     return s;
 }
 
-status staging_commit(staging *t)
+status staging_commit(staging *t, staged_files *written)
 {
-    status s = move_all(t);
+    status s = move_all(t, written);
     if (s != OK) return staging_abort(t, s);
+    if (written && written->count > 1) qsort(written->at, written->count, sizeof *written->at, compare_names);
     rmdir(t->hidden);
     staging_free(t);
     return OK;

@@ -1,24 +1,36 @@
 /* A folder's files made aside and moved into place together: a full disk or an interrupt leaves nothing half done.
  *
  *     staging *t;
- *     status s = staging_begin("cup.merlin", &t);
+ *     const char *const inputs[STAGING_MOST_INPUTS] = {"cup.jpg"};
+ *     status s = staging_begin("cup.merlin", inputs, &t);
  *     char *path = staging_path(t, "albedo.png");  write it there
- *     s = s == OK ? staging_commit(t) : staging_abort(t, s);
+ *     s = s == OK ? staging_commit(t, NULL) : staging_abort(t, s);
  */
 #ifndef MERLIN_ESTIMATE_STAGING_H
 #define MERLIN_ESTIMATE_STAGING_H
+
+#include <stddef.h>
 
 #include "base/status.h"
 
 typedef struct staging staging;
 
-/* Makes the folder if need be, and a hidden one inside it. */
-status staging_begin(const char *folder, staging **out);
+/* Makes the folder if need be, and a hidden one inside it. inputs: STAGING_MOST_INPUTS files that are read for this and
+ * that a commit does not replace, each of which may be NULL, as may the whole; the names must outlive t. */
+enum { STAGING_MOST_INPUTS = 4 };
+status staging_begin(const char *folder, const char *const *inputs, staging **out);
 /* Where to write the file that will be folder/name: malloc'ed; NULL if memory ran out. Any thread. */
 char *staging_path(const staging *t, const char *name);
-/* Moves all files into the folder, replacing those of the same names, and frees t. ERROR_OUTPUT, with nothing moved, if
- * a folder is in the way of one. */
-status staging_commit(staging *t);
+/* The paths of what was written, sorted; zero-initialized is none. */
+typedef struct staged_files {
+    char **at;
+    size_t count;
+} staged_files;
+void staged_files_free(staged_files *files);
+
+/* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
+ * and frees t. ERROR_OUTPUT, with nothing moved, if a folder or one of the inputs is in the way of one. */
+status staging_commit(staging *t, staged_files *written);
 /* Removes what was written, and the folders that staging_begin made; frees t. Returns s, its message naming the folder
  * instead of the hidden one. */
 status staging_abort(staging *t, status s);

@@ -7,10 +7,7 @@
 status view_mean_new(int size, network_estimation *mean)
 {
     *mean = (network_estimation){0};
-    status s = img_new(&mean->maps.albedo, size, size, 3);
-    if (s == OK) s = img_new(&mean->maps.normal, size, size, 3);
-    if (s == OK) s = img_new(&mean->maps.roughness, size, size, 1);
-    if (s == OK) s = img_new(&mean->maps.depth, size, size, 1);
+    status s = surface_new(size, size, &mean->maps);
     if (s == OK) s = img_new(&mean->indirect, size, size, 3);
     if (s != OK) network_estimation_free(mean);
     return s;
@@ -21,25 +18,36 @@ static size_t pixel_count(const img *image)
     return (size_t)image->width * (size_t)image->height;
 }
 
-status view_turn(const img *image, int view, img *turned)
+static void turn_into(const img *image, int view, float *turned)
 {
-    status s = img_new(turned, image->width, image->height, image->channels);
-    if (s != OK) return s;
     size_t channels = (size_t)image->channels;
     for (size_t i = 0, n = pixel_count(image); i < n; i++)
-        memcpy(turned->data + channels * orientation_place(view, image->width, i), image->data + channels * i,
+        memcpy(turned + channels * orientation_place(view, image->width, i), image->data + channels * i,
                channels * sizeof(float));
-    return OK;
 }
 
-network_light view_turn_light(const network_light *light, int view, float sh[9][3])
+void view_put(nn_program *p, size_t slot, int view, const img *photo, const img *mask)
 {
-    float place[3] = {light->place.x, light->place.y, light->place.z};
+    size_t pixels = pixel_count(photo);
+    float *image = nn_input_data(p, "image") + 3 * slot * pixels;
+    turn_into(photo, view, image);
+    model_encode_image(image, image, 3 * pixels);
+    turn_into(mask, view, nn_input_data(p, "mask") + slot * pixels);
+}
+
+void view_put_light(nn_program *p, const model_config *config, size_t slot, int view, const illumination *light)
+{
+    float place[3] = {light->place.x, light->place.y, light->place.z}, sh[9][3] = {0};
     orientation_turn(view, place);
-    if (!light->sh) return (network_light){vec3_of(place), NULL};
-    memcpy(sh, light->sh, 9 * sizeof *sh);
+    memcpy(nn_input_data(p, "light_position") + 3 * slot, place, sizeof place);
+    float *code = nn_input_data(p, "light");
+    if (!code) return;
+    code += slot * (size_t)model_light_size(config);
+    memcpy(code, place, sizeof place);
+    if (config->lighting != MODEL_LIGHT_BOTH) return;
+    if (light->sh) memcpy(sh, light->sh, sizeof sh);
     orientation_turn_sh(view, sh);
-    return (network_light){vec3_of(place), (const float(*)[3])sh};
+    model_encode_sh((const float(*)[3])sh, code + 3);
 }
 
 void view_add(img *mean, const img *turned, int view, float weight)

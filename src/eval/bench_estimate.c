@@ -74,7 +74,7 @@ static status write_picture(const char *path)
     s = img_new(&mask, PICTURE, PICTURE, 1);
     if (s == OK) {
         draw_ball(&maps, &mask);
-        s = eval_render(&maps, &mask, 60, 5.95f, &(eval_lighting){{0, 0, 0}, NULL}, &picture);
+        s = eval_render(&maps, &mask, 60, 5.95f, &(illumination){{0, 0, 0}, NULL}, &picture);
         if (s == OK) s = img_write_png(path, &picture, IMG_SRGB8);
     }
     img_free(&picture);
@@ -91,14 +91,20 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
     return remove(path);
 }
 
-/* What the program said when it failed, in one line. */
+/* What the program said when it failed, in one line; code: as wait4 gives it. */
 static status explain(const char *errors, int code)
 {
     char *text = NULL;
     size_t size;
     if (file_read(errors, 1 << 16, &text, &size) != OK) return fail(ERROR_INPUT, "merlin estimate failed");
     text[strcspn(text, "\n")] = 0;
-    status s = *text ? fail(ERROR_INPUT, "%s", text) : fail(ERROR_INPUT, "merlin estimate ended with status %d", code);
+    status s = OK;
+    if (*text)
+        s = fail(ERROR_INPUT, "%s", text);
+    else if (WIFSIGNALED(code))
+        s = fail(ERROR_INPUT, "merlin estimate was ended by signal %d", WTERMSIG(code));
+    else
+        s = fail(ERROR_INPUT, "merlin estimate ended with status %d", WEXITSTATUS(code));
     free(text);
     return s;
 }
@@ -138,11 +144,12 @@ static status run_once(char *const *arguments, const bench_files *files, bench_e
 {
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions)) return fail(ERROR_MEMORY, "no memory to start %s", arguments[0]);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, files->report, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, files->errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    enum { FRESH = O_WRONLY | O_CREAT | O_TRUNC };
     pid_t child;
     double started = clock_seconds();
-    int refused = posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ);
+    int refused = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, files->report, FRESH, 0600);
+    if (!refused) refused = posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, files->errors, FRESH, 0600);
+    if (!refused) refused = posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (refused) return fail(ERROR_INPUT, "cannot start %s: %s", arguments[0], strerror(refused));
     int code;

@@ -4,7 +4,6 @@
 #include "base/rng.h"
 #include "eval/metrics.h"
 #include "optics/camera.h"
-#include "optics/light.h"
 #include "optics/sh.h"
 
 /* Apart from the streams that made the sample, so that lights are independent of the object. */
@@ -62,7 +61,7 @@ typedef struct render_work {
     const img *mask;
     camera view;
     float power;
-    const eval_lighting *lighting;
+    const illumination *light;
     img *out;
 } render_work;
 
@@ -85,12 +84,12 @@ static void render_row(void *context, size_t row)
             .normal = {n[0], n[1], n[2]},
             .depth = *img_at(&w->maps->depth, x, y),
             .ray = camera_point(&w->view, (float)x + 0.5f, (float)y + 0.5f, 1),
-            .light = w->lighting->light,
+            .light = w->light->place,
             .power = w->power,
         };
         vec3 radiance = clip(shade_point(&in));
-        if (w->lighting->sh) {
-            vec3 white = vec3_scale(sh_irradiance(w->lighting->sh, in.normal), 1 / BRDF_PI);
+        if (w->light->sh) {
+            vec3 white = vec3_scale(sh_irradiance(w->light->sh, in.normal), 1 / BRDF_PI);
             radiance = clip(vec3_add(radiance, vec3_mul(in.albedo, white)));
         }
         radiance = vec3_scale(radiance, inside);
@@ -98,12 +97,11 @@ static void render_row(void *context, size_t row)
     }
 }
 
-status eval_render(const eval_maps *maps, const img *mask, float fov, float power, const eval_lighting *lighting,
-                   img *out)
+status eval_render(const eval_maps *maps, const img *mask, float fov, float power, const illumination *light, img *out)
 {
     status s = img_new(out, mask->width, mask->height, 3);
     if (s != OK) return s;
-    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, lighting, out};
+    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, light, out};
     parallel_for((size_t)mask->height, render_row, &w);
     return OK;
 }

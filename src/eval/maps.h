@@ -3,13 +3,13 @@
  *     eval_maps truth;
  *     status s = eval_maps_of_sample(&sample, &truth);
  *     img lit;
- *     if (s == OK) s = eval_render(&truth, &sample.mask, 60, 5.95f, &lighting, &lit);
+ *     if (s == OK) s = eval_render(&truth, &sample.mask, 60, 5.95f, &light, &lit);
  *     eval_maps_free(&truth);
  */
 #ifndef MERLIN_EVAL_MAPS_H
 #define MERLIN_EVAL_MAPS_H
 
-#include "base/vec.h"
+#include "optics/light.h"
 #include "render/sample.h"
 
 typedef struct eval_maps {
@@ -26,15 +26,9 @@ status eval_maps_of_sample(const sample *s, eval_maps *out);
 /* Means of normals (3 channels) are shorter than 1. */
 void eval_make_unit(img *normal);
 
-typedef struct eval_lighting {
-    vec3 light;           /* a point light, in camera space */
-    const float (*sh)[3]; /* and surroundings, nine coefficients of optics/sh.h; NULL: dark */
-} eval_lighting;
-
-/* The object under a lighting, without shadows: optics/light.h at every pixel, clipped to [0, 1], and what the diffuse
+/* The object under a light, without shadows: optics/light.h at every pixel, clipped to [0, 1], and what the diffuse
  * surface reflects of the surroundings; clipped, times the mask. fov in degrees, power is Φ. out is made here. */
-status eval_render(const eval_maps *maps, const img *mask, float fov, float power, const eval_lighting *lighting,
-                   img *out);
+status eval_render(const eval_maps *maps, const img *mask, float fov, float power, const illumination *light, img *out);
 
 /* 1 where the coverage is above EVAL_MASK_LEVEL, else 0: the mask that the network is trained with. Made here. */
 status eval_binary_mask(const img *coverage, img *out);

@@ -162,7 +162,7 @@ static status read_means_file(const char *path, exr_file *f, eval_means *out)
 {
     float roughness, depth, samples;
     if (!exr_get_numbers(f, "roughness_mean", &roughness, 1) || !exr_get_numbers(f, "depth_mean", &depth, 1) ||
-        !exr_get_numbers(f, "sample_count", &samples, 1))
+        !exr_get_numbers(f, "sample_count", &samples, 1) || !(depth > 0 && samples >= 1 && samples < 1e12f))
         return fail(ERROR_INPUT, "%s holds no mean maps; make them with merlin eval --means", path);
     status s = eval_maps_new(&out->maps, exr_width(f), exr_height(f));
     if (s != OK) return s;

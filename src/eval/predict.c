@@ -30,8 +30,9 @@ static status build_programs(eval_model *m, nn_type type)
     status s = build_program(m, MODEL_WHOLE, 1, estimated, type, &m->maps);
     if (s == OK && (single || eval_model_relights(m)))
         s = build_program(m, MODEL_WHOLE, EVAL_LIGHTS, single ? relit_by_both : relit_by_network, type, &m->relit);
-    if (s == OK && m->config.global_illumination)
-        s = build_program(m, MODEL_INDIRECT, EVAL_LIGHTS, NULL, type, &m->indirect);
+    if (s != OK || !m->config.global_illumination) return s;
+    s = build_program(m, MODEL_INDIRECT, EVAL_LIGHTS, NULL, type, &m->indirect);
+    if (s == OK && !single) s = build_program(m, MODEL_INDIRECT, 1, NULL, type, &m->mean_indirect);
     return s;
 }
 
@@ -60,6 +61,7 @@ void eval_model_close(eval_model *m)
     if (!m) return;
     free_program(&m->maps);
     free_program(&m->relit);
+    free_program(&m->mean_indirect);
     free_program(&m->indirect);
     nn_params_free(m->params);
     free(m);
@@ -115,15 +117,8 @@ void eval_take(const nn_program *p, const char *name, size_t i, img *out)
     if (data) memcpy(out->data, data + i * count, count * sizeof *data);
 }
 
-void eval_put_picture(nn_program *p, const img *image, const img *mask, size_t i)
-{
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    model_encode_image(image->data, nn_input_data(p, "image") + 3 * i * pixels, 3 * pixels);
-    memcpy(nn_input_data(p, "mask") + i * pixels, mask->data, pixels * sizeof(float));
-}
-
-status eval_show(const eval_maps *maps, const img *mask, const eval_lighting *lighting, img *out)
+status eval_show(const eval_maps *maps, const img *mask, const illumination *light, img *out)
 {
     img_free(out);
-    return eval_render(maps, mask, MODEL_FOV, MODEL_LIGHT_POWER, lighting, out);
+    return eval_render(maps, mask, MODEL_FOV, MODEL_LIGHT_POWER, light, out);
 }

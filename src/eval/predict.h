@@ -21,7 +21,7 @@ enum { EVAL_LIGHTS = 4 };
 typedef struct eval_model eval_model;
 
 /* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. Maps are the mean over `views` orientations of
- * the picture, 1 to 8 (estimate/view.h); the relighting decoder sees the first alone. */
+ * the picture, 1 to 8 (estimate/view.h), and so is what the relighting decoder gives. */
 status eval_model_open(const char *weights, int size, nn_type type, int views, eval_model **out);
 void eval_model_close(eval_model *m);
 const model_config *eval_model_config(const eval_model *m);
@@ -29,7 +29,7 @@ const model_config *eval_model_config(const eval_model *m);
 /* Pictures are clipped to [0, 1] and zero outside the mask; those that the model's variant lacks stay black. */
 typedef struct eval_prediction {
     eval_maps maps;
-    img flash;                        /* bounce 1 of the flash alone, not clipped */
+    img flash;                        /* bounce 1 of the flash alone */
     img indirect;                     /* what the network adds to the flash and the surroundings */
     img reconstruction;               /* direct + indirect light, of the surroundings too */
     float sh[9][3];                   /* the surroundings as estimated, by models of setting B; else 0 */
@@ -49,11 +49,11 @@ status eval_estimate(eval_model *m, const img *image, const img *mask, eval_pred
 
 /* After eval_estimate of the same picture: by_network, by_brdf, both in full. Only models of setting B relight under
  * surroundings. */
-status eval_relight(eval_model *m, const img *image, const img *mask, const eval_lighting lights[EVAL_LIGHTS],
+status eval_relight(eval_model *m, const img *image, const img *mask, const illumination lights[EVAL_LIGHTS],
                     eval_prediction *out);
 
 /* After eval_relight with the same lights: the cast shadows that merlin relight makes of such maps. fov in degrees. */
-status eval_relight_shadows(eval_model *m, const img *mask, float fov, const eval_lighting lights[EVAL_LIGHTS],
+status eval_relight_shadows(eval_model *m, const img *mask, float fov, const illumination lights[EVAL_LIGHTS],
                             eval_prediction *p);
 
 /* Whether the variant has a relighting decoder. */

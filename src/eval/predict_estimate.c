@@ -13,13 +13,9 @@ static status take(const eval_model *m, const char *name, int channels, img *out
 /* What the network says of the picture in this orientation, as it lies there. */
 static status look(eval_model *m, const img *image, const img *mask, int view, network_estimation *out)
 {
-    img turned = {0}, turned_mask = {0};
-    status s = view_turn(image, view, &turned);
-    if (s == OK) s = view_turn(mask, view, &turned_mask);
-    if (s == OK) {
-        eval_put_picture(m->maps.program, &turned, &turned_mask, 0);
-        s = nn_forward(m->maps.program);
-    }
+    view_put(m->maps.program, 0, view, image, mask);
+    view_put_light(m->maps.program, &m->config, 0, view, &(illumination){{0, 0, 0}, NULL});
+    status s = nn_forward(m->maps.program);
     if (s == OK) s = take(m, "albedo", 3, &out->maps.albedo);
     if (s == OK) s = take(m, "normal", 3, &out->maps.normal);
     if (s == OK) s = take(m, "roughness", 1, &out->maps.roughness);
@@ -27,8 +23,6 @@ static status look(eval_model *m, const img *image, const img *mask, int view, n
     if (s == OK) s = take(m, "indirect", 3, &out->indirect);
     const float *code = nn_output_data(m->maps.program, "environment_code");
     if (code) model_decode_sh(code, out->environment);
-    img_free(&turned);
-    img_free(&turned_mask);
     return s;
 }
 
@@ -77,11 +71,11 @@ static status show_by_network(const eval_model *m, const img *mask, eval_predict
 /* Given all that lights the maps, and the surroundings' share of it. */
 static status bounces_of_mean(eval_model *m, const img *mask, const img *lit, const img *ambient, eval_prediction *out)
 {
-    const img pictures[EVAL_LIGHTS] = {*lit, *lit, *lit, *lit};
-    const float *indirect;
-    status s = eval_run_indirect(m, &out->maps, mask, pictures, ambient, &indirect);
-    if (s == OK && indirect)
-        memcpy(out->indirect.data, indirect, 3 * (size_t)m->size * (size_t)m->size * sizeof *indirect);
+    nn_program *p = m->mean_indirect.program;
+    if (!p) return OK;
+    eval_put_bounce(p, 0, &out->maps, mask, lit, ambient);
+    status s = nn_forward(p);
+    if (s == OK) eval_take(p, "indirect", 0, &out->indirect);
     return s;
 }
 
@@ -89,7 +83,7 @@ static status bounces_of_mean(eval_model *m, const img *mask, const img *lit, co
  * highlights of the view's own maps (estimate/estimate.c). */
 static status show_by_rendering(eval_model *m, const img *mask, eval_prediction *out)
 {
-    const eval_lighting flash = {{0, 0, 0}, NULL}, both = {{0, 0, 0}, (const float(*)[3])out->sh};
+    const illumination flash = {{0, 0, 0}, NULL}, both = {{0, 0, 0}, (const float(*)[3])out->sh};
     img lit = {0}, ambient = {0};
     status s = eval_show(&out->maps, mask, &flash, &out->flash);
     if (s == OK) s = eval_show(&out->maps, mask, &both, &lit);

@@ -12,23 +12,21 @@ typedef struct eval_program {
 struct eval_model {
     model_config config;
     nn_params *params;
-    eval_program maps;     /* of one picture */
-    eval_program relit;    /* of EVAL_LIGHTS; empty where nothing is relit by the network */
-    eval_program indirect; /* of EVAL_LIGHTS; empty for a variant without global illumination */
+    eval_program maps;          /* of one picture */
+    eval_program relit;         /* of EVAL_LIGHTS; empty where nothing is relit by the network */
+    eval_program mean_indirect; /* of one picture, the mean of several views; empty for one view */
+    eval_program indirect;      /* of EVAL_LIGHTS; both empty for a variant without global illumination */
     int size, views;
 };
 
-/* A picture and its mask into slot i. */
-void eval_put_picture(nn_program *p, const img *image, const img *mask, size_t i);
 /* Copies picture i of an output; nothing if there is no such output. */
 void eval_take(const nn_program *p, const char *name, size_t i, img *out);
 
-/* The network's bounces for four pictures of bounce 1, given the maps: borrowed until the next call; NULL for a variant
- * without. ambient: an environment's part of them, for all four, or NULL. */
-status eval_run_indirect(eval_model *m, const eval_maps *maps, const img *mask, const img direct[EVAL_LIGHTS],
-                         const img *ambient, const float **indirect);
+/* Picture `slot` of a program of MODEL_INDIRECT: its bounce 1, and an environment's part of that or NULL. */
+void eval_put_bounce(nn_program *p, size_t slot, const eval_maps *maps, const img *mask, const img *direct,
+                     const img *ambient);
 
 /* The maps lit by the training data's lamp and camera; what out held before is freed. */
-status eval_show(const eval_maps *maps, const img *mask, const eval_lighting *lighting, img *out);
+status eval_show(const eval_maps *maps, const img *mask, const illumination *light, img *out);
 
 #endif

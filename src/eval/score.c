@@ -29,7 +29,7 @@ static void score_maps(eval_subject *on, const eval_maps *maps, eval_answer answ
 
 /* A trivial answer's picture is its maps rendered. */
 static status score_trivial_picture(eval_subject *on, const eval_maps *maps, eval_answer answer, eval_row row,
-                                    const eval_lighting *light, const img *target)
+                                    const illumination *light, const img *target)
 {
     img lit;
     const sample *s = on->sample;
@@ -43,7 +43,7 @@ static status score_trivial_picture(eval_subject *on, const eval_maps *maps, eva
 static status score_reconstruction(eval_scorer *e, eval_subject *on)
 {
     float sh[9][3];
-    eval_lighting flash = {on->sample->light, eval_mean_surroundings(e, sh)};
+    illumination flash = {on->sample->light, eval_mean_surroundings(e, sh)};
     status s =
         eval_note_similarity(&on->scores, EVAL_RECONSTRUCTION, EVAL_MODEL, &e->prediction.reconstruction, &on->image);
     if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, EVAL_RECONSTRUCTION, &flash, &on->image);
@@ -65,7 +65,7 @@ status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_religh
     status s = OK;
     for (int i = 0; s == OK && i < r->count; i++) {
         const img *target = &r->targets[i];
-        const eval_lighting *light = &r->lights[i];
+        const illumination *light = &r->lights[i];
         if (eval_model_relights(e->model))
             s = eval_note_similarity(&on->scores, network, EVAL_MODEL, &by_network[i], target);
         if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
@@ -101,7 +101,7 @@ static status relight_by_tracing(const eval_subject *on, int first, eval_relight
     *r = (eval_relighting){.count = left < EVAL_LIGHTS ? left : EVAL_LIGHTS};
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         const sample_target *target = &s->targets[first + (i < r->count ? i : 0)];
-        r->lights[i].light = target->light;
+        r->lights[i].place = target->light;
         status st = i < r->count ? eval_picture(&target->direct, &target->indirect, &on->mask, &r->targets[i]) : OK;
         if (st != OK) {
             eval_relighting_free(r);
@@ -115,7 +115,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
 {
     eval_relighting r = {.count = EVAL_LIGHTS};
     for (int i = 0; i < EVAL_LIGHTS; i++)
-        r.lights[i].light = eval_light(on->sample, i);
+        r.lights[i].place = eval_light(on->sample, i);
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
     s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
@@ -140,7 +140,7 @@ static status score_true_maps(eval_subject *on, const sample_target *t, const sh
     const sample *s = on->sample;
     const eval_row rows[] = {EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS};
     img lit = {0}, seen = {0};
-    status st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, &(eval_lighting){t->light, NULL}, &lit);
+    status st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, &(illumination){t->light, NULL}, &lit);
     if (st == OK) st = shadow_cast(caster, t->light, lit.width, lit.height, &seen);
     for (int i = 0; st == OK && i < 2; i++) {
         img full = {0};

@@ -29,7 +29,7 @@ typedef struct eval_subject {
 
 /* Pictures of one relighting: up to EVAL_LIGHTS lights and their targets. */
 typedef struct eval_relighting {
-    eval_lighting lights[EVAL_LIGHTS];
+    illumination lights[EVAL_LIGHTS];
     img targets[EVAL_LIGHTS];
     int count;
 } eval_relighting;

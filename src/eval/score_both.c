@@ -56,7 +56,7 @@ status eval_score_both_lights(eval_scorer *e, eval_subject *on)
     score_surroundings(e, on);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         turned(on->sample, i, sh[i]);
-        r.lights[i] = (eval_lighting){eval_light(on->sample, i), (const float(*)[3])sh[i]};
+        r.lights[i] = (illumination){eval_light(on->sample, i), (const float(*)[3])sh[i]};
     }
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;

@@ -1,6 +1,7 @@
 #include "eval/stereo_object.h"
 
 #include <dirent.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,7 +119,7 @@ static status read_sample(const char *path, stereo_object *out)
     if (s == OK) s = take_targets(&from, &out->capture);
     if (s == OK) s = img_new(&out->photo, from.mask.width, from.mask.height, 3);
     if (s == OK) sum_into(&from.direct, &from.indirect, PHOTO_WHITE, &out->photo);
-    snprintf(out->name, sizeof out->name, "%d %.24s", (int)from.index, from.shape);
+    snprintf(out->name, sizeof out->name, "%" PRIu64 " %.10s", from.index, from.shape);
     sample_free(&from);
     return s;
 }

@@ -39,11 +39,21 @@ static void subject_free(subject *s)
 
 /* ---- one row ---- */
 
+/* Normals are compared pixel by pixel. An object of thin parts may lose them where stereo_frame shrinks it, and a
+ * closer square is what merlin_estimate takes then. */
+static status check_frame(const merlin_maps *maps, const pst_capture *c)
+{
+    if (maps->crop.x == 0 && maps->crop.y == 0 && maps->crop.side == c->width) return OK;
+    return fail(ERROR_INPUT, "shrunk to %d pixels a side the object does not fill its frame: its parts are too thin",
+                c->width);
+}
+
 static status estimate(evaluation *e, subject *s)
 {
     merlin_maps maps = {0};
     merlin_image photo = image_of(&s->object.photo), mask = image_of(&s->object.capture.mask);
     status result = (status)merlin_estimate(e->model, &photo, &mask, NULL, &maps);
+    if (result == OK) result = check_frame(&maps, &s->object.capture);
     if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
     merlin_maps_free(&maps);
     if (result == OK) result = img_copy(&s->shown[STEREO_SINGLE], &s->relit.maps.normal);
@@ -142,7 +152,8 @@ status stereo_table_run(const stereo_options *options, stereo_table *out)
     double began = clock_seconds();
     char **path;
     size_t count;
-    status s = stereo_object_list(options->data, &path, &count);
+    status s = options->figure ? file_check_writable(options->figure) : OK;
+    if (s == OK) s = stereo_object_list(options->data, &path, &count);
     if (s != OK) return s;
     out->count = options->count && options->count < count ? options->count : count;
     s = run_listed(options, path, out);

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -253,12 +254,12 @@ bool exr_get_numbers(const exr_file *f, const char *name, float *values, int cou
 {
     const exr_attribute_t *a = NULL;
     if (exr_get_attribute_by_name(f->context, 0, name, &a) != EXR_ERR_SUCCESS) return false;
-    if (a->type == EXR_ATTR_FLOAT && count == 1) {
-        values[0] = a->f;
-        return true;
-    }
-    if (a->type != EXR_ATTR_FLOAT_VECTOR || a->floatvector->length != count) return false;
-    memcpy(values, a->floatvector->arr, (size_t)count * sizeof *values);
+    bool one = a->type == EXR_ATTR_FLOAT && count == 1;
+    if (!one && (a->type != EXR_ATTR_FLOAT_VECTOR || a->floatvector->length != count)) return false;
+    const float *found = one ? &a->f : a->floatvector->arr;
+    for (int i = 0; i < count; i++)
+        if (!isfinite(found[i])) return false;
+    memcpy(values, found, (size_t)count * sizeof *values);
     return true;
 }
 

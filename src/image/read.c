@@ -36,6 +36,7 @@ static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
         {PICTURE_JPEG, 3, "\xff\xd8\xff"},    {PICTURE_TIFF, 4, "II*\0"},
         {PICTURE_TIFF, 4, "MM\0*"},           {PICTURE_TIFF, 4, "II+\0"},
         {PICTURE_TIFF, 4, "MM\0+"},           {PICTURE_HDR, 10, "#?RADIANCE"},
+        {PICTURE_HDR, 6, "#?RGBE"},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (memcmp(head, known[i].bytes, known[i].count) == 0) return known[i].kind;

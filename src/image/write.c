@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "image/codes.h"
 #include "image/color.h"
-#include "image/exr.h"
 #include "image/vips_library.h"
 
 static float unit(float x)
@@ -154,12 +153,4 @@ status img_write_animation(const char *path, const img *frames, int count, int m
     vips()->g_free(data);
     free(codes);
     return s;
-}
-
-status img_write_exr(const char *path, const img *image)
-{
-    if (!image->data || image->channels != 3)
-        return fail(ERROR_USAGE, "cannot write %s: a picture has 3 channels, not %d", path, image->channels);
-    const exr_channel channels[] = {{"R", image->data, 3}, {"G", image->data + 1, 3}, {"B", image->data + 2, 3}};
-    return exr_write(path, image->width, image->height, channels, 3, NULL, 0);
 }

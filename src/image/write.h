@@ -19,8 +19,6 @@ status img_write_png_changed(const char *path, const img *image, img_encoding en
                              const void *context);
 /* Equal-sized 3-channel linear frames as animated WebP or GIF by the path's ending, looping for ever. */
 status img_write_animation(const char *path, const img *frames, int count, int milliseconds);
-/* 3 channels, half float. */
-status img_write_exr(const char *path, const img *image);
 
 float srgb_encode(float linear);
 float srgb_decode(float encoded);

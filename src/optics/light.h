@@ -17,6 +17,12 @@
 /* Squared distances below this count as this: a light inside the surface is not infinitely bright. */
 #define LIGHT_MIN_DISTANCE2 ((real)1e-6)
 
+/* What lights an object: a point light, and surroundings beside it. */
+typedef struct illumination {
+    vec3 place;          /* of the point light, in camera space */
+    const real (*sh)[3]; /* the surroundings' nine coefficients (optics/sh.h); NULL: dark */
+} illumination;
+
 typedef struct shade_input {
     vec3 albedo;    /* linear, [0, 1] */
     real roughness; /* [0.03, 1] */

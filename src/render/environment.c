@@ -168,20 +168,6 @@ static float pdf_at(const environment *env, float x, float y)
     return texel_pdf(env, i, j);
 }
 
-vec3 environment_radiance(const environment *env, vec3 d)
-{
-    float x, y;
-    place_of(env, d, &x, &y);
-    return radiance_at(env, x, y);
-}
-
-real environment_pdf(const environment *env, vec3 d)
-{
-    float x, y;
-    place_of(env, d, &x, &y);
-    return pdf_at(env, x, y);
-}
-
 vec3 environment_look(const environment *env, vec3 d, real *pdf)
 {
     float x, y;

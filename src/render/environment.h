@@ -30,11 +30,7 @@ status environment_procedural(rng *r, environment *out);
 status environment_from_map(const img *map, rng *r, environment *out);
 void environment_free(environment *env);
 
-/* Radiance from the unit direction d, interpolated. */
-vec3 environment_radiance(const environment *env, vec3 d);
-/* Density of environment_sample at d, 1/sr. */
-real environment_pdf(const environment *env, vec3 d);
-/* Both at once. */
+/* Radiance from the unit direction d, interpolated, and the density of environment_sample there, 1/sr. */
 vec3 environment_look(const environment *env, vec3 d, real *pdf);
 /* Directions and what comes from there, one a lane. */
 typedef struct environment_rays {

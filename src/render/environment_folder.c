@@ -22,7 +22,7 @@ static status read_map(const char *path, img *out)
 
 status environment_folder_read(const char *path, environment_folder *out)
 {
-    static const char *const endings[] = {".hdr", ".exr", ".pfm", ".tif", ".tiff", ".png", ".jpg", ".jpeg", NULL};
+    static const char *const endings[] = {".hdr", ".exr", ".tif", ".tiff", ".png", ".jpg", ".jpeg", NULL};
     char **names;
     size_t count;
     *out = (environment_folder){0};

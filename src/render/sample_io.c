@@ -149,7 +149,8 @@ static void read_identity(const exr_file *f, sample *s)
     if (seed) s->seed = strtoull(seed, NULL, 10);
     if (index) s->index = strtoull(index, NULL, 10);
     if (shape) snprintf(s->shape, sizeof s->shape, "%s", shape);
-    if (exr_get_numbers(f, "generatorVersion", &version, 1)) s->generator_version = (int)version;
+    exr_get_numbers(f, "generatorVersion", &version, 1);
+    if (version >= 0 && version < 1e6f) s->generator_version = (int)version;
     exr_get_numbers(f, "sphericalHarmonics", &s->sh[0][0], 27);
 }
 
@@ -234,6 +235,13 @@ static status no_environment(const char *path)
     return fail(ERROR_INPUT, "%s was rendered without environment: render samples without --no-env", path);
 }
 
+/* The image and its coefficients. */
+static bool has_environment(const exr_file *f)
+{
+    float sh[27];
+    return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", sh, 27);
+}
+
 static status read_open(exr_file *f, const char *path, extent what, sample *s)
 {
     struct {
@@ -244,7 +252,7 @@ static status read_open(exr_file *f, const char *path, extent what, sample *s)
     channel_list *list = &work->channels;
     read_identity(f, s);
     status st = read_optics(f, path, s);
-    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !exr_has_channel(f, "env.R")) st = no_environment(path);
+    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !has_environment(f)) st = no_environment(path);
     if (st == OK) st = plan(f, path, what, s, list);
     if (st == OK) {
         for (size_t i = 0; i < list->count; i++)
@@ -289,7 +297,10 @@ status sample_read_sh(const char *path, float sh[9][3])
     exr_file *f;
     status st = exr_open(path, &f);
     if (st != OK) return st;
-    if (!exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27)) st = no_environment(path);
+    if (has_environment(f))
+        exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);
+    else
+        st = no_environment(path);
     exr_close(f);
     return st;
 }

@@ -174,7 +174,7 @@ static status read_face(ply *p, const element *e, bool is_face)
         bool list = q->count_type != NO_TYPE;
         bool polygon = is_face && list && strncmp(q->name, "vertex_ind", 10) == 0;
         if (list && !read_number(p, q->count_type, &count)) return damaged("it ends among the faces");
-        if (!(count >= 0 && (!polygon || count <= POLYGON))) return damaged("a face of too many corners");
+        if (!(count >= 0 && count <= (polygon ? POLYGON : COUNT_LIMIT))) return damaged("a list that is too long");
         for (int k = 0; k < (int)count; k++) {
             if (!read_number(p, q->type, &number)) return damaged("it ends among the faces");
             if (!polygon) continue;

@@ -2,7 +2,7 @@
  *
  *     pst_calibration c;
  *     status s = pst_calibrate_sphere("ball", &(pst_calibrate_options){.ball = PST_CHROME}, &c);
- *     if (s == OK) s = pst_calibration_write(&c, "ball");      ball/lights.txt, ball/calibration.png
+ *     if (s == OK) s = pst_calibration_write(&c, "ball/lights.txt", "ball/calibration.png");
  *     pst_calibration_free(&c);
  *
  * The lights count as distant: one direction for the whole scene. */
@@ -39,9 +39,9 @@ typedef struct pst_calibration {
 
 /* ERROR_INPUT with one clear line if the ball, or the light in a picture of it, is not found. */
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out);
-/* lights.txt (a direction a line, for pst_capture_read) and calibration.png (circle, highlights, arrows to the lights)
- * in a folder, which is made. */
-status pst_calibration_write(const pst_calibration *c, const char *folder);
+/* lights: a direction a line, which pst_capture_read finds by the name of lights.txt; picture: a PNG of circle,
+ * highlights and arrows to the lights. */
+status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture);
 void pst_calibration_free(pst_calibration *c);
 
 #endif

@@ -75,14 +75,8 @@ static status write_picture(const pst_calibration *c, const char *path)
     return s;
 }
 
-status pst_calibration_write(const pst_calibration *c, const char *folder)
+status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture)
 {
-    status s = file_make_folder(folder);
-    if (s != OK) return s;
-    char *lights = file_join(folder, "lights.txt"), *picture = file_join(folder, "calibration.png");
-    s = lights && picture ? write_picture(c, picture) : fail(ERROR_MEMORY, "no memory for a file name");
-    if (s == OK) s = write_lights(c, lights);
-    free(lights);
-    free(picture);
-    return s;
+    status s = write_picture(c, picture);
+    return s == OK ? write_lights(c, lights) : s;
 }

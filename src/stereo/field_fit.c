@@ -270,8 +270,6 @@ static status run(fit_job *job)
 {
     const pst_field *f = job->field;
     int count = f->problem->capture->count;
-    if (count > PST_MAX_LIGHTS)
-        return fail(ERROR_INPUT, "%d pictures are more than the robust fit's %d; use method ls", count, PST_MAX_LIGHTS);
     size_t padded = (size_t)pst_padded(count);
     float *memory = calloc(3 * padded + f->count, sizeof *memory);
     if (!memory) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);

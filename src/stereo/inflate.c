@@ -80,10 +80,8 @@ status pst_inflate(const img *mask, img *normal, img *height)
 {
     *normal = *height = (img){0};
     field f;
-    if (!field_new(mask, &f)) {
-        fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
-        return ERROR_MEMORY;
-    }
+    if (!field_new(mask, &f))
+        return fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
     status s = img_new(normal, mask->width, mask->height, 3);
     if (s == OK) s = img_new(height, mask->width, mask->height, 1);
     if (s == OK) {

@@ -1,4 +1,5 @@
-/* GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer, albedo and a tangent-space normal map as PNGs inside.
+/* GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer; albedo, a tangent-space normal map and roughness as PNGs
+ * inside. Its roughness is that of docs/conventions.md: both square it to the width of the lobe.
  *
  * Vertex normals are the triangles'; the normal map holds what the photometric normals say beyond them, so that a mesh
  * thinned out later keeps its shading. Tangents run along the picture's rows, x to the right and y up. */
@@ -29,8 +30,8 @@ typedef struct glb {
     part parts[MOST_PARTS];
     int count;
     float *tangent;
-    char *albedo, *normal; /* PNG files in memory, or NULL */
-    int albedo_part, normal_part, tangent_part;
+    char *albedo, *normal, *roughness; /* PNG files in memory, or NULL */
+    int albedo_part, normal_part, roughness_part, tangent_part;
 } glb;
 
 /* ---- parts ---- */
@@ -157,6 +158,22 @@ static status add_normal_map(glb *g, const char *path, const surface_mesh *m, co
     return s;
 }
 
+/* glTF keeps roughness in green, and in blue what is metal. */
+static status add_roughness(glb *g, const char *path, const img *roughness)
+{
+    img map = {0};
+    size_t size = 0;
+    status s = img_new(&map, roughness->width, roughness->height, 3);
+    if (s != OK) return s;
+    size_t count = (size_t)map.width * (size_t)map.height;
+    for (size_t i = 0; i < count; i++)
+        map.data[3 * i + 1] = roughness->data[i];
+    s = png_bytes(path, &map, IMG_LINEAR8, &g->roughness, &size);
+    img_free(&map);
+    if (s == OK) g->roughness_part = add_part(g, (part){.data = g->roughness, .size = size});
+    return s;
+}
+
 /* ---- the JSON ---- */
 
 static size_t padded(size_t size)
@@ -229,6 +246,7 @@ static void put_material(cJSON *root, const glb *g)
     cJSON_AddNumberToObject(pbr, "metallicFactor", 0);
     cJSON_AddNumberToObject(pbr, "roughnessFactor", 1);
     put_texture(root, pbr, "baseColorTexture", g->albedo_part);
+    put_texture(root, pbr, "metallicRoughnessTexture", g->roughness_part);
     put_texture(root, material, "normalTexture", g->normal_part);
     cJSON_AddBoolToObject(material, "doubleSided", true);
 }
@@ -317,14 +335,16 @@ static status assemble(const char *path, const glb *g)
 status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
     if (m->triangles == 0) return fail(ERROR_INPUT, "cannot write %s: the surface has no triangle", path);
-    glb g = {.albedo_part = -1, .normal_part = -1, .tangent_part = -1};
+    glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1};
     add_geometry(&g, m);
     status s = from->normal ? add_tangents(&g, m) : OK;
     if (s == OK && from->albedo) s = add_albedo(&g, path, from->albedo);
     if (s == OK && from->normal) s = add_normal_map(&g, path, m, from);
+    if (s == OK && from->roughness) s = add_roughness(&g, path, from->roughness);
     if (s == OK) s = assemble(path, &g);
     free(g.tangent);
     free(g.albedo);
     free(g.normal);
+    free(g.roughness);
     return s;
 }

@@ -1,5 +1,5 @@
 /* A surface as a mesh that opens in Blender and a browser: PLY (vertex colours), OBJ with texture coordinates and MTL,
- * GLB with albedo and normal map. The file's ending decides. */
+ * GLB with albedo, normal and roughness maps. The file's ending decides. */
 #ifndef MERLIN_STEREO_MESH_WRITE_H
 #define MERLIN_STEREO_MESH_WRITE_H
 
@@ -8,6 +8,7 @@
 typedef struct pst_mesh_source {
     const img *depth, *mask;    /* of one size, as normal */
     const img *normal, *albedo; /* may be NULL; albedo, where it becomes a texture (OBJ, GLB), of any size */
+    const img *roughness;       /* 1 channel, of any size, for GLB; NULL: 1 everywhere */
     pst_camera camera;
 } pst_mesh_source;
 

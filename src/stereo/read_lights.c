@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 #include "base/light_list.h"
@@ -43,20 +44,41 @@ static status names_from_folder(const char *folder, const char *lights, size_t w
     return s;
 }
 
+/* The folder's file of that name in capitals or not, such as a list from Windows may have: malloc'ed, NULL if there is
+ * not exactly one. */
+static char *find_in_any_case(const char *folder, const char *name)
+{
+    char **paths, *found = NULL;
+    size_t count, matches = 0;
+    if (file_list(folder, NULL, &paths, &count) != OK) return NULL;
+    for (size_t i = 0; i < count; i++) {
+        const char *last = base_name(paths[i]);
+        if (strcasecmp(last, name) != 0) continue;
+        free(found);
+        found = ++matches == 1 ? strdup(last) : NULL;
+    }
+    file_list_free(paths, count);
+    return found;
+}
+
+static status set_listed_name(const char *folder, const char *lights, const char *listed, size_t i, pst_capture *c)
+{
+    const char *name = base_name(listed);
+    char *path = file_join(folder, name);
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    char *found = file_exists(path) ? strdup(name) : find_in_any_case(folder, name);
+    status s = found ? pst_capture_set_name(c, i, found)
+                     : fail(ERROR_INPUT, "%s names %s, but there is no %s", lights, listed, path);
+    free(path);
+    free(found);
+    return s;
+}
+
 static status names_from_list(const char *folder, const char *lights, const light_list *list, pst_capture *c)
 {
     status s = pst_capture_reserve(c, list->count);
-    for (size_t i = 0; i < list->count && s == OK; i++) {
-        const char *name = base_name(list->name[i]);
-        char *path = file_join(folder, name);
-        if (!path)
-            s = fail(ERROR_MEMORY, "no memory for a file name");
-        else if (!file_exists(path))
-            s = fail(ERROR_INPUT, "%s names %s, but there is no %s", lights, list->name[i], path);
-        else
-            s = pst_capture_set_name(c, i, name);
-        free(path);
-    }
+    for (size_t i = 0; i < list->count && s == OK; i++)
+        s = set_listed_name(folder, lights, list->name[i], i, c);
     return s;
 }
 

@@ -1,7 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
@@ -34,7 +33,7 @@ static status check_mask(const char *path, pst_capture *c)
     size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
     for (size_t p = 0; p < pixels; p++)
         inside += (c->mask.data[p] = c->mask.data[p] >= 0.5f) > 0;
-    return inside ? OK : fail(ERROR_INPUT, "the mask %s is black everywhere", path);
+    return inside ? OK : fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
 }
 
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)

@@ -18,9 +18,6 @@ static const float dark = 0.05f, bright = 1.2f;
 status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
 {
     *out = (pst_samples){.lights = p->capture->count, .padded = (size_t)pst_padded(p->capture->count)};
-    if (out->lights > PST_MAX_LIGHTS)
-        return fail(ERROR_INPUT, "%d pictures are more than the %d that can be solved without known lights",
-                    out->lights, PST_MAX_LIGHTS);
     status s = pst_field_sample(p, count, &out->pixel, &out->count);
     if (s != OK) return s;
     size_t floats = out->count * out->padded;

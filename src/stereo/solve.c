@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "stereo/lapack.h"
+#include "stereo/pixel_fit.h"
 #include "stereo/solve_parts.h"
 
 static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
@@ -59,11 +60,14 @@ static status check_method(const pst_capture *c, pst_method m)
                     pst_method_name(m), c->lighting == PST_NEAR ? "near" : "uncalibrated");
     if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
         return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
-                    c->lighting == PST_DISTANT ? "robust" : "uncalibrated");
+                    c->lighting == PST_DISTANT ? "robust, or --near if its list holds positions" : "uncalibrated");
     if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
         return fail(ERROR_USAGE, "method near needs the camera's focal length");
     if (c->count < 3)
         return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
+    if (c->count > PST_MAX_LIGHTS && m != PST_LS)
+        return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
+                    pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
     return distant ? pst_check_directions(c->light, c->count) : OK;
 }
 

@@ -9,9 +9,9 @@
 #include "stereo/solve.h"
 
 typedef struct pst_problem {
-    const pst_capture *capture;
-    const pst_light *light; /* count; intensities above 0. The capture's own unless a solver found better */
-    uint32_t *pixel;        /* indices of the mask's pixels, rows from the top; NULL for ls, which streams them all */
+    const pst_capture *capture; /* of at most PST_MAX_LIGHTS pictures, but for ls */
+    const pst_light *light;     /* count; intensities above 0. The capture's own unless a solver found better */
+    uint32_t *pixel; /* indices of the mask's pixels, rows from the top; NULL for ls, which streams them all */
     size_t pixel_count;
     float shadow, saturation; /* shares of full scale: usable is shadow < value < saturation */
     int iterations;           /* 0: the solver's own */
@@ -52,11 +52,6 @@ static inline void pst_add_outer3(float m[6], vec3 a, vec3 v)
     m[3] += a.y * v.y;
     m[4] += a.y * v.z;
     m[5] += a.z * v.z;
-}
-
-static inline float pst_quadratic3(const float m[6], vec3 n)
-{
-    return n.x * (m[0] * n.x + 2 * (m[1] * n.y + m[2] * n.z)) + n.y * (m[3] * n.y + 2 * m[4] * n.z) + m[5] * n.z * n.z;
 }
 
 /* Unit and facing the camera; (0, 0, 1) for what has no direction. */

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 #include "image/figure.h"
@@ -29,10 +30,10 @@ static void write_header(FILE *f)
 
 status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l)
 {
-    bool fresh = !file_exists(path);
     FILE *f = fopen(path, "a");
     if (!f) return fail(ERROR_OUTPUT, "cannot append to %s: %s", path, strerror(errno));
-    if (fresh) write_header(f);
+    struct stat before;
+    if (fstat(fileno(f), &before) == 0 && before.st_size == 0) write_header(f);
     double n = l->count ? (double)l->count : 1;
     fprintf(f, "%lld,%lld,%.6g,%lld,%.6g", (long long)row->step, (long long)row->presentations, row->learning_rate,
             (long long)row->skipped, l->total / n);

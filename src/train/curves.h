@@ -20,8 +20,8 @@ typedef struct trn_curve_row {
     double learning_rate;
 } trn_curve_row;
 
-/* Appends the means as one row; losses the model lacks are empty fields. A file that does not exist yet begins with a
- * header. */
+/* Appends the means as one row; losses the model lacks are empty fields. An empty or new file
+ * begins with a header. */
 status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l);
 /* Drops rows behind the step, as if the run had ended there. A missing file is fine. */
 status trn_curve_truncate(const char *path, int64_t step);

@@ -25,8 +25,19 @@ struct trn_dataset {
     char **paths;
     _Atomic(packed *) *kept;
     atomic_size_t memory_used;
-    atomic_int generator_version;
+    int generator_version;
 };
+
+/* The folder's first sample stands for all. */
+static status read_generator_version(trn_dataset *d)
+{
+    sample first;
+    status s = sample_read_training(d->paths[0], &first);
+    if (s != OK) return s;
+    d->generator_version = first.generator_version;
+    sample_free(&first);
+    return OK;
+}
 
 status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out)
 {
@@ -44,6 +55,7 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
         d->kept = calloc(d->count, sizeof *d->kept);
         if (!d->kept) s = fail(ERROR_MEMORY, "out of memory opening %s", folder);
     }
+    if (s == OK) s = read_generator_version(d);
     if (s != OK) {
         trn_dataset_close(d);
         return s;
@@ -122,7 +134,6 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
         s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
                  one.mask.height, size, size);
     } else {
-        d->generator_version = one.generator_version;
         *out = pack(d, &one);
         if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
     }

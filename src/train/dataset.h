@@ -54,7 +54,7 @@ size_t trn_dataset_count(const trn_dataset *d);
 status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out);
 /* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
 status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);
-/* Of the first sample read; 0 before. */
+/* Of the folder's first sample. */
 int trn_dataset_generator_version(const trn_dataset *d);
 
 #endif

@@ -136,6 +136,26 @@ static void an_interrupted_write_leaves_the_old_file(void **state)
     free(path);
 }
 
+static void whether_a_file_can_be_written_is_known_before_it_is(void **state)
+{
+    (void)state;
+    char *path = in_folder("later"), *nowhere = in_folder("no/such"), *data;
+    size_t size;
+    assert_int_equal(file_check_writable(path), OK);
+    assert_int_equal(entries(), 0);
+    assert_int_equal(file_check_writable(nowhere), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), nowhere));
+    assert_int_equal(file_check_writable(folder), ERROR_OUTPUT);
+    assert_int_equal(file_write(path, "old", 3), OK);
+    assert_int_equal(file_check_writable(path), OK);
+    assert_int_equal(file_read(path, 10, &data, &size), OK);
+    assert_string_equal(data, "old");
+    unlink(path);
+    free(data);
+    free(path);
+    free(nowhere);
+}
+
 static void committing_replaces_the_file(void **state)
 {
     (void)state;
@@ -176,12 +196,14 @@ static void folders_are_made_with_those_above(void **state)
     free(deep), free(file), free(below);
 }
 
-static void lists_are_sorted_and_of_the_wanted_endings(void **state)
+static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **state)
 {
     (void)state;
-    static const char *const made[] = {"b.png", "a.PNG", "c.jpg", ".hidden.png", "png"};
+    static const char *const made[] = {"b10.png",     "b9.png", "a.PNG",    "c.jpg",
+                                       ".hidden.png", "png",    "0009.png", "0010.png"};
     static const char *const endings[] = {".png", NULL};
-    for (int i = 0; i < 5; i++) {
+    static const char *const listed[] = {"/0009.png", "/0010.png", "/a.PNG", "/b9.png", "/b10.png"};
+    for (int i = 0; i < 8; i++) {
         char *path = in_folder(made[i]);
         assert_int_equal(file_write(path, "", 0), OK);
         free(path);
@@ -189,12 +211,12 @@ static void lists_are_sorted_and_of_the_wanted_endings(void **state)
     char **names;
     size_t count;
     assert_int_equal(file_list(folder, endings, &names, &count), OK);
-    assert_int_equal(count, 2);
-    assert_string_equal(strrchr(names[0], '/'), "/a.PNG");
-    assert_string_equal(strrchr(names[1], '/'), "/b.png");
+    assert_int_equal(count, 5);
+    for (int i = 0; i < 5; i++)
+        assert_string_equal(strrchr(names[i], '/'), listed[i]);
     file_list_free(names, count);
     assert_int_equal(file_list("/nowhere", endings, &names, &count), ERROR_INPUT);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 8; i++) {
         char *path = in_folder(made[i]);
         unlink(path);
         free(path);
@@ -208,9 +230,10 @@ int main(void)
         cmocka_unit_test(larger_files_than_wanted_are_refused),
         cmocka_unit_test(a_write_that_fails_leaves_the_old_file_and_no_other),
         cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
+        cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(folders_are_made_with_those_above),
-        cmocka_unit_test(lists_are_sorted_and_of_the_wanted_endings),
+        cmocka_unit_test(lists_are_sorted_as_people_count_and_of_the_wanted_endings),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -53,6 +53,33 @@ static void lp_directions_become_positions_around_the_object(void **state)
     light_list_free(&lights);
 }
 
+static void names_may_have_blanks_and_signs_and_numbers(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(
+        parse("3\n C:\\my set\\a#1.jpg 0 0 1\nb 2 .jpg,\t0, 3,4 # a comment\n#c.jpg 0 0 1\n0 0 0 1\n", &lights), OK);
+    assert_int_equal(lights.count, 3);
+    assert_string_equal(lights.name[0], "C:\\my set\\a#1.jpg");
+    assert_string_equal(lights.name[1], "b 2 .jpg");
+    assert_float_equal(light_list_direction(&lights, 1).y, 0.6, 1e-6);
+    assert_string_equal(lights.name[2], "0");
+    light_list_free(&lights);
+}
+
+static void a_mark_of_windows_before_the_text_is_skipped(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("\xef\xbb\xbf"
+                           "0.5 0 0\r\n",
+                           &lights),
+                     OK);
+    assert_true(lights.at[0].x == (real)0.5);
+    light_list_free(&lights);
+    assert_refused("\xef\xbb\xbf", "no lights");
+}
+
 static void a_list_may_have_one_light(void **state)
 {
     (void)state;
@@ -135,6 +162,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_lists_are_positions),
         cmocka_unit_test(lp_directions_become_positions_around_the_object),
+        cmocka_unit_test(names_may_have_blanks_and_signs_and_numbers),
+        cmocka_unit_test(a_mark_of_windows_before_the_text_is_skipped),
         cmocka_unit_test(a_list_may_have_one_light),
         cmocka_unit_test(values_that_are_no_finite_numbers_are_refused),
         cmocka_unit_test(lines_of_another_shape_are_refused),

@@ -22,17 +22,19 @@ grep -q '"mask":.*"found"' disc.merlin/report.json || complain "report.json does
 
 echo "--json prints a report, --quiet nothing, --help explains"
 succeeds '^{.*"exposure_gain".*}$' estimate disc.hdr "${small[@]}" --json
+lists_its_files out.merlin $names
 [ -z "$(estimate disc.hdr "${small[@]}" --quiet 2>&1)" ] || complain "--quiet was not"
 succeeds --exposure estimate --help
 rm -rf out.merlin
 
 echo "a name that is not UTF-8 leaves the JSON valid"
 cp disc.hdr $'d\351sc\303\251\355\240\200.hdr'
-succeeds $'"photo":"d\357\277\275sc\303\251\357\277\275\357\277\275\357\277\275.hdr"' estimate d*c*.hdr --size 64 -o named --json
+succeeds $'"input":"d\357\277\275sc\303\251\357\277\275\357\277\275\357\277\275.hdr"' estimate d*c*.hdr --size 64 -o named --json
 rm -r d*sc?*.hdr named
 
 echo "--mesh adds the front as a mesh"
 succeeds disc.merlin/overview.png estimate disc.hdr --size 64 --mesh
+succeeds '"disc.merlin/mesh.glb"' estimate disc.hdr --size 64 --mesh --json
 [ "$(head -c 4 disc.merlin/mesh.glb)" = glTF ] || complain "mesh.glb is none"
 "$MERLIN" render --mesh disc.merlin/mesh.glb --count 1 --size 64 --no-env -o meshes --quiet || complain "mesh.glb cannot be read"
 
@@ -105,13 +107,25 @@ refuses 1 'file' estimate disc.hdr --size 64 -o file
 mkdir -p taken/albedo.png
 refuses 1 'taken/albedo.png' estimate disc.hdr --size 64 -o taken
 [ "$(ls -A taken)" = albedo.png ] || complain "taken has $(ls -A taken)"
+mkdir -p mesh/mesh.glb
+refuses 1 'mesh/mesh.glb: a folder is in the way' estimate disc.hdr --size 64 --mesh -o mesh
+[ "$(ls -A mesh)" = mesh.glb ] || complain "mesh has $(ls -A mesh)"
 
 echo "a disk that fills up leaves nothing"
 limited() { (ulimit -f "$1" && shift && "$@"); }
 for blocks in 1 8 24; do
-    refuses 1 'cannot write' limited $blocks "$MERLIN" estimate disc.hdr --size 64 -o full.merlin
+    refuses 1 'cannot write' limited $blocks "$MERLIN" estimate disc.hdr --size 64 --mesh -o full.merlin
     absent full.merlin
 done
+
+echo "what is read is not replaced"
+mkdir own
+cp disc.hdr own/albedo.png # by its content a Radiance picture
+refuses 1 'own/albedo.png: it is what was read' estimate own/albedo.png --size 64 -o own
+cmp -s disc.hdr own/albedo.png || complain "the photograph was replaced"
+cp disc.merlin/mask.png own
+refuses 1 'own/mask.png: it is what was read' estimate disc.hdr --mask own/mask.png --size 64 -o own/../own
+[ "$(ls -A own | tr '\n' ' ')" = 'albedo.png mask.png ' ] || complain "own has $(ls -A own)"
 
 echo "a batch goes on after a failure and says so"
 mkdir batch

@@ -25,6 +25,7 @@ refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 3x
 refuses 2 "--white wants" "$MERLIN" eval --data "$samples" --model "$weights" --white 0.5
 refuses 2 "--environments wants" "$MERLIN" eval --data "$samples" --model "$weights" --environments none
+refuses 2 "end in .png" "$MERLIN" eval --data "$samples" --model "$weights" --figure sheet.jpg
 refuses 2 "--precision wants" "$MERLIN" eval --data "$samples" --model "$weights" --precision float16
 refuses 2 "wants a value" "$MERLIN" eval --data
 refuses 2 "unexpected argument" "$MERLIN" eval --data "$samples" --model "$weights" more

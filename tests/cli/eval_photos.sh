@@ -26,6 +26,10 @@ refuses 2 'model W is missing' photos folder -o none.png
 refuses 2 'FILE.png is missing' photos folder --model weights.safetensors
 refuses 2 'at most 4' photos folder --model a --model b --model c --model d --model e -o none.png
 refuses 2 'unknown option' photos folder --nonsense
+refuses 2 'end in .png' photos folder --model weights.safetensors -o none.jpg
+cp folder/disc.hdr kept.png
+refuses 2 'one of the photographs' photos kept.png --model weights.safetensors -o ./kept.png
+cmp -s kept.png folder/disc.hdr || complain "the photograph was replaced"
 refuses 1 'missing' photos missing --model weights.safetensors -o none.png --quiet
 refuses 1 'missing.safetensors' photos --quiet folder --model missing.safetensors -o none.png
 echo "not an image" >folder/worse.png

@@ -35,7 +35,17 @@ echo "a photograph can be relit at once"
 succeeds '^{.*"lights":1,.*}$' relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
 present at-once/relit_000.png
 
-succeeds '"input":"disc.hdr","output":"at-once"' relight disc.hdr --size 64 --light 0.5,0.2,-0.4 -o at-once --json
+echo "--json lists what was written"
+lists_its_files at-once relit.png relit_000.png
+grep -q '"input":"disc.hdr"' stdout || complain "no input in $(cat stdout)"
+succeeds '"dome":3' relight disc.merlin --dome 3 --lp --orbit 2 -o all --json
+lists_its_files all dome.lp dome_00{0..2}.png frame_00{0,1}.png mask.png orbit.{gif,png,webp}
+
+echo "what is read is not replaced"
+mkdir own
+cp disc.hdr own/relit.png
+refuses 1 'own/relit.png: it is what was read' relight own/relit.png --size 64 --light 0,0,0 -o own
+[ "$(ls -A own)" = relit.png ] && cmp -s disc.hdr own/relit.png || complain "own has $(ls -A own)"
 
 echo "lists of lights"
 printf '0.5 0.2 -0.4\n# another\n-0.5 0.2 -0.4\n' >lights.txt
@@ -52,7 +62,8 @@ present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.pn
 absent orbit/frame_005.png
 
 echo "surroundings, alone and beside a light"
-radiance room.hdr 16 5
+radiance room.hdr 8 3 16
+sed -i '1s/.*/#?RGBE/' room.hdr # as some programs spell it
 succeeds room relight disc.merlin --env room.hdr -o room
 present room/relit_000.png room/relit.png
 absent room/relit_001.png
@@ -74,6 +85,7 @@ refuses 2 '--rotate' relight disc.merlin --env room.hdr --rotate left
 refuses 2 'relight by BRDF' relight disc.merlin --env room.hdr --by network -o none
 refuses 2 'point lights only' relight disc.merlin --env room.hdr --light 0,0,0 --by network -o none
 refuses 1 'missing.hdr' relight disc.merlin --env missing.hdr -o none
+refuses 1 'disc.hdr is 64×64 pixels; a latitude-longitude' relight disc.merlin --env disc.hdr -o none
 absent none
 
 echo "wrong use"
@@ -114,7 +126,7 @@ refuses 1 'cannot write' limited 1 "$MERLIN" relight disc.merlin --orbit 4 -o fu
 absent full
 
 echo "an interrupted orbit leaves nothing"
-"$MERLIN" relight disc.merlin --orbit 240 -o interrupted/deep >out 2>err &
+"$MERLIN" relight disc.merlin --orbit 240 -o interrupted/deep --quiet >out 2>err &
 pid=$!
 for _ in {1..600}; do
     [ -e interrupted/deep ] && break

@@ -25,10 +25,25 @@ echo "meshes by name, depth that may jump"
 succeeds out stereo dome --method ls --integrate edges --mesh a.ply --mesh b.glb -o out
 present "${files[@]/#/out/}" a.ply b.glb
 absent out/mesh.ply out/mesh.glb
+succeeds '"input":"dome"' stereo dome --method ls --mesh b.obj -o out --json
+for file in ./b.{mtl,obj,png} out/{maps.exr,report.json}; do
+    grep -qF "\"$file\"" stdout || complain "the files do not have $file: $(cat stdout)"
+done
 
 echo "one photograph"
 succeeds '"normal_spread_mean_degrees"' stereo disc.hdr --size 64 --json -o photo
 present "${files[@]/#/photo/}" photo/mesh.glb
+
+echo "lights from a ball, straight ahead"
+mkdir ball
+for i in 1 2; do radiance ball/$i.png 64 3; done # by their content Radiance pictures
+cp disc.merlin/mask.png ball
+succeeds '"sphere":"chrome"' stereo calibrate --sphere chrome ball -o lights --json
+lists_its_files lights calibration.png lights.txt
+[ "$(grep -c '^-*0[.]00[0-9]* -*0[.]00[0-9]* [01][.][09]' lights/lights.txt)" = 2 ] || complain "lights.txt: $(cat lights/lights.txt)"
+mkdir -p taken/lights.txt
+refuses 1 'taken/lights.txt' stereo calibrate --sphere chrome ball -o taken
+[ "$(ls -A taken)" = lights.txt ] || complain "taken has $(ls -A taken)"
 
 echo "wrong use"
 refuses 2 'no folder' stereo
@@ -38,6 +53,7 @@ refuses 2 '--integrate' stereo dome --integrate magic
 refuses 2 'c.stl' stereo dome --mesh c.stl
 refuses 2 'unknown option' stereo dome --nonsense
 refuses 2 'for one photograph' stereo dome --views 8
+refuses 2 'is the folder of the pictures' stereo dome --method ls -o ./dome/
 refuses 2 'for a folder' stereo disc.hdr --near
 refuses 2 'for a folder' stereo disc.hdr --fov 40
 refuses 2 '--fov' stereo dome --fov 200

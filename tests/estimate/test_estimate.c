@@ -1,6 +1,7 @@
 /* The whole way from photograph to folder with a model of random weights: everything but the answer's quality. */
 #include "base/file.h"
 #include "base/rng.h"
+#include "image/exr.h"
 #include "image/read.h"
 #include "merlin/merlin.h"
 #include "scratch.h"
@@ -175,6 +176,52 @@ static void empty_masks_are_refused(void **state)
     assert_int_equal(merlin_estimate(f->model, &f->photo, &mask, NULL, &maps), MERLIN_BAD_INPUT);
     assert_non_null(strstr(merlin_error(), "mask selects nothing"));
     merlin_image_free(&mask);
+}
+
+/* A picture of one colour under one alpha. */
+static const char *save_alpha(const fixture *f, float alpha, char *path, size_t size)
+{
+    enum { SIDE = 20 };
+    float values[SIDE * SIDE][4];
+    for (int i = 0; i < SIDE * SIDE; i++)
+        values[i][0] = values[i][1] = values[i][2] = 0.5f, values[i][3] = alpha;
+    const exr_channel channels[] = {
+        {"R", &values[0][0], 4}, {"G", &values[0][1], 4}, {"B", &values[0][2], 4}, {"A", &values[0][3], 4}};
+    snprintf(path, size, "%s/alpha.exr", f->folder);
+    assert_int_equal(exr_write(path, SIDE, SIDE, channels, 4, NULL, 0), OK);
+    return path;
+}
+
+static void an_alpha_that_shows_nothing_is_refused_by_its_name(void **state)
+{
+    const fixture *f = *state;
+    merlin_image color, alpha;
+    char path[96];
+    for (int k = 0; k < 2; k++) {
+        save_alpha(f, k ? 0.49f : 0, path, sizeof path);
+        assert_int_equal(merlin_image_read(path, &color, &alpha), MERLIN_BAD_INPUT);
+        assert_non_null(strstr(merlin_error(), "alpha.exr is transparent everywhere"));
+        assert_true(!color.data && !alpha.data);
+        assert_int_equal(merlin_image_read(path, &color, NULL), MERLIN_OK); /* a mask stands in for it */
+        merlin_image_free(&color);
+    }
+    assert_int_equal(merlin_image_read(save_alpha(f, 0.5f, path, sizeof path), &color, &alpha), MERLIN_OK);
+    assert_non_null(alpha.data);
+    merlin_image_free(&color);
+    merlin_image_free(&alpha);
+    assert_int_equal(merlin_image_read(save_alpha(f, 1, path, sizeof path), &color, &alpha), MERLIN_OK);
+    assert_null(alpha.data);
+    merlin_image_free(&color);
+}
+
+static void only_names_of_pngs_are_written_to(void **state)
+{
+    const fixture *f = *state;
+    char path[96];
+    snprintf(path, sizeof path, "%s/photo.jpg", f->folder);
+    assert_int_equal(merlin_image_write(path, &f->photo), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), ".png"));
+    assert_false(file_exists(path));
 }
 
 static void photographs_without_an_object_are_refused(void **state)
@@ -426,6 +473,8 @@ int main(void)
         cmocka_unit_test(the_object_is_found_without_a_mask),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
+        cmocka_unit_test(an_alpha_that_shows_nothing_is_refused_by_its_name),
+        cmocka_unit_test(only_names_of_pngs_are_written_to),
         cmocka_unit_test(maps_of_impossible_frames_are_refused),
         cmocka_unit_test(null_pointers_are_refused_and_freed),
         cmocka_unit_test(photographs_without_an_object_are_refused),

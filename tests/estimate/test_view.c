@@ -34,6 +34,15 @@ static void draw(img *photo, img *mask)
         }
 }
 
+static void turn(const img *image, int orientation, img *turned)
+{
+    size_t channels = (size_t)image->channels;
+    assert_int_equal(img_new(turned, SIZE, SIZE, image->channels), OK);
+    for (size_t i = 0; i < (size_t)SIZE * SIZE; i++)
+        memcpy(turned->data + channels * orientation_place(orientation, SIZE, i), image->data + channels * i,
+               channels * sizeof(float));
+}
+
 static float largest_difference(const img *a, const img *b)
 {
     float most = 0;
@@ -70,8 +79,8 @@ static void the_mean_over_all_views_turns_with_the_photograph(void **state)
     assert_int_equal(network_estimate(n, &photo, &mask, ORIENTATIONS, NULL, &one), OK);
     for (int o = 1; o < ORIENTATIONS; o += 3) {
         img albedo, normal;
-        assert_int_equal(view_turn(&photo, o, &turned_photo), OK);
-        assert_int_equal(view_turn(&mask, o, &turned_mask), OK);
+        turn(&photo, o, &turned_photo);
+        turn(&mask, o, &turned_mask);
         assert_int_equal(network_estimate(n, &turned_photo, &turned_mask, ORIENTATIONS, NULL, &other), OK);
         assert_int_equal(img_new(&albedo, SIZE, SIZE, 3), OK);
         assert_int_equal(img_new(&normal, SIZE, SIZE, 3), OK);
@@ -101,17 +110,20 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     network *n;
     img photo, mask, relit;
     const float environment[9][3] = {{0.8f, 0.7f, 0.6f}, {0.1f, 0.2f, 0.3f}, {-0.2f, 0, 0.1f}, {0.3f, -0.1f, 0.2f}};
-    float turned_environment[9][3];
-    const network_light light = {{0.6f, 0.3f, -0.4f}, environment};
+    const illumination light = {{0.6f, 0.3f, -0.4f}, environment};
     assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     assert_int_equal(network_relight(n, &photo, &mask, &light, &relit), OK);
     for (int o = 1; o < 4; o++) {
         img turned_photo, turned_mask, other, back;
-        network_light turned = view_turn_light(&light, o, turned_environment);
-        assert_int_equal(view_turn(&photo, o, &turned_photo), OK);
-        assert_int_equal(view_turn(&mask, o, &turned_mask), OK);
+        float place[3] = {light.place.x, light.place.y, light.place.z}, turned_environment[9][3];
+        memcpy(turned_environment, environment, sizeof environment);
+        orientation_turn(o, place);
+        orientation_turn_sh(o, turned_environment);
+        const illumination turned = {vec3_of(place), (const float(*)[3])turned_environment};
+        turn(&photo, o, &turned_photo);
+        turn(&mask, o, &turned_mask);
         assert_int_equal(network_relight(n, &turned_photo, &turned_mask, &light, &other), OK);
         assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
         view_add(&back, &other, o, 1);

@@ -8,12 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
 #include "eval/draws.h"
 #include "eval/near_capture.h"
 #include "eval/normal_frame.h"
 #include "eval/stereo_frame.h"
 #include "eval/stereo_object.h"
+#include "eval/stereo_table.h"
+#include "scratch.h"
 #include "sphere.h"
 
 /* after the project's headers: its macro fail() would break the declaration of ours */
@@ -175,6 +176,26 @@ static void normals_keep_their_angle_to_the_line_of_sight(void **state)
     img_free(&n);
 }
 
+/* A ball between two lines of one pixel's width that cross the frame, of which pixels twice as wide keep nothing. */
+static void an_object_that_shrinking_takes_apart_is_refused(void **state)
+{
+    (void)state;
+    enum { SIDE = 264 }; /* more than STEREO_OBJECT_SIDE */
+    sample s = ball_sample(SIDE, 3);
+    for (int i = 0; i < SIDE; i++)
+        *img_at(&s.mask, i, 20) = *img_at(&s.mask, 20, i) = 1;
+    char *folder = scratch_new(), *path = sample_path(folder, 0);
+    assert_int_equal(sample_write(path, &s), OK);
+    stereo_options options = {
+        .data = folder, .weights = MERLIN_SOURCE_DIR "/models/merlin-point.safetensors", .quiet = true};
+    stereo_table table;
+    assert_int_equal(stereo_table_run(&options, &table), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "too thin"));
+    free(path);
+    scratch_remove(folder);
+    sample_free(&s);
+}
+
 static void a_sample_without_targets_is_refused(void **state)
 {
     (void)state;
@@ -198,6 +219,7 @@ int main(void)
         cmocka_unit_test(real_pictures_of_a_sample_give_its_normals),
         cmocka_unit_test(a_wide_capture_is_cut_and_shrunk_with_its_camera),
         cmocka_unit_test(normals_keep_their_angle_to_the_line_of_sight),
+        cmocka_unit_test(an_object_that_shrinking_takes_apart_is_refused),
         cmocka_unit_test(a_sample_without_targets_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

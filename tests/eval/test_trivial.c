@@ -138,6 +138,26 @@ static void a_sample_is_no_file_of_means(void **state)
     scratch_remove(folder);
 }
 
+static void means_without_samples_or_depth_are_refused(void **state)
+{
+    (void)state;
+    char *folder = scratch_new();
+    write_sphere(folder, &ball, 0);
+    char *path = file_join(folder, "means.exr");
+    eval_means means, back;
+    assert_int_equal(eval_means_of_folder(folder, 0, true, &means), OK);
+    for (int i = 0; i < 2; i++) {
+        eval_means wrong = means;
+        if (i == 0) wrong.samples = 0;
+        if (i == 1) wrong.depth = -1;
+        assert_int_equal(eval_means_write(&wrong, path), OK);
+        assert_int_equal(eval_means_read(path, 96, 96, &back), ERROR_INPUT);
+    }
+    eval_means_free(&means);
+    free(path);
+    scratch_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +166,7 @@ int main(void)
         cmocka_unit_test(means_survive_their_file_and_another_size),
         cmocka_unit_test(samples_of_two_sizes_have_no_mean),
         cmocka_unit_test(a_sample_is_no_file_of_means),
+        cmocka_unit_test(means_without_samples_or_depth_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,9 @@ static status write_example(const char *path, const float *rgb, const float *dep
     const exr_attribute attributes[] = {exr_number("fov", 60),
                                         exr_text("shape", "union"),
                                         {.name = "light", .values = {0.25f, -1, 3}, .count = 3},
-                                        exr_text("a name that is longer than thirty-one letters", "kept")};
-    return exr_write(path, WIDTH, HEIGHT, channels, 4, attributes, 4);
+                                        exr_text("a name that is longer than thirty-one letters", "kept"),
+                                        {.name = "not finite", .values = {1, NAN}, .count = 2}};
+    return exr_write(path, WIDTH, HEIGHT, channels, 4, attributes, 5);
 }
 
 static void fill(float *rgb, float *depth)
@@ -56,6 +57,7 @@ static void written_channels_and_attributes_are_read_back(void **state)
     assert_false(exr_get_numbers(f, "light", two, 2));
     assert_false(exr_get_numbers(f, "shape", &number, 1));
     assert_false(exr_get_numbers(f, "none", &number, 1));
+    assert_false(exr_get_numbers(f, "not finite", two, 2));
     assert_string_equal(exr_get_text(f, "shape"), "union");
     assert_string_equal(exr_get_text(f, "a name that is longer than thirty-one letters"), "kept");
     assert_null(exr_get_text(f, "none"));

@@ -280,7 +280,8 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     assert_int_equal(img_new(&picture, 5, 3, 3), OK);
     for (int i = 0; i < 45; i++)
         picture.data[i] = (float)i / 8;
-    assert_int_equal(img_write_exr(scratch_path("rgb.exr"), &picture), OK);
+    const exr_channel rgb[] = {{"R", picture.data, 3}, {"G", picture.data + 1, 3}, {"B", picture.data + 2, 3}};
+    assert_int_equal(exr_write(scratch_path("rgb.exr"), 5, 3, rgb, 3, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("rgb.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     assert_null(alpha.data);

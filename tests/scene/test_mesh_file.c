@@ -153,6 +153,10 @@ static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **sta
     assert_refused("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_refused("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
     assert_refused("junk.ply", "this is not a mesh\n");
+    assert_refused("list.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                               "property float z\nelement face 1\nproperty list int int other\n"
+                               "property list int int vertex_indices\nend_header\n"
+                               "0 0 0\n1 0 0\n0 1 0\n4e9 3 0 1 2\n");
     assert_refused("junk.glb", "glTFnot really");
     assert_refused("photo.jpg", "anything");
     scn_object o;

@@ -112,7 +112,7 @@ static void what_was_found_is_written(void **state)
     write_balls(chrome, IMG_SRGB8);
     pst_calibration c;
     assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = PST_CHROME}, &c), OK);
-    assert_int_equal(pst_calibration_write(&c, scratch), OK);
+    assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
     light_list list;
     assert_int_equal(light_list_read(scratch_path("lights.txt"), &list), OK);
     assert_int_equal(list.count, LIGHTS);
@@ -227,7 +227,7 @@ static void a_real_matte_ball_comes_out_round(void **state)
     pst_calibration c;
     pst_calibrate_options options = {.ball = PST_MATTE, .linear = true};
     assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
-    assert_int_equal(pst_calibration_write(&c, scratch), OK);
+    assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
     char *lights[] = {file_join(scratch, "lights.txt"), file_join(where, "lights.txt")};
     for (int i = 0; i < 2; i++) {
         pst_capture capture;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "image/read.h"
 #include "image/resize.h"
 #include "scratch.h"
 #include "stereo/mesh_write.h"
@@ -22,7 +23,7 @@ enum { WIDTH = 12, HEIGHT = 9 };
 
 /* A wavy sheet one unit away, whose mask lacks the top left pixel and whose right third lies far behind. */
 typedef struct sheet {
-    img depth, mask, normal, albedo;
+    img depth, mask, normal, albedo, roughness;
     pst_mesh_source source;
 } sheet;
 
@@ -37,6 +38,7 @@ static void sheet_fill(sheet *s)
             n[2] = sqrtf(1 - 0.09f);
             a[0] = 0.5f;
             a[1] = (float)y / HEIGHT;
+            *img_at(&s->roughness, x, y) = 0.6f; /* 153 of 255 */
         }
 }
 
@@ -47,8 +49,10 @@ static void sheet_new(sheet *s, bool perspective)
     assert_int_equal(img_new(&s->mask, WIDTH, HEIGHT, 1), OK);
     assert_int_equal(img_new(&s->normal, WIDTH, HEIGHT, 3), OK);
     assert_int_equal(img_new(&s->albedo, WIDTH, HEIGHT, 3), OK);
+    assert_int_equal(img_new(&s->roughness, WIDTH, HEIGHT, 1), OK);
     sheet_fill(s);
-    s->source = (pst_mesh_source){&s->depth, &s->mask, &s->normal, &s->albedo, {.perspective = perspective}};
+    s->source =
+        (pst_mesh_source){&s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.perspective = perspective}};
     s->source.camera.focal = 10;
     s->source.camera.center_x = 6;
     s->source.camera.center_y = 4.5f;
@@ -56,6 +60,7 @@ static void sheet_new(sheet *s, bool perspective)
 
 static void sheet_free(sheet *s)
 {
+    img_free(&s->roughness);
     img_free(&s->depth);
     img_free(&s->mask);
     img_free(&s->normal);
@@ -149,11 +154,36 @@ static void a_glb_keeps_the_container_rules(void **state)
     assert_non_null(strstr(data + 20, "\"normalTexture\""));
     assert_non_null(strstr(data + 20, "\"baseColorTexture\""));
     assert_non_null(strstr(data + 20, "\"min\":[")); /* positions have bounds */
-    /* both pictures are PNG files at a multiple of four */
+    /* the pictures are PNG files at a multiple of four */
     int pictures = 0;
     for (uint32_t at = 0; at + 8 <= binary; at += 4)
         pictures += memcmp(data + 28 + json + at, "\x89PNG\r\n\x1a\n", 8) == 0;
-    assert_int_equal(pictures, 2);
+    assert_int_equal(pictures, 3);
+    free(data);
+    sheet_free(&s);
+}
+
+static void a_glb_has_the_roughness_in_green(void **state)
+{
+    (void)state;
+    sheet s;
+    sheet_new(&s, true);
+    s.source.albedo = s.source.normal = NULL; /* so that it is the only picture, and the last part */
+    assert_int_equal(pst_mesh_write(scratch_path("r.glb"), &s.source), OK);
+    char *data;
+    size_t size, at = 0;
+    assert_int_equal(file_read(scratch_path("r.glb"), 1 << 20, &data, &size), OK);
+    assert_non_null(strstr(data + 20, "\"metallicRoughnessTexture\":{\"index\":0}"));
+    while (at + 8 < size && memcmp(data + at, "\x89PNG\r\n\x1a\n", 8) != 0)
+        at++;
+    const char *picture = scratch_path("r.png");
+    assert_int_equal(file_write(picture, data + at, size - at), OK);
+    img read;
+    int bits;
+    assert_int_equal(img_read_samples(picture, false, &read, &bits), OK);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        assert_true(read.data[3 * i + 1] == 153 / 255.0f && read.data[3 * i + 2] == 0);
+    img_free(&read);
     free(data);
     sheet_free(&s);
 }
@@ -164,7 +194,7 @@ static void albedo_and_normals_may_be_missing(void **state)
     static const char *const names[] = {"d.ply", "d.obj", "d.glb"};
     sheet s;
     sheet_new(&s, true);
-    s.source.albedo = s.source.normal = NULL;
+    s.source.albedo = s.source.normal = s.source.roughness = NULL;
     for (int i = 0; i < 3; i++) {
         assert_int_equal(pst_mesh_write(scratch_path(names[i]), &s.source), OK);
         check_mesh(scratch_path(names[i]), i == 0, i > 0);
@@ -209,6 +239,7 @@ int main(void)
         cmocka_unit_test(every_format_is_read_back_as_the_same_surface),
         cmocka_unit_test(an_obj_names_its_material_and_texture),
         cmocka_unit_test(a_glb_keeps_the_container_rules),
+        cmocka_unit_test(a_glb_has_the_roughness_in_green),
         cmocka_unit_test(albedo_and_normals_may_be_missing),
         cmocka_unit_test(a_texture_may_be_finer_than_the_shape),
         cmocka_unit_test(what_cannot_be_a_mesh_is_refused),

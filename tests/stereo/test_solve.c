@@ -8,6 +8,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
+#include "stereo/pixel_fit.h"
 
 static const relief lambert = {.size = 48, .lights = 24, .channels = 1, .exposure = 1.8f};
 static const relief glossy = {.size = 64,
@@ -327,6 +328,11 @@ static void impossible_captures_are_refused_in_one_line(void **state)
     int count = c.count;
     c.count = 2;
     refused(&c, PST_LS, "3 or more");
+    c.count = PST_MAX_LIGHTS + 1;
+    refused(&c, PST_ROBUST, "1025 pictures");
+    c.lighting = PST_UNKNOWN_LIGHT;
+    refused(&c, PST_UNCALIBRATED, "1025 pictures");
+    c.lighting = PST_DISTANT;
     c.count = count;
     float kept = c.light[3].intensity[0];
     c.light[3].intensity[0] = -1;

@@ -85,6 +85,27 @@ static void sample_of_another_size_is_refused(void **state)
     trn_dataset_close(d);
 }
 
+static void a_folder_is_of_its_first_samples_version(void **state)
+{
+    (void)state;
+    char *folder = scratch_new();
+    trn_dataset *d;
+    for (int i = 0; i < 2; i++) {
+        sphere_write(folder, 32, i);
+        char *path = sample_path(folder, (uint64_t)i);
+        sample s;
+        assert_int_equal(sample_read(path, &s), OK);
+        s.generator_version = 7 + i;
+        assert_int_equal(sample_write(path, &s), OK);
+        sample_free(&s);
+        free(path);
+    }
+    assert_int_equal(trn_dataset_open(folder, &(trn_dataset_options){.size = 32}, &d), OK);
+    assert_int_equal(trn_dataset_generator_version(d), 7);
+    trn_dataset_close(d);
+    scratch_remove(folder);
+}
+
 static void empty_folder_is_refused(void **state)
 {
     (void)state;
@@ -451,6 +472,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_eight_orientations_differ, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sample_from_memory_equals_sample_from_disk, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sample_of_another_size_is_refused, set_up, tear_down),
+        cmocka_unit_test(a_folder_is_of_its_first_samples_version),
         cmocka_unit_test(empty_folder_is_refused),
         cmocka_unit_test_setup_teardown(perfect_camera_shows_direct_plus_indirect, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sensor_saturates_at_its_white, set_up, tear_down),

@@ -244,6 +244,24 @@ static void charts_are_drawn_of_rows_with_fewer_losses(void **state)
     assert_true(file_exists(png));
 }
 
+static void a_curve_cut_within_its_header_begins_anew(void **state)
+{
+    const fixture *f = *state;
+    char csv[300], *text;
+    size_t size;
+    snprintf(csv, sizeof csv, "%s/cut.csv", f->root);
+    assert_int_equal(file_write(csv, "step,pres", 9), OK);
+    assert_int_equal(trn_curve_truncate(csv, 4), OK);
+    assert_int_equal(trn_curve_append(csv, &(trn_curve_row){.step = 5}, &(trn_losses){.count = 1}), OK);
+    assert_int_equal(trn_curve_append(csv, &(trn_curve_row){.step = 6}, &(trn_losses){.count = 1}), OK);
+    assert_int_equal(file_read(csv, 1 << 12, &text, &size), OK);
+    assert_int_equal(strncmp(text, "step,presentations,", 19), 0);
+    assert_null(strstr(text + 1, "step,"));
+    assert_non_null(strstr(text, "\n5,"));
+    assert_non_null(strstr(text, "\n6,"));
+    free(text);
+}
+
 static void run_is_not_overwritten_without_resume(void **state)
 {
     const fixture *f = *state;
@@ -299,6 +317,7 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_on_faulty_photographs_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_curve_cut_within_its_header_begins_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),

@@ -38,6 +38,15 @@ refuses() {
     [[ ! -s $scratch/stdout ]] || complain "$* wrote to standard output: $(head -2 "$scratch/stdout")"
 }
 
+# lists_its_files FOLDER NAME...: the JSON that succeeds has just got says that FOLDER is the output, and these the files.
+lists_its_files() {
+    local folder=$1 files=
+    shift
+    for name in "$@"; do files+="${files:+,}\"$folder/$name\""; done
+    grep -qF "\"output\":\"$folder\",\"files\":[$files]" "$scratch/stdout" ||
+        complain "no output $folder with files $* in: $(cat "$scratch/stdout")"
+}
+
 # Four tiny samples in $scratch/samples and weights of a tiny model in $scratch/weights.safetensors.
 make_tiny_model() {
     cat >"$scratch/tiny.json" <<'JSON'

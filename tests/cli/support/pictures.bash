@@ -9,14 +9,14 @@ present() {
     for path in "$@"; do [ -s "$path" ] || complain "$path is missing or empty"; done
 }
 
-# radiance FILE SIDE RADIUS: a Radiance HDR picture of a bright disc before black.
+# radiance FILE SIDE RADIUS [WIDTH]: a Radiance HDR picture of a bright disc before black, SIDE high and as wide or WIDTH.
 radiance() {
-    local file=$1 side=$2 radius=$3 x y row
-    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n' "$side" "$side" >"$file"
+    local file=$1 side=$2 radius=$3 width=${4:-$2} x y row
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n' "$side" "$width" >"$file"
     for ((y = 0; y < side; y++)); do
         row=
-        for ((x = 0; x < side; x++)); do
-            if (((2 * x - side) ** 2 + (2 * y - side) ** 2 < 4 * radius ** 2)); then
+        for ((x = 0; x < width; x++)); do
+            if (((2 * x - width) ** 2 + (2 * y - side) ** 2 < 4 * radius ** 2)); then
                 row+='\240\200\140\200'
             else
                 row+='\003\003\003\170'
