@@ -158,6 +158,19 @@ static status write_through_temporary(const char *path, const void *data, size_t
     return file_commit(temporary, path);
 }
 
+status file_check_writable(const char *path)
+{
+    char *temporary;
+    if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
+    status s = file_temporary(path, &temporary);
+    if (s != OK) return s;
+    FILE *f = fopen(temporary, "wb");
+    if (!f) s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    if (f) fclose(f);
+    file_discard(temporary);
+    return s;
+}
+
 status file_write(const char *path, const void *data, size_t size)
 {
     return write_through_temporary(path, data, size, false);

@@ -42,6 +42,9 @@ status file_temporary(const char *path, char **temporary);
 status file_commit(char *temporary, const char *path);
 void file_discard(char *temporary);
 
+/* Whether a file could be written there, by making one beside it: for what is to be written after long work. */
+status file_check_writable(const char *path);
+
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
 /* Whether two paths lead to one file or folder, which exists. */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/options.h"
@@ -84,7 +85,8 @@ static int run_means(const request *r)
 {
     if (!r->output) return cli_usage("eval", "--means needs -o FILE.exr");
     eval_means means;
-    status s = eval_means_of_folder(r->means_folder, r->options.count, r->options.quiet, &means);
+    status s = file_check_writable(r->output);
+    if (s == OK) s = eval_means_of_folder(r->means_folder, r->options.count, r->options.quiet, &means);
     if (s != OK) return cli_fail("eval", s);
     s = eval_means_write(&means, r->output);
     if (s == OK && !r->options.quiet) printf("%s: means over %zu samples\n", r->output, means.samples);

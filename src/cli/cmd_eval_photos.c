@@ -207,7 +207,8 @@ int eval_photos(int argc, char **argv)
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval photos", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     photo_list photos;
-    status s = photo_list_make(argv, argc, r.mask, NULL, &photos);
+    status s = file_check_writable(r.output);
+    if (s == OK) s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
     cli_catch_interrupts();
     size_t failures = 0;

@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "estimate/lobe.h"
-#include "image/color.h"
 #include "optics/brdf.h"
 #include "optics/camera.h"
 

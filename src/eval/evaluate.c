@@ -122,7 +122,8 @@ status eval_run(const eval_options *options, eval_report *out)
     double started = clock_seconds();
     char **names;
     size_t count;
-    status s = file_list(options->data, (const char *const[]){".exr", NULL}, &names, &count);
+    status s = options->figure ? file_check_writable(options->figure) : OK;
+    if (s == OK) s = file_list(options->data, (const char *const[]){".exr", NULL}, &names, &count);
     if (s != OK) return s;
     if (!count) s = fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin render", options->data);
     size_t used = options->count && options->count < count ? options->count : count;

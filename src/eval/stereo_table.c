@@ -152,7 +152,8 @@ status stereo_table_run(const stereo_options *options, stereo_table *out)
     double began = clock_seconds();
     char **path;
     size_t count;
-    status s = stereo_object_list(options->data, &path, &count);
+    status s = options->figure ? file_check_writable(options->figure) : OK;
+    if (s == OK) s = stereo_object_list(options->data, &path, &count);
     if (s != OK) return s;
     out->count = options->count && options->count < count ? options->count : count;
     s = run_listed(options, path, out);

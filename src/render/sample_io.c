@@ -236,9 +236,10 @@ static status no_environment(const char *path)
 }
 
 /* The image and its coefficients. */
-static bool has_environment(const exr_file *f, float sh[9][3])
+static bool has_environment(const exr_file *f)
 {
-    return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);
+    float sh[27];
+    return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", sh, 27);
 }
 
 static status read_open(exr_file *f, const char *path, extent what, sample *s)
@@ -251,7 +252,7 @@ static status read_open(exr_file *f, const char *path, extent what, sample *s)
     channel_list *list = &work->channels;
     read_identity(f, s);
     status st = read_optics(f, path, s);
-    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !has_environment(f, s->sh)) st = no_environment(path);
+    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !has_environment(f)) st = no_environment(path);
     if (st == OK) st = plan(f, path, what, s, list);
     if (st == OK) {
         for (size_t i = 0; i < list->count; i++)
@@ -296,7 +297,10 @@ status sample_read_sh(const char *path, float sh[9][3])
     exr_file *f;
     status st = exr_open(path, &f);
     if (st != OK) return st;
-    if (!has_environment(f, sh)) st = no_environment(path);
+    if (has_environment(f))
+        exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);
+    else
+        st = no_environment(path);
     exr_close(f);
     return st;
 }

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include "scene/material.h"
-#include "scene/noise.h"
 #include "scene/number.h"
 #include "scene/palette.h"
 

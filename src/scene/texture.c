@@ -1,7 +1,5 @@
 #include "scene/texture.h"
 
-#include "scene/number.h"
-
 enum { PLANES = 3, MAX_CHANNELS = 3 };
 
 /* A point seen on the three planes: z, x and y across. */

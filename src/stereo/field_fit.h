@@ -1,7 +1,7 @@
 /* The robust fit of pixel_fit.h over many pixels: gathers each pixel's values from the pictures, and its lights where
  * they are near.
  *
- *     pst_field f = {.problem = p, .pixel = p->pixel, .count = p->pixel_count, .out = out};
+ *     pst_field f = {.problem = p, .pixel = p->pixel, .count = p->pixel_count, .b = normals};
  *     double cost;
  *     status s = pst_field_fit(&f, &cost); */
 #ifndef MERLIN_STEREO_FIELD_FIT_H

@@ -1,7 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 

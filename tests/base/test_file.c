@@ -136,6 +136,26 @@ static void an_interrupted_write_leaves_the_old_file(void **state)
     free(path);
 }
 
+static void whether_a_file_can_be_written_is_known_before_it_is(void **state)
+{
+    (void)state;
+    char *path = in_folder("later"), *nowhere = in_folder("no/such"), *data;
+    size_t size;
+    assert_int_equal(file_check_writable(path), OK);
+    assert_int_equal(entries(), 0);
+    assert_int_equal(file_check_writable(nowhere), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), nowhere));
+    assert_int_equal(file_check_writable(folder), ERROR_OUTPUT);
+    assert_int_equal(file_write(path, "old", 3), OK);
+    assert_int_equal(file_check_writable(path), OK);
+    assert_int_equal(file_read(path, 10, &data, &size), OK);
+    assert_string_equal(data, "old");
+    unlink(path);
+    free(data);
+    free(path);
+    free(nowhere);
+}
+
 static void committing_replaces_the_file(void **state)
 {
     (void)state;
@@ -210,6 +230,7 @@ int main(void)
         cmocka_unit_test(larger_files_than_wanted_are_refused),
         cmocka_unit_test(a_write_that_fails_leaves_the_old_file_and_no_other),
         cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
+        cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(folders_are_made_with_those_above),
         cmocka_unit_test(lists_are_sorted_as_people_count_and_of_the_wanted_endings),

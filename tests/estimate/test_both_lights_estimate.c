@@ -1,5 +1,4 @@
 /* Photographs in surroundings: models of both lights from estimate to relight, with random weights. */
-#include "base/file.h"
 #include "image/image.h"
 #include "image/write.h"
 #include "merlin/merlin.h"

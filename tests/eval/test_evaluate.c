@@ -253,6 +253,17 @@ static void samples_of_another_size_are_refused(void **state)
     free(folder);
 }
 
+static void a_figure_that_cannot_be_written_is_refused_before_the_work(void **state)
+{
+    const fixture *f = *state;
+    char *figure = file_join(f->folder, "no/such/folder.png");
+    eval_options options = {.data = "/no/data", .weights = f->weights, .figure = figure, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), figure));
+    free(figure);
+}
+
 static void a_verdict_compares_with_the_better_trivial_answer(void **state)
 {
     (void)state;
@@ -382,6 +393,7 @@ int main(void)
         cmocka_unit_test(views_are_those_of_estimate_where_none_are_given),
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
+        cmocka_unit_test(a_figure_that_cannot_be_written_is_refused_before_the_work),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
         cmocka_unit_test(even_surroundings_show_the_albedo),
         cmocka_unit_test(relighting_by_environments_is_measured_on_the_first_samples),

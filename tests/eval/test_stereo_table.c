@@ -8,7 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
 #include "eval/draws.h"
 #include "eval/near_capture.h"
 #include "eval/normal_frame.h"
