@@ -40,7 +40,9 @@ static const char help[] =
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
-    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n";
+    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
+    "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (mesh.glb is\n"
+    "scaled to a picture one unit large).\n";
 
 typedef struct request {
     const char *input, *output, *weights;
