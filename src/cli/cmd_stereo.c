@@ -13,6 +13,7 @@
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
 #include "cli/stereo_photo.h"
+#include "stereo/albedo_scale.h"
 #include "stereo/mesh_write.h"
 
 static const char help[] =
@@ -39,7 +40,9 @@ static const char help[] =
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
-    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n";
+    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
+    "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (mesh.glb is\n"
+    "scaled to a picture one unit large).\n";
 
 typedef struct request {
     const char *input, *output, *weights;
@@ -174,8 +177,10 @@ static status work(request *r, const char *output, cJSON *report)
     json_line_text(report, "input", r->input);
     status s =
         file_is_folder(r->input) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    float scale = 1;
+    if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
     if (s == OK) {
-        cJSON_AddNumberToObject(report, "albedo_scale", (double)stereo_scale_albedo(&result));
+        cJSON_AddNumberToObject(report, "albedo_scale", (double)scale);
         cJSON_AddStringToObject(report, "error_map", result.error_name);
         cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
         cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");

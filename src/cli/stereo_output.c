@@ -1,6 +1,5 @@
 #include "cli/stereo_output.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +11,7 @@
 #include "image/write.h"
 #include "stereo/mesh_write.h"
 
-enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384, MOST_SAMPLES = 1 << 16 };
-static const float BRIGHT = 0.9f; /* where the albedo's 99th percentile goes */
+enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
 
 void stereo_result_free(stereo_result *r)
 {
@@ -25,32 +23,6 @@ void stereo_result_free(stereo_result *r)
 static size_t pixel_count(const stereo_result *r)
 {
     return (size_t)r->mask.width * (size_t)r->mask.height;
-}
-
-/* ---- albedo's scale ---- */
-
-static int compare(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-float stereo_scale_albedo(stereo_result *r)
-{
-    float *sample = malloc(MOST_SAMPLES * sizeof *sample), scale = 1;
-    if (!sample) return scale;
-    size_t values = 3 * pixel_count(r), step = values / MOST_SAMPLES + 1, count = 0;
-    for (size_t i = 0; i < values; i += step)
-        if (r->mask.data[i / 3] > 0.5f && isfinite(r->albedo.data[i])) sample[count++] = r->albedo.data[i];
-    qsort(sample, count, sizeof *sample, compare);
-    float bright = count ? sample[count * 99 / 100] : 0;
-    if (bright > 0) scale = BRIGHT / bright;
-    for (size_t i = 0; i < values; i++) {
-        float x = r->albedo.data[i] * scale;
-        r->albedo.data[i] = x > 0 ? (x < 1 ? x : 1) : 0;
-    }
-    free(sample);
-    return scale;
 }
 
 /* ---- one file each ---- */

@@ -20,10 +20,6 @@ typedef struct stereo_result {
 
 void stereo_result_free(stereo_result *r);
 
-/* Scales the albedo so that its 99th percentile on the object is 0.9: one without a known exposure has no scale of its
- * own. Returns the factor. */
-float stereo_scale_albedo(stereo_result *r);
-
 typedef struct stereo_files {
     const char *folder;
     const char *const *inputs;            /* as in staging_begin */

@@ -184,6 +184,20 @@ static void solve_blocks(void *context, size_t begin, size_t end)
     }
 }
 
+/* The most that a pixel's channels have on average in any picture, in codes. */
+static double brightest(const pst_capture *c, size_t pixel)
+{
+    uint32_t top = 0;
+    size_t channels = (size_t)c->channels;
+    for (int k = 0; k < c->count; k++) {
+        uint32_t sum = 0;
+        for (size_t ch = 0; ch < channels; ch++)
+            sum += c->picture[k][channels * pixel + ch];
+        top = sum > top ? sum : top;
+    }
+    return (double)top / (double)channels;
+}
+
 /* A hundredth of what the object's pixels reach at their brightest, on average over the first of every so many pixels.
  */
 static float chosen_shadow(const pst_capture *c)
@@ -195,12 +209,7 @@ static float chosen_shadow(const pst_capture *c)
         while (i < end && !(c->mask.data[i] > 0.5f))
             i++;
         if (i == end) continue;
-        uint16_t top = 0;
-        for (int k = 0; k < c->count; k++) {
-            uint16_t code = c->picture[k][i * (size_t)c->channels];
-            top = code > top ? code : top;
-        }
-        sum += top;
+        sum += brightest(c, i);
         count++;
     }
     return (float)(0.01 * sum / (65535.0 * (double)count));

@@ -32,6 +32,7 @@ typedef struct glb {
     float *tangent;
     char *albedo, *normal, *roughness; /* PNG files in memory, or NULL */
     int albedo_part, normal_part, roughness_part, tangent_part;
+    double scale; /* of the scene: viewers take a unit for a metre */
 } glb;
 
 /* ---- parts ---- */
@@ -259,7 +260,9 @@ static void put_scene(cJSON *root, const glb *g)
     cJSON_AddNumberToObject(root, "scene", 0);
     cJSON *nodes = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "scenes")), "nodes");
     cJSON_AddItemToArray(nodes, cJSON_CreateNumber(0));
-    cJSON_AddNumberToObject(add_item(cJSON_AddArrayToObject(root, "nodes")), "mesh", 0);
+    cJSON *node = add_item(cJSON_AddArrayToObject(root, "nodes"));
+    cJSON_AddNumberToObject(node, "mesh", 0);
+    cJSON_AddItemToObject(node, "scale", cJSON_CreateDoubleArray((const double[]){g->scale, g->scale, g->scale}, 3));
     cJSON *primitives = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "meshes")), "primitives");
     cJSON *primitive = add_item(primitives), *attributes = cJSON_AddObjectToObject(primitive, "attributes");
     cJSON_AddNumberToObject(attributes, "POSITION", 0);
@@ -335,7 +338,9 @@ static status assemble(const char *path, const glb *g)
 status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
     if (m->triangles == 0) return fail(ERROR_INPUT, "cannot write %s: the surface has no triangle", path);
-    glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1};
+    glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
+    int longest = from->depth->width > from->depth->height ? from->depth->width : from->depth->height;
+    if (!from->camera.perspective) g.scale = 1.0 / longest; /* positions are in pixels */
     add_geometry(&g, m);
     status s = from->normal ? add_tangents(&g, m) : OK;
     if (s == OK && from->albedo) s = add_albedo(&g, path, from->albedo);

@@ -188,6 +188,26 @@ static void a_glb_has_the_roughness_in_green(void **state)
     sheet_free(&s);
 }
 
+static void a_glb_of_pixels_is_shown_one_unit_large(void **state)
+{
+    (void)state;
+    sheet s;
+    sheet_new(&s, false);
+    assert_int_equal(pst_mesh_write(scratch_path("p.glb"), &s.source), OK);
+    const struct aiScene *scene =
+        aiImportFile(scratch_path("p.glb"), aiProcess_ValidateDataStructure | aiProcess_PreTransformVertices);
+    assert_non_null(scene);
+    float left = 1, right = -1;
+    for (unsigned v = 0; v < scene->mMeshes[0]->mNumVertices; v++) {
+        left = fminf(left, scene->mMeshes[0]->mVertices[v].x);
+        right = fmaxf(right, scene->mMeshes[0]->mVertices[v].x);
+    }
+    /* vertices are the middles of WIDTH pixels, the longer side; to a float's precision */
+    assert_float_equal(right - left, (WIDTH - 1.0) / WIDTH, 1e-6);
+    aiReleaseImport(scene);
+    sheet_free(&s);
+}
+
 static void albedo_and_normals_may_be_missing(void **state)
 {
     (void)state;
@@ -240,6 +260,7 @@ int main(void)
         cmocka_unit_test(an_obj_names_its_material_and_texture),
         cmocka_unit_test(a_glb_keeps_the_container_rules),
         cmocka_unit_test(a_glb_has_the_roughness_in_green),
+        cmocka_unit_test(a_glb_of_pixels_is_shown_one_unit_large),
         cmocka_unit_test(albedo_and_normals_may_be_missing),
         cmocka_unit_test(a_texture_may_be_finer_than_the_shape),
         cmocka_unit_test(what_cannot_be_a_mesh_is_refused),

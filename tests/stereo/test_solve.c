@@ -63,6 +63,29 @@ static void intensities_are_divided_out(void **state)
 }
 
 /* The bar is a public implementation's 3.38 degrees where least squares has 18.47. */
+/* One channel ten times as bright as the others, on a black level that no shadow is below. */
+static void least_squares_does_not_mind_which_channel_is_bright(void **state)
+{
+    (void)state;
+    double angle[3];
+    for (int bright = 0; bright < 3; bright++) {
+        relief r = lambert;
+        r.channels = 3;
+        pst_capture c;
+        relief_capture(&r, &c);
+        for (int k = 0; k < c.count; k++)
+            for (int i = 0; i < c.width * c.height; i++) {
+                uint16_t *code = c.picture[k] + 3 * i, grey = code[0];
+                for (int ch = 0; ch < 3; ch++)
+                    code[ch] = (uint16_t)(80 + (ch == bright ? grey : grey / 10));
+            }
+        angle[bright] = solve_angle(&c, PST_LS);
+        capture_drop(&c);
+    }
+    assert_float_equal(angle[1], angle[0], 1e-3);
+    assert_float_equal(angle[2], angle[0], 1e-3);
+}
+
 static void robust_sees_through_highlights_and_cast_shadows(void **state)
 {
     (void)state;
@@ -361,6 +384,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(least_squares_is_exact_on_lambert),
         cmocka_unit_test(intensities_are_divided_out),
+        cmocka_unit_test(least_squares_does_not_mind_which_channel_is_bright),
         cmocka_unit_test(robust_sees_through_highlights_and_cast_shadows),
         cmocka_unit_test(robust_on_few_poor_lights_is_no_worse_than_least_squares),
         cmocka_unit_test(a_raised_black_level_is_found),
