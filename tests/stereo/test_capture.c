@@ -201,7 +201,7 @@ static void a_mask_is_read_and_must_fit(void **state)
     assert_int_equal(c.count, 3);
     pst_capture_free(&c);
     write_flat("mask.png", 6, 4, 1, 0, IMG_LINEAR8);
-    assert_refused(&PLAIN, "black everywhere");
+    assert_refused(&PLAIN, "black or transparent everywhere");
     write_flat("mask.png", 4, 6, 1, 1, IMG_LINEAR8);
     assert_refused(&PLAIN, "mask.png is 4 x 6");
     assert_refused(&(pst_read_options){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
