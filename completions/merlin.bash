@@ -15,7 +15,7 @@ _merlin() {
             --json --quiet --help"
         ["eval stereo"]="--data --model --count --figure --json --quiet --help"
         ["eval photos"]="--model --output --mask --quiet --help"
-        [bench]="--model --config --batch --stereo --quick --json --quiet --help"
+        [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
         [info]="--tensors --json --help"
     )
     local commands="estimate relight stereo render train eval bench info"

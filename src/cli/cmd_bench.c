@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/photos.h"
@@ -22,6 +23,7 @@ static const char help[] =
     "      --stereo        photometric stereo by least squares instead: 32 pictures of 12 megapixels, against the "
     "rate\n"
     "                      at which this machine copies memory\n"
+    "      --profile FILE  write what each of the network's layers takes, forward, backward and in either precision\n"
     "      --quick         fewer runs, smaller pictures\n"
     "      --json          report on standard output as JSON\n"
     "      --quiet         no progress\n"
@@ -29,7 +31,7 @@ static const char help[] =
 
 typedef struct request {
     bench_options options;
-    const char *model, *config;
+    const char *model, *config, *profile;
     bool stereo, json, help;
 } request;
 
@@ -39,6 +41,7 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->model},
         {"config", .text = &r->config},
         {"batch", .integer = &r->options.batch, .low = 1, .high = 256},
+        {"profile", .text = &r->profile},
         {"quick", .flag = &r->options.quick},
         {"stereo", .flag = &r->stereo},
         {"json", .flag = &r->json},
@@ -49,8 +52,8 @@ static status parse(int argc, char **argv, request *r)
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
     if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
-    if (r->stereo && (r->model || r->config || r->options.batch))
-        return fail(ERROR_USAGE, "--stereo goes without --model, --config and --batch");
+    if (r->stereo && (r->model || r->config || r->options.batch || r->profile))
+        return fail(ERROR_USAGE, "--stereo goes without --model, --config, --batch and --profile");
     if (r->model && r->config) return fail(ERROR_USAGE, "--model and --config exclude each other");
     return OK;
 }
@@ -74,12 +77,28 @@ static status write_random_weights(const char *config_path, const char *path)
     return s;
 }
 
+/* The profile is put into place when all of it is there. */
+static status run_profiled(const request *r, bench_options *options, bench_report *report)
+{
+    char *text = NULL;
+    size_t size = 0;
+    status s = file_check_writable(r->profile);
+    if (s != OK) return s;
+    options->profile = open_memstream(&text, &size);
+    if (!options->profile) return fail(ERROR_MEMORY, "no memory for a profile");
+    s = bench_run(options, report);
+    if (fclose(options->profile) != 0 && s == OK) s = fail(ERROR_MEMORY, "no memory for a profile");
+    if (s == OK) s = file_write(r->profile, text, size);
+    free(text);
+    return s;
+}
+
 static status run(const request *r, const char *weights)
 {
     bench_options options = r->options;
     options.weights = weights;
     bench_report report;
-    status s = bench_run(&options, &report);
+    status s = r->profile ? run_profiled(r, &options, &report) : bench_run(&options, &report);
     if (s != OK) return s;
     if (!r->json) {
         bench_print_table(&report, stdout);

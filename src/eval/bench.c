@@ -78,6 +78,17 @@ static status build_network(const model_config *config, nn_params *params, const
     return s;
 }
 
+/* Behind a line that says what ran: the program's steps, the best time of each (nn_profile). */
+static status profile_network(const bench_options *o, const nn_options *options, nn_program *program)
+{
+    const char *type = options->type == NN_BFLOAT16 ? "bfloat16" : "float32";
+    const char *what = options->purpose == NN_TRAIN ? "training" : "inference";
+    int written =
+        fprintf(o->profile, "%s, %d of %dx%d, %s\n", what, options->batch, options->width, options->height, type);
+    return written > 0 ? nn_profile(program, o->quick ? 2 : 10, o->profile)
+                       : fail(ERROR_OUTPUT, "cannot write the profile");
+}
+
 static status measure_network(const bench_options *o, const char *weights, const nn_options *options, double peak,
                               bench_network *out)
 {
@@ -99,6 +110,7 @@ static status measure_network(const bench_options *o, const char *weights, const
         out->share = out->flops / out->seconds / peak;
         out->resident_bytes = bench_peak_resident();
     }
+    if (s == OK && o->profile) s = profile_network(o, options, w.program);
     nn_adam_free(w.adam);
     nn_program_free(w.program);
     nn_graph_free(w.graph);

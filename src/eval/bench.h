@@ -51,6 +51,7 @@ typedef struct bench_options {
     int batch;           /* of training; 0: 16 */
     bool quick;          /* fewer runs */
     bool quiet;
+    FILE *profile;        /* takes every layer's time, a line each; NULL: nobody asks */
     int (*stopped)(void); /* polled between measurements; NULL: never */
 } bench_options;
 
