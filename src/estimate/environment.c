@@ -8,23 +8,6 @@
 /* The well lit of the training data (render/environment.c). */
 static const float MEAN_LUMINANCE = 1.0f;
 static const float MOST_EXPOSURE = 20.0f;
-enum { LEAST_HEIGHT = 4 };
-/* A row or column that a stitching program left over does no harm. */
-static const float LEAST_RATIO = 1.9f, MOST_RATIO = 2.1f;
-
-static status check(const char *path, const img *map)
-{
-    if (map->width < 2 * LEAST_HEIGHT || map->height < LEAST_HEIGHT)
-        return fail(ERROR_INPUT, "%s is %d×%d pixels; an environment needs %d×%d at least", path, map->width,
-                    map->height, 2 * LEAST_HEIGHT, LEAST_HEIGHT);
-    float ratio = (float)map->width / (float)map->height;
-    if (ratio < LEAST_RATIO || ratio > MOST_RATIO)
-        return fail(ERROR_INPUT,
-                    "%s is %d×%d pixels; a latitude-longitude picture is twice as wide as high (a mirror ball's and a "
-                    "cube's are other kinds; one that lacks sky and ground can be padded)",
-                    path, map->width, map->height);
-    return OK;
-}
 
 static status prepare(const char *path, float turn, float exposure, env_map *map)
 {
@@ -46,8 +29,7 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
     merlin_environment *e = calloc(1, sizeof *e);
     if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
     img picture = {0};
-    s = img_read(path, &picture, NULL);
-    if (s == OK) s = check(path, &picture);
+    s = img_read_latlong(path, &picture);
     if (s == OK) s = env_map_new(&picture, &e->map);
     if (s == OK) s = prepare(path, turn, exposure, &e->map);
     img_free(&picture);

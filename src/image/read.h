@@ -15,6 +15,9 @@ enum { IMAGE_MAX_SIDE = 16384 };
  * the file has an alpha channel (EXR: "A"), and stays empty otherwise. Refuses non-images, truncated files, sides above
  * IMAGE_MAX_SIDE and values that are NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
+/* img_read of an environment, a latitude-longitude picture: twice as wide as high and 8×4 pixels at least. Mirror
+ * balls' and cubes' pictures, which would be bent around the object, are refused. */
+status img_read_latlong(const char *path, img *color);
 /* A measurement rather than a photograph: 1 or 3 channels as the file has them, 16-bit and float samples as they are
  * and 8-bit samples decoded from sRGB only if asked. *bits: 8, 16 or 32 (floats). */
 status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits);

@@ -10,7 +10,7 @@
 static status read_map(const char *path, img *out)
 {
     img full = {0};
-    status s = img_read(path, &full, NULL);
+    status s = img_read_latlong(path, &full);
     if (s != OK) return s;
     s = img_resize(&full, ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, out);
     img_free(&full);

@@ -1,0 +1,70 @@
+/* --env-dir: environments from a folder of the user's. */
+#include <string.h>
+
+#include "image/write.h"
+#include "render/environment.h"
+#include "scratch.h"
+
+/* last: it claims the word fail */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static void write_map(const char *name, int width, int height, float value)
+{
+    img map;
+    assert_int_equal(img_new(&map, width, height, 3), OK);
+    for (size_t i = 0; i < img_value_count(&map); i++)
+        map.data[i] = value;
+    assert_int_equal(img_write_png(scratch_path(name), &map, IMG_SRGB8), OK);
+    img_free(&map);
+}
+
+static void maps_come_in_the_order_of_their_names_and_of_one_size(void **state)
+{
+    (void)state;
+    write_map("b.png", 64, 32, 0);
+    write_map("a.png", 512, 256, 1);
+    environment_folder folder;
+    assert_int_equal(environment_folder_read(scratch, &folder), OK);
+    assert_int_equal(folder.count, 2);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(folder.maps[i].width, folder.maps[0].width);
+        assert_int_equal(folder.maps[i].height, folder.maps[0].height);
+    }
+    assert_float_equal(folder.maps[0].data[0], 1, 1e-6);
+    assert_float_equal(folder.maps[1].data[0], 0, 1e-6);
+    environment_folder_free(&folder);
+}
+
+static void a_map_that_is_no_latitude_longitude_picture_is_refused_by_name(void **state)
+{
+    (void)state;
+    write_map("a.png", 64, 32, 1);
+    write_map("ball.png", 64, 64, 1);
+    environment_folder folder;
+    assert_int_equal(environment_folder_read(scratch, &folder), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "ball.png is 64×64 pixels"));
+    assert_null(folder.maps);
+}
+
+static void a_folder_without_maps_is_refused(void **state)
+{
+    (void)state;
+    environment_folder folder;
+    assert_int_equal(environment_folder_read(scratch, &folder), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "no environment maps"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        in_scratch(maps_come_in_the_order_of_their_names_and_of_one_size),
+        in_scratch(a_map_that_is_no_latitude_longitude_picture_is_refused_by_name),
+        in_scratch(a_folder_without_maps_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
