@@ -155,8 +155,8 @@ static model_config tiny(bool everything)
                       .global_illumination = everything,
                       .relight = everything ? MODEL_RELIGHT_NETWORK : MODEL_RELIGHT_BRDF,
                       .lighting = MODEL_LIGHT_POINT};
-    static const int encoder_blocks[2][MODEL_LEVELS] = {{0, 1, 0, 0, 0}, {1, 0, 2, 0, 1}};
-    static const int material_blocks[2][MODEL_LEVELS - 1] = {{0, 0, 1, 0}, {0, 1, 0, 2}};
+    static const int encoder_blocks[2][MODEL_LEVELS] = {{0, 1, 0, 0, 0}, {0, 0, 2, 0, 1}};
+    static const int material_blocks[2][MODEL_LEVELS - 1] = {{0, 0, 1, 0}, {0, 1, 0, 0}};
     memcpy(c.encoder_blocks, encoder_blocks[everything], sizeof c.encoder_blocks);
     memcpy(c.material_blocks, material_blocks[everything], sizeof c.material_blocks);
     for (int i = 0; i < MODEL_LEVELS; i++)

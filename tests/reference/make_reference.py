@@ -299,7 +299,7 @@ if __name__ == "__main__":
     folder = os.path.dirname(os.path.abspath(__file__))
     make(os.path.join(folder, "merlin.safetensors"),
          {"material_decoders": 1, "feature_sharing": True, "gated_attention": True, "relight_by_network": True,
-          "global_illumination": True, "encoder_blocks": [1, 0, 2, 0, 1], "material_blocks": [0, 1, 0, 2],
+          "global_illumination": True, "encoder_blocks": [0, 0, 2, 0, 1], "material_blocks": [0, 1, 0, 0],
           "keep_steps": True})
     make(os.path.join(folder, "four_decoders.safetensors"),
          {"material_decoders": 4, "feature_sharing": False, "gated_attention": False, "relight_by_network": False,
