@@ -152,7 +152,7 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     photo_begin(&first, job);
     status opened = (status)merlin_model_open(weights, &r->model), s = OK;
     laps.model = lap(&now);
-    if (opened == OK) opened = network_prepare(r->model->network, r->params.size);
+    if (opened == OK) opened = network_prepare(r->model->network, r->params.size, r->params.views);
     *ready = opened == OK;
     laps.compile = lap(&now);
     char words[1024];

@@ -238,7 +238,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
     status s = check_params(w->params);
-    if (s == OK) s = network_prepare(n, w->params->size);
+    if (s == OK) s = network_prepare(n, w->params->size, w->params->views);
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);

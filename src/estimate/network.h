@@ -16,7 +16,7 @@
 
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_LARGEST_SIZE = 1024 };
 
-/* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 40 ms on top of an
+/* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 50 ms on top of an
  * estimate's 140, and leave five to ten per cent less error. */
 enum { NETWORK_VIEWS = 4 };
 
@@ -27,14 +27,15 @@ status network_open(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
-/* Makes the programs for this size now, so that the time is seen apart. */
-status network_prepare(network *n, int size);
+/* Makes the programs for this size and so many views now, so that the time is seen apart. */
+status network_prepare(network *n, int size, int views);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
 
 typedef struct network_estimation {
     surface maps;
-    img indirect;            /* light of bounces 2 and up; zero for a model without global illumination */
+    img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
+                     more views has highlights of its own: zero here, to be asked of network_indirect */
     float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
 } network_estimation;
 

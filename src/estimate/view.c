@@ -82,5 +82,5 @@ void view_mean_add(network_estimation *mean, const network_estimation *turned, i
     view_add_normals(&mean->maps.normal, &turned->maps.normal, view, weight);
     view_add(&mean->maps.roughness, &turned->maps.roughness, view, weight);
     view_add(&mean->maps.depth, &turned->maps.depth, view, weight);
-    view_add(&mean->indirect, &turned->indirect, view, weight);
+    if (turned->indirect.data) view_add(&mean->indirect, &turned->indirect, view, weight);
 }
