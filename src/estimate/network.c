@@ -28,7 +28,6 @@ struct network {
 /* What each program is made for; the rest of the whole network is left out of it. */
 static const char *const single_outputs[] = {"albedo",   "normal",           "roughness", "depth",
                                              "indirect", "environment_code", NULL};
-static const char *const view_outputs[] = {"albedo", "normal", "roughness", "depth", "environment_code", NULL};
 static const char *const relit_outputs[] = {"relit_direct", NULL};
 
 static nn_type best_type(void)
@@ -96,18 +95,13 @@ static status compile(network *n, model_part part, const char *const *outputs, i
     return s;
 }
 
-static const char *const *maps_outputs(int views)
-{
-    return views == 1 ? single_outputs : view_outputs;
-}
-
 status network_prepare(network *n, int size, int views)
 {
     if (size < NETWORK_LEAST_SIZE || size > NETWORK_LARGEST_SIZE || size % MODEL_SIZE_MULTIPLE != 0)
         return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
                     MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, size);
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_WHOLE, maps_outputs(views), size, &n->maps);
+    status s = compile(n, MODEL_WHOLE, views == 1 ? single_outputs : view_outputs, size, &n->maps);
     if (s == OK && views > 1 && n->config.global_illumination) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
@@ -181,12 +175,17 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    int size = photo->width;
     status s = run_view(n, photo, mask, &(illumination){{0, 0, 0}, NULL}, view, outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, size, &out->maps);
+    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
+    if (s == OK) take_environment(n->maps.program, out->environment);
+    return s;
+}
+
+static status estimate_single(network *n, const img *photo, const img *mask, network_estimation *out)
+{
+    int size = photo->width;
+    status s = estimate_view(n, photo, mask, 0, single_outputs, out);
     if (s != OK) return s;
-    take_environment(n->maps.program, out->environment);
-    if (outputs == view_outputs) return OK;
     if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
     return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
 }
@@ -194,12 +193,12 @@ static status estimate_view(network *n, const img *photo, const img *mask, int v
 static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                              network_estimation *out)
 {
-    if (views == 1) return estimate_view(n, photo, mask, 0, maps_outputs(views), out);
+    if (views == 1) return estimate_single(n, photo, mask, out);
     status s = view_mean_new(photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};
         if (stop && stop()) s = fail(ERROR_STOPPED, "stopped");
-        if (s == OK) s = estimate_view(n, photo, mask, view, maps_outputs(views), &turned);
+        if (s == OK) s = estimate_view(n, photo, mask, view, view_outputs, &turned);
         if (s == OK) view_mean_add(out, &turned, view, 1.0f / (float)views);
         network_estimation_free(&turned);
     }

@@ -129,9 +129,7 @@ static status add_written(staged_files *files, const char *path)
 
 void staged_files_free(staged_files *files)
 {
-    for (size_t i = 0; i < files->count; i++)
-        free(files->at[i]);
-    free(files->at);
+    file_list_free(files->at, files->count);
     *files = (staged_files){0};
 }
 

@@ -4,13 +4,12 @@
 
 #include "optics/orientation.h"
 
+const char *const view_outputs[] = {"albedo", "normal", "roughness", "depth", "environment_code", NULL};
+
 status view_mean_new(int size, network_estimation *mean)
 {
     *mean = (network_estimation){0};
-    status s = surface_new(size, size, &mean->maps);
-    if (s == OK) s = img_new(&mean->indirect, size, size, 3);
-    if (s != OK) network_estimation_free(mean);
-    return s;
+    return surface_new(size, size, &mean->maps);
 }
 
 static size_t pixel_count(const img *image)
@@ -82,5 +81,4 @@ void view_mean_add(network_estimation *mean, const network_estimation *turned, i
     view_add_normals(&mean->maps.normal, &turned->maps.normal, view, weight);
     view_add(&mean->maps.roughness, &turned->maps.roughness, view, weight);
     view_add(&mean->maps.depth, &turned->maps.depth, view, weight);
-    if (turned->indirect.data) view_add(&mean->indirect, &turned->indirect, view, weight);
 }

@@ -23,7 +23,9 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
 void view_add(img *mean, const img *turned, int view, float weight);
 void view_add_normals(img *mean, const img *turned, int view, float weight);
 
-/* The same for all that the network says. Zero maps of size × size: */
+/* What a program that looks at one of several views is made for (nn_options): not bounces, which are the mean's own. */
+extern const char *const view_outputs[];
+/* The same for all of these. Zero maps of size × size: */
 status view_mean_new(int size, network_estimation *mean);
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight);
 

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "estimate/view.h"
+
 static const char *const estimated[] = {"albedo",   "normal",           "roughness",   "depth", "direct",
                                         "indirect", "environment_code", "environment", NULL};
-/* Where maps are means, so that the network's rendering of them shows none. */
-static const char *const estimated_by_view[] = {"albedo", "normal", "roughness", "depth", "environment_code", NULL};
 static const char *const relit_by_both[] = {"relit_direct", "relit_brdf", NULL};
 static const char *const relit_by_network[] = {"relit_direct", NULL};
 
@@ -29,7 +29,7 @@ static void free_program(eval_program *p)
 static status build_programs(eval_model *m, nn_type type)
 {
     bool single = m->views == 1;
-    status s = build_program(m, MODEL_WHOLE, 1, single ? estimated : estimated_by_view, type, &m->maps);
+    status s = build_program(m, MODEL_WHOLE, 1, single ? estimated : view_outputs, type, &m->maps);
     if (s == OK && (single || eval_model_relights(m)))
         s = build_program(m, MODEL_WHOLE, EVAL_LIGHTS, single ? relit_by_both : relit_by_network, type, &m->relit);
     if (s != OK || !m->config.global_illumination) return s;

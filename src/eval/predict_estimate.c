@@ -20,7 +20,6 @@ static status look(eval_model *m, const img *image, const img *mask, int view, n
     if (s == OK) s = take(m, "normal", 3, &out->maps.normal);
     if (s == OK) s = take(m, "roughness", 1, &out->maps.roughness);
     if (s == OK) s = take(m, "depth", 1, &out->maps.depth);
-    if (s == OK) s = take(m, "indirect", 3, &out->indirect);
     const float *code = nn_output_data(m->maps.program, "environment_code");
     if (code) model_decode_sh(code, out->environment);
     return s;
@@ -52,7 +51,6 @@ static void keep(network_estimation *mean, eval_prediction *out)
     move(&mean->maps.normal, &out->maps.normal);
     move(&mean->maps.roughness, &out->maps.roughness);
     move(&mean->maps.depth, &out->maps.depth);
-    move(&mean->indirect, &out->indirect);
     memcpy(out->sh, mean->environment, sizeof out->sh);
 }
 
@@ -61,6 +59,7 @@ static status show_by_network(const eval_model *m, const img *mask, eval_predict
 {
     const float *lit = nn_output_data(m->maps.program, "environment");
     eval_take(m->maps.program, "direct", 0, &out->flash);
+    eval_take(m->maps.program, "indirect", 0, &out->indirect);
     img_free(&out->reconstruction);
     status s = eval_picture(&out->flash, &out->indirect, mask, &out->reconstruction);
     for (size_t i = 0, n = 3 * (size_t)m->size * (size_t)m->size; lit && i < n; i++)
