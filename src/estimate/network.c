@@ -30,12 +30,6 @@ static const char *const single_outputs[] = {"albedo",   "normal",           "ro
                                              "indirect", "environment_code", NULL};
 static const char *const relit_outputs[] = {"relit_direct", NULL};
 
-static nn_type best_type(void)
-{
-    __builtin_cpu_init();
-    return __builtin_cpu_supports("avx512bf16") ? NN_BFLOAT16 : NN_FLOAT32;
-}
-
 status network_open(const char *weights, network **out)
 {
     *out = NULL;
@@ -83,7 +77,7 @@ static status compile(network *n, model_part part, const char *const *outputs, i
     if (c->program && c->size == size && c->outputs == outputs) return OK;
     compiled_free(c);
     nn_options options = {
-        .batch = 1, .height = size, .width = size, .type = best_type(), .purpose = NN_INFER, .outputs = outputs};
+        .batch = 1, .height = size, .width = size, .type = nn_fastest_type(), .purpose = NN_INFER, .outputs = outputs};
     double began = clock_seconds();
     status s = model_build(&n->config, part, &c->graph);
     if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);

@@ -22,7 +22,7 @@ enum { NETWORK_VIEWS = 4 };
 
 typedef struct network network;
 
-/* ERROR_INPUT for a file that is no weights file of merlin. Computes in bfloat16 where the processor does. */
+/* ERROR_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type. */
 status network_open(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);

@@ -58,6 +58,7 @@ struct nn_step {
 typedef struct nn_device {
     const char *name;
     nn_type (*usable_type)(nn_type wanted); /* wanted, or float32 where the device cannot compute in it */
+    nn_type (*fastest_type)(void);
     status (*open)(void **context);
     void (*close)(void *context);
     status (*create)(nn_step *step);

@@ -69,6 +69,11 @@ status nn_profile(nn_program *p, int runs, void *file)
     return s;
 }
 
+nn_type nn_fastest_type(void)
+{
+    return cpu_device()->fastest_type();
+}
+
 status nn_measure_peak(nn_type type, nn_peak *out)
 {
     const nn_device *device = cpu_device();

@@ -202,6 +202,8 @@ typedef struct nn_peak {
     double forward, backward_data, backward_weights;
 } nn_peak;
 status nn_measure_peak(nn_type type, nn_peak *out);
+/* The type in which this machine's convolutions are faster. */
+nn_type nn_fastest_type(void);
 
 /* ---- Adam (Kingma & Ba 2015) ---- */
 

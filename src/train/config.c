@@ -11,7 +11,7 @@
 
 enum { MAX_CONFIG_BYTES = 1 << 20 };
 
-static const char *const type_words[] = {"f32", "bf16"};
+static const char *const type_words[] = {"f32", "bf16", "auto"};
 
 static status read_rates(json_object *o, train_config *c)
 {
@@ -42,6 +42,7 @@ static const optional optionals[] = {
     {"perfect_camera", 1, offsetof(train_config, perfect_camera)},
     {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight)},
     {"ssim_weight", 1e4, offsetof(train_config, ssim_weight)},
+    {"dark_target", 1, offsetof(train_config, dark_target)},
     {"average_decay", 0.999999, offsetof(train_config, average_decay)},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };
@@ -88,7 +89,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_int(o, "batch", 1, 1024, &c->batch);
     if (s == OK) s = json_int(o, "presentations", 1, INT_MAX, &c->presentations);
     if (s == OK) s = read_rates(o, c);
-    if (s == OK) s = json_choice(o, "type", type_words, 2, &type);
+    if (s == OK) s = json_choice(o, "type", type_words, 3, &type);
     if (s == OK) s = json_int(o, "seed", 0, INT_MAX, &c->seed);
     if (s == OK) s = json_number(o, "exposure_jitter", 0, 2, &c->exposure_jitter);
     if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
@@ -97,7 +98,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)
         s = fail(ERROR_INPUT, "%s: \"validation_count\" must be a multiple of \"batch\"", where);
-    c->type = type ? NN_BFLOAT16 : NN_FLOAT32;
+    c->type = type == 2 ? nn_fastest_type() : type == 1 ? NN_BFLOAT16 : NN_FLOAT32;
     return s == OK ? json_finish(o) : s;
 }
 

@@ -14,7 +14,7 @@ typedef struct train_config {
     int warmup_steps;          /* the rate rises linearly over so many steps */
     double beta1, beta2, clip_norm;
     double depth_weight; /* of the depth loss; the paper's is 1 */
-    nn_type type;        /* "f32" or "bf16" */
+    nn_type type;        /* "f32", "bf16", or "auto", the faster of them on this machine */
     int seed;
     double exposure_jitter; /* half-width of the uniform exposure error, natural logarithm */
     double colour_jitter;   /* the same, each channel on its own */
@@ -30,6 +30,7 @@ typedef struct train_config {
                                    paper */
     double ssim_weight;   /* of structural dissimilarity of the relit images, by network and by BRDF; 0: none, as the
                              paper */
+    double dark_target;   /* setting B: share of the targets without an environment */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
     double memory_gib;    /* samples beyond this are read from disk each time */
     int validation_count; /* the folder's last samples are held back; a multiple of batch */

@@ -118,7 +118,7 @@ static status draw_environments(const trn_feed *f, const item *it, trn_lighting 
     size_t other = first + (size_t)rng_below(&r, (int)count);
     int orientation = rng_below(&r, ORIENTATIONS);
     out->strength = trn_draw_strength(&r);
-    float strength = trn_draw_strength(&r);
+    float strength = trn_draw_target_strength(f->validation ? 0 : (float)from->config->dark_target, &r);
     status s = trn_dataset_sh(from->data, other, orientation, out->target_sh);
     for (int i = 0; i < MODEL_SH; i++)
         out->target_sh[i / 3][i % 3] *= strength;

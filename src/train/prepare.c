@@ -86,6 +86,12 @@ float trn_draw_strength(rng *r)
     return expf(rng_range(r, logf(0.1f), 0));
 }
 
+float trn_draw_target_strength(float dark_share, rng *r)
+{
+    float strength = trn_draw_strength(r);
+    return rng_uniform(r) < dark_share ? 0 : strength;
+}
+
 static float background_at(const trn_camera *lens, int size, size_t pixel, int channel)
 {
     int x = (int)(pixel % (size_t)size), y = (int)(pixel / (size_t)size);

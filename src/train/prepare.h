@@ -68,6 +68,8 @@ vec3 trn_draw_light(rng *r);
 
 /* How much an environment counts beside the flash: evenly in the logarithm, from hardly visible to as rendered. */
 float trn_draw_strength(rng *r);
+/* The same for a target's environment, but a share of them has none: 0. */
+float trn_draw_target_strength(float dark_share, rng *r);
 
 /* Adds what the maps' diffuse part reflects of an environment, times coverage, to image: size × size × 3. */
 void trn_add_environment(const trn_view *maps, const float sh[9][3], float *image);

@@ -465,6 +465,20 @@ static void strengths_span_a_decade(void **unused)
     assert_in_range(weak, 400, 600); /* half of them, standard deviation 16 */
 }
 
+static void a_share_of_targets_is_dark(void **unused)
+{
+    (void)unused;
+    rng r = rng_at(5, 6, 7);
+    int dark = 0;
+    for (int i = 0; i < 1000; i++) {
+        float s = trn_draw_target_strength(0.25f, &r);
+        assert_true(s == 0 || (s >= 0.099f && s <= 1.001f));
+        dark += s == 0;
+        assert_true(trn_draw_target_strength(0, &r) > 0);
+    }
+    assert_in_range(dark, 200, 300); /* standard deviation 14 */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -482,6 +496,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(photograph_is_lit_by_both_and_targets_add_up, set_up, tear_down),
         cmocka_unit_test_setup_teardown(target_is_lit_by_its_own_environment, set_up, tear_down),
         cmocka_unit_test(strengths_span_a_decade),
+        cmocka_unit_test(a_share_of_targets_is_dark),
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
         cmocka_unit_test_setup_teardown(background_shows_where_the_object_does_not_cover_the_pixel, set_up, tear_down),
         cmocka_unit_test_setup_teardown(outline_errors_are_one_pixel_wide, set_up, tear_down),

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "nn/device.h"
 #include "train/config.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
@@ -83,7 +84,9 @@ static void configurations_of_both_lights_differ_from_the_point_settings_in_that
     static const char *const pairs[][2] = {{"merlin-point", "merlin-env"},
                                            {"merlin-point-256", "merlin-env-256"},
                                            {"merlin-point-mean-256", "merlin-env-mean-256"},
-                                           {"merlin-point-ssim-256", "merlin-env-ssim-256"}};
+                                           {"merlin-point-ssim-256", "merlin-env-ssim-256"},
+                                           {"merlin-point-deep", "merlin-env-deep"},
+                                           {"merlin-point-deep-256", "merlin-env-deep-256"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         model_config m[2];
         for (int k = 0; k < 2; k++) {
@@ -123,7 +126,8 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
 {
     (void)unused;
     static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error",
-                                       "jpeg",        "perfect_camera",  "average_decay",   "relight_brdf_weight"};
+                                       "jpeg",        "perfect_camera",  "average_decay",   "relight_brdf_weight",
+                                       "dark_target"};
     model_config m;
     train_config t, again;
     char *good = shipped();
@@ -140,12 +144,27 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     t.perfect_camera = 0.375;
     t.average_decay = 0.9375;
     t.relight_brdf_weight = 2;
+    t.dark_target = 0.0625;
     training = train_config_write(&t);
     snprintf(text, sizeof text, "{\"training\": %s, \"model\": %s}", training, model);
     assert_int_equal(train_config_parse(text, strlen(text), "again.json", &m, &again), OK);
     assert_memory_equal(&t, &again, sizeof t);
     free(training);
     free(model);
+    free(good);
+}
+
+static void the_faster_type_can_be_asked_for(void **unused)
+{
+    (void)unused;
+    model_config m;
+    train_config t;
+    char *good = shipped(), *at = strstr(good, "\"bf16\"");
+    assert_non_null(at);
+    memcpy(at, "\"auto\"", 6);
+    assert_int_equal(train_config_parse(good, strlen(good), "test.json", &m, &t), OK);
+    assert_int_equal(t.type, nn_fastest_type());
+    assert_int_equal(cpu_device()->usable_type(t.type), t.type);
     free(good);
 }
 
@@ -157,6 +176,7 @@ int main(void)
         cmocka_unit_test(configurations_of_both_lights_differ_from_the_point_settings_in_that),
         cmocka_unit_test(wrong_configurations_are_refused_by_key),
         cmocka_unit_test(faults_left_out_are_none_and_stay_left_out),
+        cmocka_unit_test(the_faster_type_can_be_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
