@@ -60,6 +60,8 @@ status sample_read_training(const char *path, sample *out);
 status sample_read_training_environment(const char *path, sample *out);
 /* Only the environment's coefficients, from the file's header. Refuses files rendered without. */
 status sample_read_sh(const char *path, float sh[9][3]);
+/* Only generator_version, from the file's header. */
+status sample_read_version(const char *path, int *version);
 
 /* "folder/000123.exr", malloc'ed. */
 char *sample_path(const char *folder, uint64_t index);

@@ -151,7 +151,6 @@ static void read_identity(const exr_file *f, sample *s)
     if (shape) snprintf(s->shape, sizeof s->shape, "%s", shape);
     exr_get_numbers(f, "generatorVersion", &version, 1);
     if (version >= 0 && version < 1e6f) s->generator_version = (int)version;
-    exr_get_numbers(f, "sphericalHarmonics", &s->sh[0][0], 27);
 }
 
 /* The attributes without which the images mean nothing. */
@@ -235,11 +234,10 @@ static status no_environment(const char *path)
     return fail(ERROR_INPUT, "%s was rendered without environment: render samples without --no-env", path);
 }
 
-/* The image and its coefficients. */
-static bool has_environment(const exr_file *f)
+/* False, and sh as it was, without an environment: an image and its coefficients. */
+static bool read_environment(const exr_file *f, float sh[9][3])
 {
-    float sh[27];
-    return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", sh, 27);
+    return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);
 }
 
 static status read_open(exr_file *f, const char *path, extent what, sample *s)
@@ -251,8 +249,9 @@ static status read_open(exr_file *f, const char *path, extent what, sample *s)
     if (!work) return fail(ERROR_MEMORY, "out of memory to read %s", path);
     channel_list *list = &work->channels;
     read_identity(f, s);
+    bool lit = read_environment(f, s->sh);
     status st = read_optics(f, path, s);
-    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !has_environment(f)) st = no_environment(path);
+    if (st == OK && what == READ_TRAINING_ENVIRONMENT && !lit) st = no_environment(path);
     if (st == OK) st = plan(f, path, what, s, list);
     if (st == OK) {
         for (size_t i = 0; i < list->count; i++)
@@ -297,10 +296,20 @@ status sample_read_sh(const char *path, float sh[9][3])
     exr_file *f;
     status st = exr_open(path, &f);
     if (st != OK) return st;
-    if (has_environment(f))
-        exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);
-    else
-        st = no_environment(path);
+    if (!read_environment(f, sh)) st = no_environment(path);
+    exr_close(f);
+    return st;
+}
+
+status sample_read_version(const char *path, int *version)
+{
+    exr_file *f;
+    sample s = {0};
+    status st = exr_open(path, &f);
+    if (st != OK) return st;
+    read_identity(f, &s);
+    st = read_optics(f, path, &s);
+    *version = s.generator_version;
     exr_close(f);
     return st;
 }

@@ -28,17 +28,6 @@ struct trn_dataset {
     int generator_version;
 };
 
-/* The folder's first sample stands for all. */
-static status read_generator_version(trn_dataset *d)
-{
-    sample first;
-    status s = sample_read_training(d->paths[0], &first);
-    if (s != OK) return s;
-    d->generator_version = first.generator_version;
-    sample_free(&first);
-    return OK;
-}
-
 status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out)
 {
     *out = NULL;
@@ -55,7 +44,7 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
         d->kept = calloc(d->count, sizeof *d->kept);
         if (!d->kept) s = fail(ERROR_MEMORY, "out of memory opening %s", folder);
     }
-    if (s == OK) s = read_generator_version(d);
+    if (s == OK) s = sample_read_version(d->paths[0], &d->generator_version);
     if (s != OK) {
         trn_dataset_close(d);
         return s;
