@@ -44,41 +44,47 @@ static status names_from_folder(const char *folder, const char *lights, size_t w
     return s;
 }
 
-/* The folder's file of that name in capitals or not, such as a list from Windows may have: malloc'ed, NULL if there is
- * not exactly one. */
-static char *find_in_any_case(const char *folder, const char *name)
+/* A folder and all its files. */
+typedef struct listing {
+    const char *folder;
+    char **paths;
+    size_t count;
+} listing;
+
+/* The folder's file of that name in capitals or not, such as a list from Windows may have; NULL if there is not exactly
+ * one. */
+static const char *find_in_any_case(const listing *in, const char *name)
 {
-    char **paths, *found = NULL;
-    size_t count, matches = 0;
-    if (file_list(folder, NULL, &paths, &count) != OK) return NULL;
-    for (size_t i = 0; i < count; i++) {
-        const char *last = base_name(paths[i]);
+    const char *found = NULL;
+    for (size_t i = 0; i < in->count; i++) {
+        const char *last = base_name(in->paths[i]);
         if (strcasecmp(last, name) != 0) continue;
-        free(found);
-        found = ++matches == 1 ? strdup(last) : NULL;
+        if (found) return NULL;
+        found = last;
     }
-    file_list_free(paths, count);
     return found;
 }
 
-static status set_listed_name(const char *folder, const char *lights, const char *listed, size_t i, pst_capture *c)
+static status set_listed_name(const listing *in, const char *lights, const char *listed, size_t i, pst_capture *c)
 {
     const char *name = base_name(listed);
-    char *path = file_join(folder, name);
+    char *path = file_join(in->folder, name);
     if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    char *found = file_exists(path) ? strdup(name) : find_in_any_case(folder, name);
+    const char *found = file_exists(path) ? name : find_in_any_case(in, name);
     status s = found ? pst_capture_set_name(c, i, found)
                      : fail(ERROR_INPUT, "%s names %s, but there is no %s", lights, listed, path);
     free(path);
-    free(found);
     return s;
 }
 
 static status names_from_list(const char *folder, const char *lights, const light_list *list, pst_capture *c)
 {
-    status s = pst_capture_reserve(c, list->count);
+    listing in = {.folder = folder};
+    status s = file_list(folder, NULL, &in.paths, &in.count);
+    if (s == OK) s = pst_capture_reserve(c, list->count);
     for (size_t i = 0; i < list->count && s == OK; i++)
-        s = set_listed_name(folder, lights, list->name[i], i, c);
+        s = set_listed_name(&in, lights, list->name[i], i, c);
+    file_list_free(in.paths, in.count);
     return s;
 }
 

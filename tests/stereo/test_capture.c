@@ -116,6 +116,9 @@ static void an_lp_file_says_which_picture_has_which_light(void **state)
     pst_capture_free(&c);
     write_text("dome.lp", "2\nc.png 0 0 1\nd.png 0 3 4\n");
     assert_refused(&PLAIN, "names d.png");
+    write_flat("D.png", 3, 2, 1, 1, IMG_LINEAR8);
+    write_flat("d.PNG", 3, 2, 1, 1, IMG_LINEAR8);
+    assert_refused(&PLAIN, "names d.png"); /* which of the two? */
     write_text("other.lp", "1\nc.png 0 0 1\n");
     assert_refused(&PLAIN, "2 .lp files");
 }
