@@ -1,18 +1,13 @@
-#include "image/read.h"
-#include "image/write.h"
+#include <string.h>
 
-#include "writes.h"
+#include "image/read.h"
+
+/* last, for it brings cmocka */
+#include "flat.h"
 
 static const char *grey_picture(const char *name, int width, int height)
 {
-    img picture;
-    assert_int_equal(img_new(&picture, width, height, 3), OK);
-    for (size_t i = 0; i < img_value_count(&picture); i++)
-        picture.data[i] = 0.5f;
-    const char *path = scratch_path(name);
-    assert_int_equal(img_write_png(path, &picture, IMG_SRGB8), OK);
-    img_free(&picture);
-    return path;
+    return write_flat(name, width, height, 3, 0.5f, IMG_SRGB8);
 }
 
 static void pictures_twice_as_wide_as_high_are_environments(void **state)

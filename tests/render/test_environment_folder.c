@@ -1,26 +1,14 @@
 /* --env-dir: environments from a folder of the user's. */
 #include <string.h>
 
-#include "image/write.h"
 #include "render/environment.h"
-#include "scratch.h"
 
-/* last: it claims the word fail */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+/* last, for it brings cmocka */
+#include "flat.h"
 
 static void write_map(const char *name, int width, int height, float value)
 {
-    img map;
-    assert_int_equal(img_new(&map, width, height, 3), OK);
-    for (size_t i = 0; i < img_value_count(&map); i++)
-        map.data[i] = value;
-    assert_int_equal(img_write_png(scratch_path(name), &map, IMG_SRGB8), OK);
-    img_free(&map);
+    write_flat(name, width, height, 3, value, IMG_SRGB8);
 }
 
 static void maps_come_in_the_order_of_their_names_and_of_one_size(void **state)

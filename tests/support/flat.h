@@ -1,0 +1,30 @@
+/* Pictures of one value for tests, and cmocka. */
+#ifndef MERLIN_TESTS_FLAT_H
+#define MERLIN_TESTS_FLAT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "image/write.h"
+#include "scratch.h"
+
+/* after the project's headers: its macro fail() would break the declaration of ours */
+#include <cmocka.h>
+
+/* A PNG in the test's folder; returns its path. */
+static inline const char *write_flat(const char *name, int width, int height, int channels, float value,
+                                     img_encoding encoding)
+{
+    const char *path = scratch_path(name);
+    img picture;
+    assert_int_equal(img_new(&picture, width, height, channels), OK);
+    for (size_t i = 0; i < img_value_count(&picture); i++)
+        picture.data[i] = value;
+    assert_int_equal(img_write_png(path, &picture, encoding), OK);
+    img_free(&picture);
+    return path;
+}
+
+#endif
