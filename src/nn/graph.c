@@ -37,7 +37,6 @@ const char *op_name(nn_op op)
                                         "compute",
                                         "float",
                                         "conv2d",
-                                        "conv_transpose2d",
                                         "linear",
                                         "batch_norm",
                                         "relu",
@@ -48,12 +47,10 @@ const char *op_name(nn_op op)
                                         "add",
                                         "gate",
                                         "scale_shift",
-                                        "upsample_nearest",
                                         "upsample_bilinear",
                                         "tile",
                                         "space_to_depth",
                                         "depth_to_space",
-                                        "channel_mean",
                                         "spatial_mean",
                                         "normalize",
                                         "reciprocal",
@@ -239,16 +236,6 @@ static nn_node *enlarge(nn_node *node, int factor)
     return node;
 }
 
-nn_node *nn_conv_transpose2d(nn_graph *g, nn_node *x, const char *name, int out, nn_bias bias)
-{
-    nn_node *node = enlarge(append_named(g, OP_DECONV, x, name, out), 2);
-    if (!node) return NULL;
-    node->at.kernel = 4;
-    node->at.stride = 2;
-    node->at.bias = bias == NN_BIAS;
-    return node;
-}
-
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
 {
     nn_node *node = append_named(g, OP_LINEAR, x, name, out);
@@ -348,11 +335,6 @@ nn_node *nn_scale_shift(nn_graph *g, nn_node *x, float scale, float shift)
     return affine(append1(g, OP_SCALE_SHIFT, x), scale, shift);
 }
 
-nn_node *nn_upsample_nearest(nn_graph *g, nn_node *x)
-{
-    return enlarge(append1(g, OP_UPSAMPLE_NEAREST, x), 2);
-}
-
 nn_node *nn_upsample_bilinear(nn_graph *g, nn_node *x)
 {
     return enlarge(append1(g, OP_UPSAMPLE_BILINEAR, x), 2);
@@ -388,13 +370,6 @@ nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block)
     node->at.block = block;
     node->channels /= block * block;
     return enlarge(node, block);
-}
-
-nn_node *nn_channel_mean(nn_graph *g, nn_node *x)
-{
-    nn_node *node = append1(g, OP_CHANNEL_MEAN, x);
-    if (node) node->channels = 1;
-    return node;
 }
 
 nn_node *nn_spatial_mean(nn_graph *g, nn_node *x)

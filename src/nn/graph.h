@@ -10,7 +10,6 @@ typedef enum nn_op {
     OP_COMPUTE,
     OP_FLOAT,
     OP_CONV,
-    OP_DECONV,
     OP_LINEAR,
     OP_NORM,
     OP_RELU,
@@ -21,12 +20,10 @@ typedef enum nn_op {
     OP_ADD,
     OP_GATE,
     OP_SCALE_SHIFT,
-    OP_UPSAMPLE_NEAREST,
     OP_UPSAMPLE_BILINEAR,
     OP_TILE,
     OP_SPACE_TO_DEPTH,
     OP_DEPTH_TO_SPACE,
-    OP_CHANNEL_MEAN,
     OP_SPATIAL_MEAN,
     OP_NORMALIZE,
     OP_RECIPROCAL,
@@ -84,10 +81,10 @@ static inline bool op_is_loss(nn_op op)
     return op == OP_MASKED_L2 || op == OP_MASKED_GRADIENT_L2 || op == OP_MASKED_DSSIM;
 }
 
-/* Convolution, transposed convolution and fully connected: a weight and maybe a bias. */
+/* Convolution and fully connected: a weight and maybe a bias. */
 static inline bool op_is_conv(nn_op op)
 {
-    return op == OP_CONV || op == OP_DECONV || op == OP_LINEAR;
+    return op == OP_CONV || op == OP_LINEAR;
 }
 
 #endif

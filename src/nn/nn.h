@@ -11,7 +11,7 @@
  *
  * Activations are N×H×W×C (channels last) everywhere, on the device and at its edges. A node's precision is either
  * `float` (float32) or `compute` (the program's type: float32 or bfloat16); nn_compute and nn_float convert.
- * Convolution, transposed convolution, fully connected and batch norm run in compute; the rendering layer, vector
+ * Convolution, fully connected and batch norm run in compute; the rendering layer, vector
  * normalization, and losses need float; every other operation follows its input.
  *
  * Builder functions return NULL after an error and take NULL quietly, so that a model is written without checks in
@@ -50,8 +50,6 @@ nn_node *nn_float(nn_graph *g, nn_node *x);
 /* Parameters `name.weight` (out × in × k × k, like PyTorch) and `name.bias`. Padding keeps size/stride: (k - 1)/2
  * before, the rest behind. */
 nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias);
-/* 4×4 stride 2 padding 1: doubles the size. `name.weight` is in × out × 4 × 4, like PyTorch. */
-nn_node *nn_conv_transpose2d(nn_graph *g, nn_node *x, const char *name, int out, nn_bias bias);
 /* On vectors (1×1): `name.weight` out × in, `name.bias`. */
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out);
 /* Per channel over N, H, W (Ioffe & Szegedy 2015); eps 1e-5, running statistics as nn_set_norm_momentum says.
@@ -70,18 +68,15 @@ nn_node *nn_add(nn_graph *g, nn_node *a, nn_node *b);
 nn_node *nn_gate(nn_graph *g, nn_node *x, nn_node *gate);
 nn_node *nn_scale_shift(nn_graph *g, nn_node *x, float scale, float shift);
 /* Twice the size; half-pixel centres, edges repeated. */
-nn_node *nn_upsample_nearest(nn_graph *g, nn_node *x);
 nn_node *nn_upsample_bilinear(nn_graph *g, nn_node *x);
 /* A vector repeated over the spatial size of `like`. */
 nn_node *nn_tile(nn_graph *g, nn_node *x, nn_node *like);
 /* N×H×W×C to N×H/b×W/b×(b·b·C), channel order (row, column, c); and back (Shi et al. 2016). */
 nn_node *nn_space_to_depth(nn_graph *g, nn_node *x, int block);
 nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block);
-/* Mean over channels: C to 1. */
-nn_node *nn_channel_mean(nn_graph *g, nn_node *x);
 /* Mean over rows and columns: a vector. */
 nn_node *nn_spatial_mean(nn_graph *g, nn_node *x);
-/* Unit 3-vectors per pixel: x / sqrt(|x|² + 1e-12). */
+/* Unit 3-vectors per pixel; of what is shorter than 1e-6, x·1e6. */
 nn_node *nn_normalize(nn_graph *g, nn_node *x);
 /* 1 / (scale·x + shift): depth from the network's range by (0.4, 0.65). */
 nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift);

@@ -33,12 +33,6 @@ static param_spec weight_spec(const nn_node *node)
     param_spec spec = {.rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true};
     spec.fan_in = (double)(in * k * k);
     if (node->op == OP_LINEAR) spec.shape[2] = spec.shape[3] = 0;
-    if (node->op == OP_DECONV) {
-        spec.shape[0] = in;
-        spec.shape[1] = out;
-        /* an output pixel sees one tap in stride² of the kernel */
-        spec.fan_in /= (double)(node->at.stride * node->at.stride);
-    }
     snprintf(spec.name, sizeof spec.name, "%s.weight", node->name);
     return spec;
 }

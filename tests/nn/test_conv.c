@@ -65,25 +65,6 @@ static void reference_conv(nn_params *params, const nudge *by, const char *name,
                 }
 }
 
-/* Every input pixel spreads over 4×4 output pixels, from one before twice its place. */
-static void reference_deconv(nn_params *params, const nudge *by, const char *name, map *x, int out, map *y)
-{
-    const float *w = find(params, name, "weight"), *b = find(params, name, "bias");
-    *y = (map){.n = x->n, .h = x->h * 2, .w = x->w * 2, .c = out};
-    for (int i = 0; i < y->n * y->h * y->w * out; i++)
-        y->v[i] = value(b, (size_t)(i % out), by);
-    for (int n = 0; n < x->n; n++)
-        for (int p = 0; p < x->h * x->w; p++)
-            for (int t = 0; t < 16; t++) {
-                int oy = p / x->w * 2 - 1 + t / 4, ox = p % x->w * 2 - 1 + t % 4;
-                if (oy < 0 || ox < 0 || oy >= y->h || ox >= y->w) continue;
-                for (int i = 0; i < x->c; i++)
-                    for (int o = 0; o < out; o++)
-                        at(y, n, oy, ox)[o] +=
-                            at(x, n, p / x->w, p % x->w)[i] * value(w, (size_t)((i * out + o) * 16 + t), by);
-            }
-}
-
 static void reference_norm(nn_params *params, const nudge *by, const char *name, map *x, bool running, bool relu)
 {
     const float *gamma = find(params, name, "weight"), *beta = find(params, name, "bias");
@@ -113,12 +94,12 @@ static nn_graph *build_net(void)
     nn_node *x = nn_compute(g, nn_input(g, "x", INPUT, 1));
     x = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, x, "a", 5, 3, 1, NN_NO_BIAS), "an"));
     x = nn_relu(g, nn_conv2d(g, x, "b", 6, 4, 2, NN_BIAS));
-    x = nn_batch_norm(g, nn_conv_transpose2d(g, x, "c", 4, NN_BIAS), "cn");
+    x = nn_batch_norm(g, nn_conv2d(g, x, "c", 4, 3, 1, NN_BIAS), "cn");
     x = nn_conv2d(g, x, "d", 7, 3, 2, NN_NO_BIAS);
     x = nn_batch_norm(g, nn_conv2d(g, nn_relu(g, x), "e", 3, 1, 1, NN_BIAS), "en");
     x = nn_float(g, nn_conv2d(g, x, "f", 2, 5, 1, NN_BIAS));
     nn_output(g, x, "y");
-    nn_masked_l2(g, x, nn_input(g, "target", 2, 2), nn_input(g, "mask", 1, 2), "loss", 1);
+    nn_masked_l2(g, x, nn_input(g, "target", 2, 4), nn_input(g, "mask", 1, 4), "loss", 1);
     return g;
 }
 
@@ -138,7 +119,7 @@ static void reference_net(nn_params *params, const float *input, const nudge *by
     reference_norm(params, by, "an", &b, running, true);
     reference_conv(params, by, "b", &b, 6, 4, 2, &a);
     relu(&a);
-    reference_deconv(params, by, "c", &a, 4, &b);
+    reference_conv(params, by, "c", &a, 4, 3, 1, &b);
     reference_norm(params, by, "cn", &b, running, false);
     reference_conv(params, by, "d", &b, 7, 3, 2, &a);
     relu(&a);
@@ -173,7 +154,7 @@ static void open_fixture(fixture *f, nn_type type, nn_purpose purpose)
     const nn_options options = {.batch = BATCH, .height = HEIGHT, .width = WIDTH, .type = type, .purpose = purpose};
     if (nn_compile(g, f->params, &options, &f->program) != OK) fail_msg("%s", status_message());
     nn_graph_free(g);
-    f->outputs = BATCH * (HEIGHT / 2) * (WIDTH / 2) * 2;
+    f->outputs = BATCH * (HEIGHT / 4) * (WIDTH / 4) * 2;
     fill(f->input, sizeof f->input / sizeof(float), 1, -1, 1);
     memcpy(nn_input_data(f->program, "x"), f->input, sizeof f->input);
     fill(nn_input_data(f->program, "target"), f->outputs, 2, -1, 1);

@@ -81,7 +81,7 @@ static void wrong_arguments_are_refused(void **state)
     assert_refused(g, "slice");
 
     g = nn_graph_new();
-    assert_null(nn_upsample_nearest(g, nn_input(g, "a", 3, 1)));
+    assert_null(nn_upsample_bilinear(g, nn_input(g, "a", 3, 1)));
     assert_refused(g, "cannot be enlarged");
 
     g = nn_graph_new();
@@ -113,7 +113,7 @@ static nn_graph *small_net(void)
     nn_graph *g = nn_graph_new();
     nn_node *x = nn_space_to_depth(g, compute_input(g, "image", 3, 1), 2);
     x = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, x, "conv1", 8, 3, 1, NN_NO_BIAS), "bn1"));
-    x = nn_depth_to_space(g, nn_conv_transpose2d(g, nn_conv2d(g, x, "conv2", 6, 3, 2, NN_BIAS), "up", 12, NN_BIAS), 2);
+    x = nn_depth_to_space(g, nn_upsample_bilinear(g, nn_conv2d(g, x, "conv2", 12, 3, 2, NN_BIAS)), 2);
     nn_output(g, x, "out");
     nn_input(g, "unused", 2, NN_VECTOR);
     nn_masked_l2(g, nn_float(g, x), nn_input(g, "target", 3, 1), nn_input(g, "mask", 1, 1), "l2", 0.5f);
@@ -126,10 +126,9 @@ static void parameters_have_pytorch_shapes(void **state)
     nn_graph *g = small_net();
     nn_params *params;
     assert_int_equal(nn_params_new(g, 7, &params), OK);
-    assert_int_equal(nn_params_count(params), 1 + 4 + 2 + 2);
-    const nn_param *w = nn_params_find(params, "conv1.weight"), *up = nn_params_find(params, "up.weight");
+    assert_int_equal(nn_params_count(params), 1 + 4 + 2);
+    const nn_param *w = nn_params_find(params, "conv1.weight");
     assert_memory_equal(w->shape, ((int64_t[]){8, 12, 3, 3}), sizeof w->shape);
-    assert_memory_equal(up->shape, ((int64_t[]){6, 12, 4, 4}), sizeof up->shape);
     assert_null(nn_params_find(params, "bn1.running_var")->gradient);
     assert_float_equal(nn_params_find(params, "bn1.running_var")->value[3], 1, 0);
     assert_float_equal(nn_params_find(params, "bn1.weight")->value[3], 1, 0);
@@ -231,11 +230,10 @@ static void cost_counts_two_per_multiply_add(void **state)
     const nn_options options = {.batch = 2, .height = 16, .width = 8, .purpose = NN_TRAIN};
     assert_int_equal(nn_compile(g, params, &options, &p), OK);
     nn_cost cost = nn_program_cost(p);
-    double conv1 = 2.0 * 2 * 8 * 4 * 8 * 12 * 9, conv2 = 2.0 * 2 * 4 * 2 * 6 * 8 * 9,
-           up = 2.0 * 2 * 4 * 2 * 12 * 6 * 16;
-    assert_float_equal(cost.forward_flops, conv1 + conv2 + up, 0.5);
-    assert_float_equal(cost.backward_flops, conv1 + 2 * (conv2 + up), 0.5); /* the image wants no gradient */
-    assert_int_equal(cost.parameter_count, 8 * 12 * 9 + 16 + 6 * 8 * 9 + 6 + 6 * 12 * 16 + 12);
+    double conv1 = 2.0 * 2 * 8 * 4 * 8 * 12 * 9, conv2 = 2.0 * 2 * 4 * 2 * 12 * 8 * 9;
+    assert_float_equal(cost.forward_flops, conv1 + conv2, 0.5);
+    assert_float_equal(cost.backward_flops, conv1 + 2 * conv2, 0.5); /* the image wants no gradient */
+    assert_int_equal(cost.parameter_count, 8 * 12 * 9 + 16 + 12 * 8 * 9 + 12);
     nn_program_free(p);
     nn_params_free(params);
     nn_graph_free(g);

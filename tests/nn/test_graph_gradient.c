@@ -26,13 +26,11 @@ static nn_graph *build_net(void)
     code = nn_tile(g, nn_linear(g, code, "light2", 5), coarse);
     nn_node *deep = nn_concat(g, (nn_node *[]){coarse, code, nn_slice(g, coarse, 3, 4)}, 3);
     nn_node *up = nn_upsample_bilinear(g, nn_conv2d(g, deep, "up", 12, 1, 1, NN_BIAS));
-    nn_node *gate = nn_sigmoid(g, nn_conv2d(g, nn_upsample_nearest(g, deep), "gate", 1, 1, 1, NN_BIAS));
+    nn_node *gate = nn_sigmoid(g, nn_conv2d(g, nn_upsample_bilinear(g, deep), "gate", 1, 1, 1, NN_BIAS));
     nn_node *joined = nn_add(g, up, nn_gate(g, fine, gate));
     nn_node *block = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, joined, "block", 12, 3, 1, NN_NO_BIAS), "block.bn"));
     joined = nn_add(g, block, joined);
-    joined = nn_add(g, joined,
-                    nn_conv_transpose2d(g, nn_tanh(g, nn_conv2d(g, deep, "d", 4, 1, 1, NN_BIAS)), "t", 12, NN_BIAS));
-    nn_node *head = nn_float(g, nn_conv2d(g, joined, "head", 40, 3, 1, NN_BIAS));
+    nn_node *head = nn_float(g, nn_conv2d(g, joined, "head", 32, 3, 1, NN_BIAS));
     head = nn_depth_to_space(g, head, 2);
     nn_node *albedo = nn_tanh(g, nn_slice(g, head, 0, 3));
     nn_node *tilt = nn_concat(g,
@@ -40,8 +38,8 @@ static nn_graph *build_net(void)
                                             nn_scale_shift(g, nn_tanh(g, nn_slice(g, head, 5, 1)), 0.2f, 2)},
                               2);
     nn_node *normal = nn_normalize(g, tilt);
-    nn_node *roughness = nn_tanh(g, nn_channel_mean(g, nn_slice(g, head, 6, 3)));
-    nn_node *depth = nn_reciprocal(g, nn_tanh(g, nn_slice(g, head, 9, 1)), 0.4f, 0.65f);
+    nn_node *roughness = nn_tanh(g, nn_slice(g, head, 6, 1));
+    nn_node *depth = nn_reciprocal(g, nn_tanh(g, nn_slice(g, head, 7, 1)), 0.4f, 0.65f);
     nn_node *radiance = nn_render(g, &(nn_render_inputs){albedo, normal, roughness, depth, mask, light}, 60, 5.95f);
     nn_node *mean = nn_tanh(g, nn_linear(g, nn_spatial_mean(g, coarse), "mean", 27));
     nn_node *ambient = nn_environment(g, albedo, normal, mask, nn_float(g, mean));

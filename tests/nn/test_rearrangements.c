@@ -19,17 +19,6 @@ static shapes double_size(const int *b)
     return (shapes){{b[0], b[1], b[2], b[3]}, {b[0], 2 * b[1], 2 * b[2], b[3]}};
 }
 
-static double nearest(const cpu_tensor *x, int n, int row, int column, int c)
-{
-    return tensor_at(x, n, row / 2, column / 2, c);
-}
-
-static void run_nearest(const cpu_tensor *x, cpu_tensor *y, bool accumulate)
-{
-    (void)accumulate;
-    cpu_upsample_nearest(x, y);
-}
-
 static double clamped(const cpu_tensor *x, int n, int row, int column, int c)
 {
     int y = row < 0 ? 0 : row >= x->h ? x->h - 1 : row, i = column < 0 ? 0 : column >= x->w ? x->w - 1 : column;
@@ -67,26 +56,6 @@ static void run_tile(const cpu_tensor *x, cpu_tensor *y, bool accumulate)
 {
     (void)accumulate;
     cpu_tile(x, y);
-}
-
-static shapes one_channel(const int *b)
-{
-    return (shapes){{b[0], b[1], b[2], b[3]}, {b[0], b[1], b[2], 1}};
-}
-
-static double channel_mean(const cpu_tensor *x, int n, int row, int column, int c)
-{
-    (void)c;
-    double sum = 0;
-    for (int i = 0; i < x->c; i++)
-        sum += tensor_at(x, n, row, column, i);
-    return sum / x->c;
-}
-
-static void run_channel_mean(const cpu_tensor *x, cpu_tensor *y, bool accumulate)
-{
-    (void)accumulate;
-    cpu_channel_mean(x, y);
 }
 
 static shapes one_pixel(const int *b)
@@ -164,10 +133,8 @@ static void run_extract(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
 }
 
 static const operation operations[] = {
-    {"upsample_nearest", double_size, nearest, run_nearest, cpu_upsample_nearest_backward, false},
     {"upsample_bilinear", double_size, bilinear, run_bilinear, cpu_upsample_bilinear_backward, false},
     {"tile", tiled, tile, run_tile, cpu_tile_backward, false},
-    {"channel_mean", one_channel, channel_mean, run_channel_mean, cpu_channel_mean_backward, false},
     {"spatial_mean", one_pixel, spatial_mean, run_spatial_mean, cpu_spatial_mean_backward, false},
     {"space_to_depth", deeper, space_to_depth, run_space_to_depth, run_depth_to_space, true},
     {"depth_to_space", shallower, depth_to_space, run_depth_to_space, run_space_to_depth, true},

@@ -207,48 +207,6 @@ void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_te
     }
 }
 
-static void mean(const float *p, float *out, size_t pixels, size_t channels)
-{
-    float share = 1 / (float)channels;
-    for (size_t i = 0; i < pixels; i++) {
-        float sum = 0;
-#pragma omp simd reduction(+ : sum)
-        for (size_t c = 0; c < channels; c++)
-            sum += p[i * channels + c];
-        out[i] = sum * share;
-    }
-}
-
-void cpu_channel_mean(const cpu_tensor *x, cpu_tensor *y)
-{
-    size_t pixels = pixel_count(x), channels = (size_t)x->c, step = pixels_per_tile(x);
-#pragma omp parallel for schedule(static) if (cpu_count(x) > CPU_PARALLEL_MIN)
-    for (size_t at = 0; at < pixels; at += step) {
-        float room_x[TILE], room_y[TILE];
-        size_t n = cpu_min(step, pixels - at);
-        float *q = cpu_target(y, at, room_y, false);
-        mean(cpu_load(x, at * channels, n * channels, room_x), q, n, channels);
-        cpu_store(y, at, n, q, false);
-    }
-}
-
-void cpu_channel_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
-{
-    size_t pixels = pixel_count(dx), channels = (size_t)dx->c, step = pixels_per_tile(dx);
-    float share = 1 / (float)channels;
-#pragma omp parallel for schedule(static) if (cpu_count(dx) > CPU_PARALLEL_MIN)
-    for (size_t at = 0; at < pixels; at += step) {
-        float room_dy[TILE], room_dx[TILE];
-        size_t n = cpu_min(step, pixels - at);
-        const float *d = cpu_load(dy, at, n, room_dy);
-        float *q = cpu_target(dx, at * channels, room_dx, accumulate);
-        for (size_t i = 0; i < n; i++)
-            for (size_t c = 0; c < channels; c++)
-                q[i * channels + c] = d[i] * share;
-        cpu_store(dx, at * channels, n * channels, q, accumulate);
-    }
-}
-
 /* Shorter vectors than this have no direction: divided by it, and no gradient flows. */
 static const float shortest = 1e-6f;
 

@@ -21,7 +21,7 @@ typedef struct conv {
     bool has_bias;
 } conv;
 
-/* Strides and padding: (k - 1)/2 before, the rest behind (transposed convolution: 1 and 1). */
+/* Strides and padding: (k - 1)/2 before, the rest behind. */
 typedef struct geometry {
     dnnl_dims_t strides, before, behind;
 } geometry;
@@ -38,8 +38,8 @@ static dnnl_memory_desc_t weights_layout(const nn_step *step)
     int64_t in = step->in[0].c, out = step->out.c, k = step->at.kernel;
     dnnl_memory_desc_t layout;
     const dnnl_dims_t size = {out, in, k, k};
-    const dnnl_dims_t conv_strides = {in * k * k, k * k, k, 1}, deconv_strides = {k * k, out * k * k, k, 1};
-    dnnl_memory_desc_init_by_strides(&layout, 4, size, dnnl_f32, step->op == OP_DECONV ? deconv_strides : conv_strides);
+    const dnnl_dims_t strides = {in * k * k, k * k, k, 1};
+    dnnl_memory_desc_init_by_strides(&layout, 4, size, dnnl_f32, strides);
     return layout;
 }
 
@@ -66,12 +66,9 @@ static status describe_forward(nn_step *step, conv *state)
                        b = bias_layout(step), y = dnn_activation(&step->out, step->out.type);
     dnnl_prop_kind_t kind = step->train ? dnnl_forward_training : dnnl_forward_inference;
     const dnnl_memory_desc_t *bias = state->has_bias ? &b : NULL;
-    dnnl_convolution_desc_t descriptor; /* the same type as dnnl_deconvolution_desc_t */
-    dnnl_status_t code = step->op == OP_DECONV
-                             ? dnnl_deconvolution_forward_desc_init(&descriptor, kind, dnnl_deconvolution_direct, &x,
-                                                                    &w, bias, &y, g.strides, g.before, g.behind)
-                             : dnnl_convolution_forward_desc_init(&descriptor, kind, dnnl_convolution_direct, &x, &w,
-                                                                  bias, &y, g.strides, g.before, g.behind);
+    dnnl_convolution_desc_t descriptor;
+    dnnl_status_t code = dnnl_convolution_forward_desc_init(&descriptor, kind, dnnl_convolution_direct, &x, &w, bias,
+                                                            &y, g.strides, g.before, g.behind);
     status s = dnn_check(code, "convolution");
     return s == OK ? dnn_describe(&state->forward, step->context, &descriptor, step->relu, NULL) : s;
 }
@@ -94,11 +91,8 @@ static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
     dnnl_memory_desc_t dx = dnn_activation(&step->in[0], step->compute), w = any_weights(step, step->compute),
                        dy = dnn_activation(&step->out, step->compute);
     dnnl_convolution_desc_t descriptor;
-    dnnl_status_t code = step->op == OP_DECONV
-                             ? dnnl_deconvolution_backward_data_desc_init(&descriptor, dnnl_deconvolution_direct, &dx,
-                                                                          &w, &dy, g.strides, g.before, g.behind)
-                             : dnnl_convolution_backward_data_desc_init(&descriptor, dnnl_convolution_direct, &dx, &w,
-                                                                        &dy, g.strides, g.before, g.behind);
+    dnnl_status_t code = dnnl_convolution_backward_data_desc_init(&descriptor, dnnl_convolution_direct, &dx, &w, &dy,
+                                                                  g.strides, g.before, g.behind);
     status s = dnn_check(code, "convolution backward data");
     return s == OK ? dnn_describe(&state->data, step->context, &descriptor, false, hint) : s;
 }
@@ -110,12 +104,8 @@ static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
                        db = bias_layout(step), dy = dnn_activation(&step->out, step->compute);
     const dnnl_memory_desc_t *bias = state->has_bias ? &db : NULL;
     dnnl_convolution_desc_t descriptor;
-    dnnl_status_t code =
-        step->op == OP_DECONV
-            ? dnnl_deconvolution_backward_weights_desc_init(&descriptor, dnnl_deconvolution_direct, &x, &dw, bias, &dy,
-                                                            g.strides, g.before, g.behind)
-            : dnnl_convolution_backward_weights_desc_init(&descriptor, dnnl_convolution_direct, &x, &dw, bias, &dy,
-                                                          g.strides, g.before, g.behind);
+    dnnl_status_t code = dnnl_convolution_backward_weights_desc_init(&descriptor, dnnl_convolution_direct, &x, &dw,
+                                                                     bias, &dy, g.strides, g.before, g.behind);
     status s = dnn_check(code, "convolution backward weights");
     return s == OK ? dnn_describe(&state->weights, step->context, &descriptor, false, hint) : s;
 }
@@ -270,13 +260,12 @@ static void fold(const nn_step *step)
     const conv *state = step->state;
     float *folded = step->forward_space;
     int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
-    bool transposed = step->op == OP_DECONV;
     for (int o = 0; o < out; o++) {
         float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
         float bias = step->params.bias ? step->params.bias->value[o] : 0;
         state->folded_bias[o] = step->folded.bias->value[o] + (bias - step->folded.running_mean->value[o]) * factor;
         for (int i = 0; i < in; i++) {
-            size_t at = (size_t)(transposed ? i * out + o : o * in + i) * (size_t)taps;
+            size_t at = (size_t)(o * in + i) * (size_t)taps;
             for (int t = 0; t < taps; t++)
                 folded[at + (size_t)t] = step->params.weight->value[at + (size_t)t] * factor;
         }
@@ -335,7 +324,6 @@ static void count_flops(nn_step *step)
 {
     const nn_tensor *x = &step->in[0], *y = &step->out;
     double pixels = (double)y->n * y->h * y->w;
-    if (step->op == OP_DECONV) pixels = (double)x->n * x->h * x->w;
     step->forward_flops = 2 * pixels * x->c * y->c * step->at.kernel * step->at.kernel;
     if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
 }

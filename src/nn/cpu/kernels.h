@@ -47,8 +47,6 @@ void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y);
 void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
                        bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate);
 
-void cpu_upsample_nearest(const cpu_tensor *x, cpu_tensor *y);
-void cpu_upsample_nearest_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 void cpu_upsample_bilinear(const cpu_tensor *x, cpu_tensor *y);
 void cpu_upsample_bilinear_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 /* x is N×1×1×C, y N×H×W×C. */
@@ -56,8 +54,6 @@ void cpu_tile(const cpu_tensor *x, cpu_tensor *y);
 void cpu_tile_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 void cpu_space_to_depth(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
 void cpu_depth_to_space(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
-void cpu_channel_mean(const cpu_tensor *x, cpu_tensor *y);
-void cpu_channel_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 
 /* x is N×H×W×C, y N×1×1×C. */
 void cpu_spatial_mean(const cpu_tensor *x, cpu_tensor *y);

@@ -112,9 +112,6 @@ static status kernel_forward(nn_step *step)
     case OP_SCALE_SHIFT:
         cpu_scale_shift(x, y, at->scale, at->shift);
         break;
-    case OP_UPSAMPLE_NEAREST:
-        cpu_upsample_nearest(x, y);
-        break;
     case OP_UPSAMPLE_BILINEAR:
         cpu_upsample_bilinear(x, y);
         break;
@@ -126,9 +123,6 @@ static status kernel_forward(nn_step *step)
         break;
     case OP_DEPTH_TO_SPACE:
         cpu_depth_to_space(x, y, at->block, false);
-        break;
-    case OP_CHANNEL_MEAN:
-        cpu_channel_mean(x, y);
         break;
     case OP_SPATIAL_MEAN:
         cpu_spatial_mean(x, y);
@@ -194,9 +188,6 @@ static status kernel_backward(nn_step *step)
     case OP_SCALE_SHIFT:
         cpu_scale_shift_backward(dy, dx, at->scale, add);
         break;
-    case OP_UPSAMPLE_NEAREST:
-        cpu_upsample_nearest_backward(dy, dx, add);
-        break;
     case OP_UPSAMPLE_BILINEAR:
         cpu_upsample_bilinear_backward(dy, dx, add);
         break;
@@ -208,9 +199,6 @@ static status kernel_backward(nn_step *step)
         break;
     case OP_DEPTH_TO_SPACE:
         cpu_space_to_depth(dy, dx, at->block, add);
-        break;
-    case OP_CHANNEL_MEAN:
-        cpu_channel_mean_backward(dy, dx, add);
         break;
     case OP_SPATIAL_MEAN:
         cpu_spatial_mean_backward(dy, dx, add);

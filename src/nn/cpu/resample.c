@@ -14,50 +14,6 @@ static size_t tile_pixels(size_t channels)
     return channels >= CPU_CHUNK ? 1 : CPU_CHUNK / channels;
 }
 
-void cpu_upsample_nearest(const cpu_tensor *x, cpu_tensor *y)
-{
-    size_t bytes = (size_t)x->c * cpu_element_size(x), width = (size_t)x->w, rows = (size_t)x->n * (size_t)x->h;
-#pragma omp parallel for schedule(static) if (cpu_count(y) > CPU_PARALLEL_MIN)
-    for (size_t row = 0; row < rows; row++) {
-        const char *from = (const char *)x->data + row * width * bytes;
-        char *to = (char *)y->data + 4 * row * width * bytes;
-        for (size_t i = 0; i < width; i++) {
-            memcpy(to + 2 * i * bytes, from + i * bytes, bytes);
-            memcpy(to + (2 * i + 1) * bytes, from + i * bytes, bytes);
-        }
-        memcpy(to + 2 * width * bytes, to, 2 * width * bytes);
-    }
-}
-
-/* q[i] = the two columns of 2i and 2i + 1 of both rows, added */
-static void add_quads(const float *upper, const float *lower, float *q, size_t pixels, size_t channels)
-{
-    for (size_t i = 0; i < pixels; i++) {
-        size_t left = 2 * i * channels, right = left + channels;
-#pragma omp simd
-        for (size_t c = 0; c < channels; c++)
-            q[i * channels + c] = (upper[left + c] + upper[right + c]) + (lower[left + c] + lower[right + c]);
-    }
-}
-
-void cpu_upsample_nearest_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate)
-{
-    size_t channels = (size_t)dx->c, width = (size_t)dx->w, rows = (size_t)dx->n * (size_t)dx->h;
-    size_t step = tile_pixels(channels);
-    assert(dx->c <= CPU_MAX_CHANNELS);
-#pragma omp parallel for schedule(static) if (cpu_count(dy) > CPU_PARALLEL_MIN)
-    for (size_t row = 0; row < rows; row++)
-        for (size_t at = 0; at < width; at += step) {
-            float upper[2 * COLUMNS], lower[2 * COLUMNS], room[COLUMNS];
-            size_t n = cpu_min(step, width - at), from = (4 * row * width + 2 * at) * channels;
-            const float *u = cpu_load(dy, from, 2 * n * channels, upper);
-            const float *l = cpu_load(dy, from + 2 * width * channels, 2 * n * channels, lower);
-            float *q = cpu_target(dx, (row * width + at) * channels, room, accumulate);
-            add_quads(u, l, q, n, channels);
-            cpu_store(dx, (row * width + at) * channels, n * channels, q, accumulate);
-        }
-}
-
 /* v[1 .. n] = the tile's columns of output row `row` interpolated between input rows; v[0], v[n + 1]: the neighbours,
  * or the edge again. */
 static void mix_rows(const cpu_tensor *x, size_t row, size_t at, size_t n, float *v)

@@ -5,7 +5,7 @@
 
 #include "nn/device.h"
 
-/* Convolution, transposed convolution, fully connected (a 1×1 convolution of 1×1 images): oneDNN. */
+/* Convolution, fully connected (a 1×1 convolution of 1×1 images): oneDNN. */
 status conv_create(nn_step *step);
 /* The two halves of a convolution's backward, to be timed one by one; gradients must be in the compute type. */
 status conv_backward_data(nn_step *step);
