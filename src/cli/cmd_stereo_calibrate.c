@@ -1,7 +1,6 @@
 /* merlin stereo calibrate: light directions from pictures of a ball. */
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/progress.h"
@@ -106,10 +105,8 @@ static status write_files(const request *r, const pst_calibration *c, staged_fil
     staging *t;
     status s = staging_begin(r->output, inputs, &t);
     if (s != OK) return s;
-    char *lights = staging_path(t, "lights.txt"), *picture = staging_path(t, "calibration.png");
-    s = lights && picture ? pst_calibration_write(c, lights, picture) : fail(ERROR_MEMORY, "no memory for a file name");
-    free(lights);
-    free(picture);
+    char lights[PATH_MAX], picture[PATH_MAX];
+    s = pst_calibration_write(c, staging_path(t, "lights.txt", lights), staging_path(t, "calibration.png", picture));
     if (s == OK && cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written to %s", r->output);
     return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }

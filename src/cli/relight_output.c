@@ -52,12 +52,9 @@ static status sheet_write(const sheet *s, const staging *t, const char *name)
     figure_tile tiles[MOST_TILES];
     for (int i = 0; i < s->count; i++)
         tiles[i] = (figure_tile){s->labels[i], &s->pictures[i]};
-    char *path = staging_path(t, name);
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    char path[PATH_MAX];
     int columns = s->count < COLUMNS ? s->count : COLUMNS;
-    status result = figure_sheet(path, tiles, s->count, columns, TILE_SIZE);
-    free(path);
-    return result;
+    return figure_sheet(staging_path(t, name, path), tiles, s->count, columns, TILE_SIZE);
 }
 
 /* A small copy of the square for the sheet, if there is room. */
@@ -90,13 +87,9 @@ static status make_stage(const relight_job *job, int side, bool last, stage *out
 
 static status write_picture(const staging *t, const char *pattern, size_t i, const img *picture)
 {
-    char name[32];
+    char name[32], path[PATH_MAX];
     snprintf(name, sizeof name, "%s_%03zu.png", pattern, i);
-    char *path = staging_path(t, name);
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    status s = img_write_png(path, picture, IMG_SRGB8);
-    free(path);
-    return s;
+    return img_write_png(staging_path(t, name, path), picture, IMG_SRGB8);
 }
 
 /* ---- single lights, in the photograph's frame ---- */
@@ -155,32 +148,27 @@ static vec3 dome_light(int i, int count)
 }
 
 /* The directions to distant lights, which is what an .lp file knows. */
+static void print_lp(FILE *f, const void *context)
+{
+    const relight_job *job = context;
+    fprintf(f, "%d\n", job->dome);
+    for (int i = 0; i < job->dome; i++) {
+        vec3 l = vec3_add(dome_light(i, job->dome), vec3_make(0, 0, 1));
+        fprintf(f, "dome_%03d.png %.6f %.6f %.6f\n", i, (double)l.x, (double)l.y, (double)l.z);
+    }
+}
+
 static status write_lp(const relight_job *job, const staging *t)
 {
-    char *text = NULL, *path = staging_path(t, "dome.lp");
-    size_t size = 0;
-    FILE *f = path ? open_memstream(&text, &size) : NULL;
-    status s = f ? OK : fail(ERROR_MEMORY, "no memory for a list of lights");
-    if (f) {
-        fprintf(f, "%d\n", job->dome);
-        for (int i = 0; i < job->dome; i++) {
-            vec3 l = vec3_add(dome_light(i, job->dome), vec3_make(0, 0, 1));
-            fprintf(f, "dome_%03d.png %.6f %.6f %.6f\n", i, (double)l.x, (double)l.y, (double)l.z);
-        }
-        s = fclose(f) == 0 ? file_write(path, text, size) : fail(ERROR_MEMORY, "no memory for a list of lights");
-    }
-    free(text);
-    free(path);
-    return s;
+    char path[PATH_MAX];
+    return file_print(staging_path(t, "dome.lp", path), print_lp, job);
 }
 
 static status write_dome_mask(const relight_job *job, const staging *t)
 {
+    char path[PATH_MAX];
     img mask = img_of(&job->maps->mask);
-    char *path = staging_path(t, "mask.png");
-    status s = path ? img_write_png(path, &mask, IMG_LINEAR8) : fail(ERROR_MEMORY, "no memory for a file name");
-    free(path);
-    return s;
+    return img_write_png(staging_path(t, "mask.png", path), &mask, IMG_LINEAR8);
 }
 
 static status write_dome(const relight_job *job, const staging *t)
@@ -214,10 +202,8 @@ static status write_animations(const relight_job *job, const staging *t, const i
     status s = OK;
     for (int i = 0; i < 2 && s == OK; i++) {
         if (stopped(job)) return fail(ERROR_STOPPED, "stopped");
-        char *path = staging_path(t, names[i]);
-        if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-        s = img_write_animation(path, frames, job->orbit, ORBIT_MILLISECONDS / job->orbit);
-        free(path);
+        char path[PATH_MAX];
+        s = img_write_animation(staging_path(t, names[i], path), frames, job->orbit, ORBIT_MILLISECONDS / job->orbit);
     }
     return s;
 }

@@ -147,9 +147,8 @@ static status write_some(const stereo_files *files, const staging *t, const ster
     status s = OK;
     for (size_t i = 0; i < count && s == OK; i++) {
         if (files->stop && files->stop()) return fail(ERROR_STOPPED, "stopped");
-        char *path = staging_path(t, some[i].name);
-        s = path ? some[i].write(r, path) : fail(ERROR_MEMORY, "no memory for a file name");
-        free(path);
+        char path[PATH_MAX];
+        s = some[i].write(r, staging_path(t, some[i].name, path));
     }
     return s;
 }
@@ -158,10 +157,8 @@ static status write_all(const stereo_files *files, const staging *t, const stere
 {
     status s = write_some(files, t, r, outputs, sizeof outputs / sizeof outputs[0]);
     if (s == OK && files->mesh_count == 0) s = write_some(files, t, r, meshes, sizeof meshes / sizeof meshes[0]);
-    char *path = s == OK ? staging_path(t, "report.json") : NULL;
-    if (s == OK) s = path ? write_report(report, path) : fail(ERROR_MEMORY, "no memory for a file name");
-    free(path);
-    return s;
+    char path[PATH_MAX];
+    return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }
 
 /* A mesh with a name of its own is made aside in the folder where it is wanted, for it may bring other files along. */
@@ -174,10 +171,8 @@ static status stage_mesh(const stereo_files *files, const char *path, const ster
     status s = folder ? staging_begin(folder, files->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
     free(folder);
     if (s != OK) return fail_in(s, "cannot write %s", path);
-    char *aside = staging_path(*out, slash ? slash + 1 : path);
-    s = aside ? write_mesh(r, aside) : fail(ERROR_MEMORY, "no memory for a file name");
-    free(aside);
-    return s;
+    char aside[PATH_MAX];
+    return write_mesh(r, staging_path(*out, slash ? slash + 1 : path, aside));
 }
 
 /* The folder first: it has the most to fail. */

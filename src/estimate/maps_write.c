@@ -118,9 +118,8 @@ static void write_one(void *context, size_t i)
     if (stopped(b)) {
         b->results[i] = fail(ERROR_STOPPED, "stopped");
     } else {
-        char *path = staging_path(b->staging, outputs[i].name);
-        b->results[i] = path ? outputs[i].write(&b->job, path) : fail(ERROR_MEMORY, "no memory for a file name");
-        free(path);
+        char path[PATH_MAX];
+        b->results[i] = outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
     }
     if (b->results[i] != OK) snprintf(b->messages[i], MESSAGE_SIZE, "%s", status_message());
 }
@@ -136,11 +135,9 @@ static status write_all(batch *b)
 /* A mesh is no part of merlin_maps_write, but of the same all or none. */
 static status write_more(const batch *b)
 {
+    char path[PATH_MAX];
     if (!b->output->more) return OK;
-    char *path = staging_path(b->staging, b->output->more_name);
-    status s = path ? b->output->more(b->job.maps, path) : fail(ERROR_MEMORY, "no memory for a file name");
-    free(path);
-    return s;
+    return b->output->more(b->job.maps, staging_path(b->staging, b->output->more_name, path));
 }
 
 static status write_through(batch *b)

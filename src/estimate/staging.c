@@ -2,7 +2,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,6 +67,8 @@ static void remove_made(const staging *t)
 
 static status begin(staging *t)
 {
+    if (strlen(t->hidden) + 1 + NAME_MAX >= PATH_MAX)
+        return fail(ERROR_OUTPUT, "cannot write: a path of %zu bytes is too long: %s", strlen(t->folder), t->folder);
     t->kept = existing_length(t->folder);
     status s = file_make_folder(t->folder);
     if (s == OK && !mkdtemp(t->hidden)) s = fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
@@ -91,9 +92,10 @@ status staging_begin(const char *folder, const char *const *inputs, staging **ou
     return s;
 }
 
-char *staging_path(const staging *t, const char *name)
+const char *staging_path(const staging *t, const char *name, char path[PATH_MAX])
 {
-    return file_join(t->hidden, name);
+    snprintf(path, PATH_MAX, "%s/%s", t->hidden, name);
+    return path;
 }
 
 static bool is_dots(const char *name)

@@ -2,13 +2,15 @@
  *
  *     staging *t;
  *     const char *const inputs[STAGING_MOST_INPUTS] = {"cup.jpg"};
- *     status s = staging_begin("cup.merlin", inputs, &t);
- *     char *path = staging_path(t, "albedo.png");  write it there
+ *     staging_begin("cup.merlin", inputs, &t);
+ *     char path[PATH_MAX];
+ *     status s = img_write_png(staging_path(t, "albedo.png", path), &albedo, IMG_SRGB8);
  *     s = s == OK ? staging_commit(t, NULL) : staging_abort(t, s);
  */
 #ifndef MERLIN_ESTIMATE_STAGING_H
 #define MERLIN_ESTIMATE_STAGING_H
 
+#include <limits.h>
 #include <stddef.h>
 
 #include "base/status.h"
@@ -19,8 +21,8 @@ typedef struct staging staging;
  * that a commit does not replace, each of which may be NULL, as may the whole; the names must outlive t. */
 enum { STAGING_MOST_INPUTS = 4 };
 status staging_begin(const char *folder, const char *const *inputs, staging **out);
-/* Where to write the file that will be folder/name: malloc'ed; NULL if memory ran out. Any thread. */
-char *staging_path(const staging *t, const char *name);
+/* Where to write the file that will be folder/name: put into path, and returned. Any thread. */
+const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
 /* The paths of what was written, sorted; zero-initialized is none. */
 typedef struct staged_files {
     char **at;

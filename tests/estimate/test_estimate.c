@@ -406,6 +406,12 @@ static void an_output_that_cannot_be_written_leaves_nothing(void **state)
     assert_non_null(strstr(merlin_error(), "mask.png"));
     assert_int_equal(rmdir(inside), 0);
     assert_int_equal(rmdir(f->output), 0);
+    char deep[PATH_MAX - 100];
+    for (size_t i = (size_t)snprintf(deep, sizeof deep, "%s", f->output); i < sizeof deep; i++)
+        deep[i] = i == sizeof deep - 1 ? 0 : i % 200 ? 'x' : '/';
+    assert_int_equal(merlin_maps_write(f->model, &maps, deep), MERLIN_CANNOT_WRITE);
+    assert_non_null(strstr(merlin_error(), "too long"));
+    assert_false(file_exists(f->output));
     merlin_maps_free(&maps);
 }
 
