@@ -13,6 +13,8 @@
 #include "image/image.h"
 #include "merlin/merlin.h"
 
+enum { PHOTO_MOST_PIXELS = 64 * 1000 * 1000 };
+
 struct merlin_model {
     network *network;
 };

@@ -25,18 +25,24 @@ typedef enum picture_kind {
     PICTURE_HDR,
 } picture_kind;
 
-/* A PNG as most are: *plain; one with a colour profile or an orientation is left to picture_decode, and *plain false.
- * color, alpha as below, bits (8 or 16): any may be NULL. */
-status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, int *bits, bool *plain);
+/* What a file's head alone says; bits of a sample: 8, 16 or 32. */
+typedef struct picture_head {
+    int width, height, bits; /* as stored: an orientation may exchange width and height */
+    bool plain;              /* of PNG: without colour profile and orientation */
+} picture_head;
+
+/* A PNG as most are, head->plain; any other is left to picture_decode. color, alpha as below: either may be NULL. */
+status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head);
 
 /* Any kind but EXR. color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
 status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha);
-/* Bits of a sample, from the file's head alone: 8, 16 or 32. Not for EXR. */
-status picture_bits(const char *path, picture_kind kind, int *bits);
+/* Any kind but EXR. */
+status picture_look(const char *path, picture_kind kind, picture_head *head);
 status picture_check_size(const char *path, int width, int height);
 /* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
  * they mean as sRGB, or else scaled to [0, 1]. */
 void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out);
 status picture_read_exr(const char *path, img *color, img *alpha);
+status picture_look_exr(const char *path, picture_head *head);
 
 #endif

@@ -58,6 +58,16 @@ static status read_open(exr_file *f, const char *path, img *color, img *alpha)
     return exr_read(f, targets, (size_t)channels);
 }
 
+status picture_look_exr(const char *path, picture_head *head)
+{
+    exr_file *f = NULL;
+    status s = exr_open(path, &f);
+    if (s != OK) return s;
+    *head = (picture_head){.width = exr_width(f), .height = exr_height(f), .bits = 32};
+    exr_close(f);
+    return OK;
+}
+
 status picture_read_exr(const char *path, img *color, img *alpha)
 {
     exr_file *f = NULL;

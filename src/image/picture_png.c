@@ -106,13 +106,12 @@ static status read_open(reader *r, const char *path, picture_colour how, img *co
     return s == OK ? take(r, how, color, alpha) : s;
 }
 
-status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, int *bits, bool *plain)
+status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head)
 {
     reader r;
     status s = reader_open(&r, path) ? OK : fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
     if (s == OK) s = read_open(&r, path, how, color, alpha);
-    *plain = r.plain;
-    if (bits) *bits = r.wide ? 16 : 8;
+    *head = (picture_head){r.width, r.height, r.wide ? 16 : 8, r.plain};
     reader_free(&r);
     return s;
 }

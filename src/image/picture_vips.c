@@ -160,14 +160,18 @@ status picture_decode(const char *path, picture_kind kind, picture_colour how, i
     return s;
 }
 
-status picture_bits(const char *path, picture_kind kind, int *bits)
+status picture_look(const char *path, picture_kind kind, picture_head *head)
 {
     VipsImage *image = NULL;
     status s = vips_begin();
     if (s == OK) s = open_picture(path, kind, &image);
     if (s != OK) return s;
     VipsBandFormat format = vips()->image_get_format(image);
-    *bits = format == VIPS_FORMAT_UCHAR ? 8 : format == VIPS_FORMAT_USHORT ? 16 : 32;
+    *head = (picture_head){.width = vips()->image_get_width(image),
+                           .height = vips()->image_get_height(image),
+                           .bits = format == VIPS_FORMAT_UCHAR    ? 8
+                                   : format == VIPS_FORMAT_USHORT ? 16
+                                                                  : 32};
     vips()->g_object_unref(image);
     return OK;
 }

@@ -91,6 +91,26 @@ void picture_take_codes(const void *codes, bool wide, int bands, int first, bool
         }
 }
 
+static status look_into(const char *path, picture_kind kind, picture_head *head)
+{
+    if (kind == PICTURE_EXR) return picture_look_exr(path, head);
+    *head = (picture_head){.plain = false};
+    if (kind != PICTURE_PNG) return picture_look(path, kind, head);
+    status s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, head);
+    return s == OK && !head->plain ? picture_look(path, kind, head) : s;
+}
+
+status img_read_size(const char *path, int *width, int *height)
+{
+    picture_kind kind;
+    picture_head head = {.width = 0};
+    status s = look_at(path, &kind);
+    if (s == OK) s = look_into(path, kind, &head);
+    *width = head.width;
+    *height = head.height;
+    return s;
+}
+
 static status check_finite(const char *path, const img *image)
 {
     ptrdiff_t count = (ptrdiff_t)image->width * image->height * image->channels;
@@ -104,11 +124,11 @@ static status check_finite(const char *path, const img *image)
 static status read_any(const char *path, picture_colour how, img *color, img *alpha)
 {
     picture_kind kind;
-    bool plain = false;
+    picture_head head = {.plain = false};
     status s = look_at(path, &kind);
-    if (s == OK && kind == PICTURE_PNG) s = picture_read_png(path, how, color, alpha, NULL, &plain);
+    if (s == OK && kind == PICTURE_PNG) s = picture_read_png(path, how, color, alpha, &head);
     if (s == OK && kind == PICTURE_EXR) s = picture_read_exr(path, color, alpha);
-    if (s == OK && kind != PICTURE_EXR && !plain) s = picture_decode(path, kind, how, color, alpha);
+    if (s == OK && kind != PICTURE_EXR && !head.plain) s = picture_decode(path, kind, how, color, alpha);
     if (s == OK) s = check_finite(path, color);
     if (s == OK && alpha && alpha->data) s = check_finite(path, alpha);
     return s;
@@ -156,15 +176,14 @@ static picture_colour colour_of_samples(int bits, bool decode_8_bit)
 static status read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
 {
     picture_kind kind;
-    bool plain = false;
-    *bits = 32;
+    picture_head head;
     status s = look_at(path, &kind);
-    if (s != OK || kind == PICTURE_EXR) return s == OK ? picture_read_exr(path, color, NULL) : s;
-    if (kind == PICTURE_PNG) s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, bits, &plain);
-    if (s == OK && plain)
-        return picture_read_png(path, colour_of_samples(*bits, decode_8_bit), color, NULL, bits, &plain);
-    if (s == OK) s = picture_bits(path, kind, bits);
-    return s == OK ? picture_decode(path, kind, colour_of_samples(*bits, decode_8_bit), color, NULL) : s;
+    if (s == OK) s = look_into(path, kind, &head);
+    if (s != OK) return s;
+    *bits = head.bits;
+    picture_colour how = colour_of_samples(head.bits, decode_8_bit);
+    if (kind == PICTURE_EXR) return picture_read_exr(path, color, NULL);
+    return head.plain ? picture_read_png(path, how, color, NULL, &head) : picture_decode(path, kind, how, color, NULL);
 }
 
 status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits)

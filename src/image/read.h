@@ -15,6 +15,8 @@ enum { IMAGE_MAX_SIDE = 16384 };
  * the file has an alpha channel (EXR: "A"), and stays empty otherwise. Refuses non-images, truncated files, sides above
  * IMAGE_MAX_SIDE and values that are NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
+/* Its size from the file's head alone, the longer side perhaps as height: before an orientation is applied. */
+status img_read_size(const char *path, int *width, int *height);
 /* img_read of an environment, a latitude-longitude picture: twice as wide as high and 8×4 pixels at least. Mirror
  * balls' and cubes' pictures, which would be bent around the object, are refused. */
 status img_read_latlong(const char *path, img *color);

@@ -178,6 +178,20 @@ static void empty_masks_are_refused(void **state)
     merlin_image_free(&mask);
 }
 
+/* A grey PNG of 9000 by 9000 pixels as far as its head goes. */
+static void a_photograph_that_is_too_large_is_refused_before_it_is_decoded(void **state)
+{
+    static const char head[] = "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x23\x28\0\0\x23\x28\x08\0\0\0\0\x48\xbe\x2d\x66"
+                               "\0\0\0\0IDAT\x35\xaf\x06\x1e";
+    const fixture *f = *state;
+    merlin_image color;
+    char path[96];
+    snprintf(path, sizeof path, "%s/large.png", f->folder);
+    assert_int_equal(file_write(path, head, sizeof head - 1), OK);
+    assert_int_equal(merlin_image_read(path, &color, NULL), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "large.png: it is 9000 x 9000 pixels, more than 64 million"));
+}
+
 /* A picture of one colour under one alpha. */
 static const char *save_alpha(const fixture *f, float alpha, char *path, size_t size)
 {
@@ -479,6 +493,7 @@ int main(void)
         cmocka_unit_test(the_object_is_found_without_a_mask),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
+        cmocka_unit_test(a_photograph_that_is_too_large_is_refused_before_it_is_decoded),
         cmocka_unit_test(an_alpha_that_shows_nothing_is_refused_by_its_name),
         cmocka_unit_test(only_names_of_pngs_are_written_to),
         cmocka_unit_test(maps_of_impossible_frames_are_refused),

@@ -136,6 +136,9 @@ static void every_photograph_format_is_read(void **state)
         if (img_read(scratch_path(names[k]), &color, NULL) != OK) print_error("%s\n", status_message());
         assert_int_equal(color.width, 16);
         assert_int_equal(color.height, 8);
+        int width, height;
+        assert_int_equal(img_read_size(scratch_path(names[k]), &width, &height), OK);
+        assert_true(width == 16 && height == 8);
         /* away from the borders, where lossy formats smear; 0.06 is what their default quality costs here */
         assert_true(fabsf(img_at(&color, 2, 1)[0] - srgb_decode(250 / 255.0f)) < 0.06f);
         assert_true(fabsf(img_at(&color, 13, 6)[2] - srgb_decode(100 / 255.0f)) < 0.06f);
