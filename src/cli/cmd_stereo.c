@@ -18,11 +18,13 @@
 
 static const char help[] =
     "usage: merlin stereo DIR [options]\n"
-    "       merlin stereo PHOTO [options]\n"
+    "       merlin stereo PHOTO|MAPS [options]\n"
     "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
     "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
-    "under 50 lights. calibrate finds light directions from pictures of a ball.\n\n"
+    "under 50 lights. MAPS is a folder made by merlin estimate: the photograph is not estimated again. calibrate "
+    "finds\n"
+    "light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp (default:\n"
     "                       found in DIR)\n"
     "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
@@ -36,7 +38,7 @@ static const char help[] =
     "output)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
     "      --model W, --size N, --views N, --exposure EV\n"
-    "                       for a PHOTO, as in merlin estimate\n"
+    "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
     "      --json           the report on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
@@ -49,6 +51,7 @@ typedef struct request {
     stereo_folder folder;
     merlin_params params;
     stereo_files files;
+    bool maps; /* input is a folder of merlin estimate's */
     bool json, quiet, help;
 } request;
 
@@ -83,15 +86,36 @@ static status take_mesh(const char *path, void *into)
     return pst_mesh_check_name(path);
 }
 
+/* Without lights beside them: relight --dome may have written its pictures there too. */
+static bool holds_maps(const char *folder)
+{
+    static const char *const lights[] = {".txt", ".lp", NULL};
+    char *maps = file_join(folder, "maps.exr"), **names = NULL;
+    size_t count = 0;
+    bool found = maps && file_exists(maps) && file_list(folder, lights, &names, &count) == OK && count == 0;
+    file_list_free(names, count);
+    free(maps);
+    return found;
+}
+
+static bool is_capture(const request *r)
+{
+    return file_is_folder(r->input) && !r->maps;
+}
+
 static status check(request *r)
 {
     const pst_read_options *o = &r->folder.read;
     if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
     if (o->lights && o->unknown_lights) return fail(ERROR_USAGE, "--method uncalibrated takes no --lights");
-    if (file_exists(r->input) && !file_is_folder(r->input) &&
+    r->maps = !o->lights && holds_maps(r->input);
+    if (file_exists(r->input) && !is_capture(r) &&
         (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))
         return fail(ERROR_USAGE, "--lights, --near, --fov, --ambient and --linear are for a folder of pictures");
-    if (file_is_folder(r->input) && (r->weights || photo_params_given(&r->params)))
+    if (r->maps && (o->mask || photo_params_given(&r->params)))
+        return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
+                    r->input);
+    if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");
     return OK;
 }
@@ -175,8 +199,7 @@ static status work(request *r, const char *output, cJSON *report)
     staged_files written = {0};
     const pst_read_options *read = &r->folder.read;
     json_line_text(report, "input", r->input);
-    status s =
-        file_is_folder(r->input) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
     float scale = 1;
     if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
     if (s == OK) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "cli/photos.h"
 #include "eval/draws.h"
 #include "eval/relit.h"
@@ -21,7 +22,7 @@ typedef struct work {
     int draws;
 } work;
 
-static status open_photo(work *w)
+static status estimate(work *w)
 {
     const stereo_photo *p = w->photo;
     merlin_image photo = {0}, mask = {0};
@@ -34,6 +35,19 @@ static status open_photo(work *w)
     }
     merlin_image_free(&photo);
     merlin_image_free(&mask);
+    return s;
+}
+
+static status read_maps(work *w)
+{
+    status s = (status)merlin_maps_read(w->photo->photo, &w->maps);
+    return s == OK ? (status)merlin_model_open(w->photo->weights, &w->model) : s;
+}
+
+static status open_photo(work *w)
+{
+    const stereo_photo *p = w->photo;
+    status s = file_is_folder(p->photo) ? read_maps(w) : estimate(w);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

@@ -9,7 +9,7 @@
 #include "stereo/solve.h"
 
 typedef struct stereo_photo {
-    const char *photo, *mask, *weights;
+    const char *photo, *mask, *weights; /* photo: or a folder of merlin estimate's, whose maps are taken */
     merlin_params params;
     pst_method method; /* PST_AUTO: near */
     bool preserve_edges;

@@ -34,6 +34,19 @@ echo "one photograph"
 succeeds '"normal_spread_mean_degrees"' stereo disc.hdr --size 64 --json -o photo
 present "${files[@]/#/photo/}" photo/mesh.glb
 
+echo "its maps, which are there already"
+spread() { grep -o '"normal_spread_mean_degrees":[0-9.]*' stdout | cut -d: -f2; }
+estimated=$(spread)
+cp -r disc.merlin estimated
+succeeds '"normal_spread_mean_degrees"' stereo estimated --json
+present "${files[@]/#/estimated/stereo/}" estimated/stereo/mesh.glb
+# maps.exr is in half floats: three digits
+awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < 0.01 * $estimated ^ 2) }" || complain "$(spread) is not $estimated"
+cp dome/dome_* dome/dome.lp estimated
+succeeds '"pictures": *6' stereo estimated --method ls --json -o out
+refuses 2 'holds maps already' stereo disc.merlin --size 64
+refuses 2 'for a folder of pictures' stereo disc.merlin --near
+
 echo "lights from a ball, straight ahead"
 mkdir ball
 for i in 1 2; do radiance ball/$i.png 64 3; done # by their content Radiance pictures
