@@ -19,10 +19,11 @@
  * looks along -z, x right, y up; the object stands near (0, 0, -1). The square `crop` around the object counts as the
  * whole frame of that camera: 60 degrees wide, its centre on the optical axis, whatever lens took the photograph.
  *
- * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. Pointers must
- * not be NULL unless a comment says so (MERLIN_WRONG_USE); what frees or closes takes NULL, and then does nothing.
- * Nothing is printed, nothing exits. There are no globals: a model may be used from several threads (runs through one
- * model take turns). */
+ * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. What a function
+ * fills in is yours to free; it is overwritten, not freed first, and after a failure it is empty. Pointers must not be
+ * NULL unless a comment says so (MERLIN_WRONG_USE); what frees or closes takes NULL, and then does nothing. Nothing is
+ * printed, nothing exits. There are no globals: a model may be used from several threads (runs through one model take
+ * turns). */
 #ifndef MERLIN_MERLIN_H
 #define MERLIN_MERLIN_H
 
@@ -52,8 +53,7 @@ typedef struct merlin_image {
 
 /* PNG, JPEG, TIFF, WebP, HEIC, EXR or Radiance HDR of at most 64 million pixels into 3 linear channels; alpha (may be
  * NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere, else no image. An alpha that
- * nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. On failure both are left without
- * data. */
+ * nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
 /* 1 channel in [0, 1]. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
@@ -67,7 +67,7 @@ typedef struct merlin_model merlin_model;
 
 merlin_status merlin_model_open(const char *weights, merlin_model **out);
 void merlin_model_close(merlin_model *model);
-const char *merlin_model_name(const merlin_model *model);
+const char *merlin_model_name(const merlin_model *model); /* as long as the model is open; "" for NULL */
 
 /* ---- from a photograph to maps ---- */
 

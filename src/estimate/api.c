@@ -30,10 +30,10 @@ static status check_size(const char *path)
 
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
 {
+    if (color) *color = (merlin_image){0};
+    if (alpha) *alpha = (merlin_image){0};
     status s = api_needs(__func__, path && color);
     if (s != OK) return result_of(s);
-    *color = (merlin_image){0};
-    if (alpha) *alpha = (merlin_image){0};
     img c = {0}, a = {0};
     s = check_size(path);
     if (s == OK) s = img_read(path, &c, alpha ? &a : NULL);
@@ -55,6 +55,7 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
 
 merlin_status merlin_mask_read(const char *path, merlin_image *mask)
 {
+    if (mask) *mask = (merlin_image){0};
     status s = api_needs(__func__, path && mask);
     if (s != OK) return result_of(s);
     img m = {0};
@@ -95,9 +96,9 @@ void merlin_maps_free(merlin_maps *maps)
 
 merlin_status merlin_model_open(const char *weights, merlin_model **out)
 {
+    if (out) *out = NULL;
     status s = api_needs(__func__, weights && out);
     if (s != OK) return result_of(s);
-    *out = NULL;
     merlin_model *model = calloc(1, sizeof *model);
     if (!model) return result_of(fail(ERROR_MEMORY, "no memory for a model"));
     s = network_open(weights, &model->network);

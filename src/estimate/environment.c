@@ -20,9 +20,9 @@ static status prepare(const char *path, float turn, float exposure, env_map *map
 
 merlin_status merlin_environment_read(const char *path, float turn, float exposure, merlin_environment **out)
 {
+    if (out) *out = NULL;
     status s = api_needs(__func__, path && out);
     if (s != OK) return result_of(s);
-    *out = NULL;
     if (!isfinite(turn) || !(fabsf(exposure) <= MOST_EXPOSURE))
         return result_of(fail(ERROR_USAGE, "an environment's turn must be finite and its exposure within %g EV",
                               (double)MOST_EXPOSURE));

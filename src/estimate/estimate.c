@@ -281,10 +281,10 @@ status estimate_object(merlin_model *model, merlin_image *photo, photo_object *o
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps)
 {
+    if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, model && photo && maps);
     if (s != OK) return result_of(s);
     photo_object object;
-    *maps = (merlin_maps){0};
     s = photo_object_choose(photo, mask, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
     if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);

@@ -108,9 +108,9 @@ static void tidy(merlin_maps *maps)
 
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
 {
+    if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, folder && maps);
     if (s != OK) return result_of(s);
-    *maps = (merlin_maps){0};
     char *path = file_join(folder, "maps.exr");
     if (!path) return result_of(fail(ERROR_MEMORY, "no memory for a file name"));
     exr_file *f = NULL;

@@ -171,9 +171,9 @@ static status check_light(const float light[3])
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out)
 {
+    if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && light && out);
     if (s != OK) return result_of(s);
-    *out = (merlin_image){0};
     vec3 place = vec3_of(light);
     s = check_light(light);
     return result_of(s == OK ? relight_maps(model, maps, &place, NULL, how, out) : s);
@@ -182,9 +182,9 @@ merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
                                          const float *light, merlin_relighting how, merlin_image *out)
 {
+    if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && env && out);
     if (s != OK) return result_of(s);
-    *out = (merlin_image){0};
     s = light ? check_light(light) : OK;
     if (s != OK) return result_of(s);
     vec3 place = light ? vec3_of(light) : vec3_make(0, 0, 0);

@@ -334,6 +334,39 @@ static void null_pointers_are_refused_and_freed(void **state)
     merlin_model_close(NULL);
 }
 
+static void what_was_to_be_filled_in_is_empty_after_wrong_use(void **state)
+{
+    const fixture *f = *state;
+    const float light[3] = {0};
+    merlin_maps maps;
+    merlin_image image, alpha;
+    merlin_model *model = f->model;
+    merlin_environment *room = (merlin_environment *)f->model;
+    memset(&image, 0x55, sizeof image);
+    memset(&alpha, 0x55, sizeof alpha);
+    assert_int_equal(merlin_image_read(NULL, &image, &alpha), MERLIN_WRONG_USE);
+    assert_true(!image.data && !alpha.data);
+    memset(&image, 0x55, sizeof image);
+    assert_int_equal(merlin_mask_read(NULL, &image), MERLIN_WRONG_USE);
+    assert_null(image.data);
+    assert_int_equal(merlin_model_open(NULL, &model), MERLIN_WRONG_USE);
+    assert_null(model);
+    assert_int_equal(merlin_environment_read(NULL, 0, 0, &room), MERLIN_WRONG_USE);
+    assert_null(room);
+    memset(&maps, 0x55, sizeof maps);
+    assert_int_equal(merlin_estimate(NULL, &f->photo, NULL, NULL, &maps), MERLIN_WRONG_USE);
+    assert_null(maps.albedo.data);
+    memset(&maps, 0x55, sizeof maps);
+    assert_int_equal(merlin_maps_read(NULL, &maps), MERLIN_WRONG_USE);
+    assert_null(maps.albedo.data);
+    memset(&image, 0x55, sizeof image);
+    assert_int_equal(merlin_relight(NULL, &maps, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_null(image.data);
+    memset(&image, 0x55, sizeof image);
+    assert_int_equal(merlin_relight_environment(NULL, &maps, NULL, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+    assert_null(image.data);
+}
+
 static int stop_now(void)
 {
     return 1;
@@ -498,6 +531,7 @@ int main(void)
         cmocka_unit_test(only_names_of_pngs_are_written_to),
         cmocka_unit_test(maps_of_impossible_frames_are_refused),
         cmocka_unit_test(null_pointers_are_refused_and_freed),
+        cmocka_unit_test(what_was_to_be_filled_in_is_empty_after_wrong_use),
         cmocka_unit_test(photographs_without_an_object_are_refused),
         cmocka_unit_test(tiny_photographs_and_odd_parameters_are_refused),
         cmocka_unit_test(photographs_with_infinities_are_refused),
