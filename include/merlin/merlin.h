@@ -117,7 +117,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
 void merlin_maps_free(merlin_maps *maps);
 
 /* maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or, after a
- * failure, none. The model adds two new lights to the overview. */
+ * failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. */
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder);
 /* From the maps.exr of such a folder. The reconstruction stays without data. */
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);

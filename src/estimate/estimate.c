@@ -11,7 +11,6 @@
 #include "image/resize.h"
 
 enum { LEAST_SIDE = 16 };
-static const float MOST_EXPOSURE = 20.0f;
 
 /* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's. */
 typedef struct work {
@@ -63,8 +62,8 @@ static status check_photo(const img *photo)
 
 static status check_params(const merlin_params *p)
 {
-    if (p->auto_exposure || fabsf(p->exposure) <= MOST_EXPOSURE) return OK;
-    return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)MOST_EXPOSURE, (double)p->exposure);
+    if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
+    return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
 }
 
 status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out)

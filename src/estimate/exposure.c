@@ -40,3 +40,8 @@ float exposure_from_ev(float ev)
 {
     return EXPOSURE_WHITE * exp2f(ev);
 }
+
+bool exposure_is_sound(float gain)
+{
+    return gain >= exposure_from_ev(-EXPOSURE_MOST_EV) && gain <= exposure_from_ev(EXPOSURE_MOST_EV);
+}

@@ -8,6 +8,8 @@
 #ifndef MERLIN_ESTIMATE_EXPOSURE_H
 #define MERLIN_ESTIMATE_EXPOSURE_H
 
+#include <stdbool.h>
+
 #include "image/image.h"
 
 /* The middle of the training data's whites, e^0.45. */
@@ -17,7 +19,11 @@
  * EXPOSURE_WHITE, which a black photograph gets. */
 float exposure_gain(const img *color, const img *mask);
 
+/* Stops that may be asked for. */
+#define EXPOSURE_MOST_EV 20.0f
 /* EXPOSURE_WHITE · 2^EV. */
 float exposure_from_ev(float ev);
+/* Whether an estimate can have had this gain. */
+bool exposure_is_sound(float gain);
 
 #endif

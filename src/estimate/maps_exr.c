@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "estimate/api.h"
+#include "estimate/exposure.h"
 #include "image/exr.h"
 
 enum { CHANNELS = 12 };
@@ -63,7 +64,7 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     if (!complete) return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attributes are missing", path);
     bool sound = fabsf(square[0]) < (float)CROP_FARTHEST && fabsf(square[1]) < (float)CROP_FARTHEST && square[2] >= 1 &&
                  square[2] < (float)CROP_FARTHEST && size >= NETWORK_LEAST_SIZE && size <= NETWORK_LARGEST_SIZE &&
-                 fmodf(size, MODEL_SIZE_MULTIPLE) == 0 && maps->gain > 1e-6f && maps->gain < 1e6f;
+                 fmodf(size, MODEL_SIZE_MULTIPLE) == 0 && exposure_is_sound(maps->gain);
     if (!sound) return fail(ERROR_INPUT, "%s: crop, size or gain is out of range", path);
     maps->crop.x = (int)square[0];
     maps->crop.y = (int)square[1];

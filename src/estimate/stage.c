@@ -1,8 +1,8 @@
 /* The maps of a crop at the size that is asked for, and made ready for many lights. */
-#include <math.h>
 #include <stdbool.h>
 
 #include "estimate/api.h"
+#include "estimate/exposure.h"
 #include "image/resize.h"
 
 /* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
@@ -20,12 +20,15 @@ void stage_free(stage *s)
 
 status maps_check(const merlin_maps *maps)
 {
-    const merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,
-                                    &maps->depth,  &maps->mask,   &maps->photo};
-    const int channels[] = {3, 3, 1, 1, 1, 3};
+    enum { IMAGES = 7, RECONSTRUCTION = 6 };
+    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
+                                          &maps->mask,   &maps->photo,  &maps->reconstruction};
+    const int channels[IMAGES] = {3, 3, 1, 1, 1, 3, 3};
+    int count = maps->reconstruction.data ? IMAGES : RECONSTRUCTION; /* which maps from a folder do not have */
     bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE &&
-                 maps->size <= NETWORK_LARGEST_SIZE && maps->gain > 0 && isfinite(maps->gain);
-    for (int i = 0; i < 6; i++)
+                 maps->size <= NETWORK_LARGEST_SIZE && maps->size % MODEL_SIZE_MULTIPLE == 0 &&
+                 exposure_is_sound(maps->gain);
+    for (int i = 0; i < count; i++)
         sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
                  images[i]->height == maps->albedo.height;
     return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");

@@ -292,18 +292,25 @@ static void maps_of_impossible_frames_are_refused(void **state)
 {
     const fixture *f = *state;
     const float light[3] = {0};
-    merlin_maps good, bad[5];
+    enum { BAD = 7 };
+    merlin_maps good, bad[BAD];
     merlin_image image;
     estimate(f, &good);
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < BAD; i++)
         bad[i] = good;
     bad[0].crop.side = INT_MAX;
     bad[1].crop.x = INT_MIN;
     bad[2].size = INT_MAX;
     bad[3].gain = INFINITY;
     bad[4].depth.width--;
-    for (int i = 0; i < 5; i++)
+    bad[5].size = 65;
+    bad[6].reconstruction.height *= 100;
+    for (int i = 0; i < BAD; i++) {
         assert_int_equal(merlin_relight(f->model, &bad[i], light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
+        assert_int_equal(merlin_maps_write(f->model, &bad[i], f->output), MERLIN_WRONG_USE);
+        assert_non_null(strstr(merlin_error(), "empty or incomplete"));
+    }
+    assert_false(file_exists(f->output));
     assert_int_equal(merlin_relight(f->model, &good, light, (merlin_relighting)77, &image), MERLIN_WRONG_USE);
     merlin_maps_free(&good);
 }
@@ -419,6 +426,23 @@ static void written_maps_are_read_back(void **state)
         assert_float_equal(maps.depth.data[i], again.depth.data[i], 5e-4 * (1 + maps.depth.data[i]));
     merlin_maps_free(&maps);
     merlin_maps_free(&again);
+}
+
+static void maps_of_the_farthest_exposures_are_read_back(void **state)
+{
+    const fixture *f = *state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        merlin_maps maps, again;
+        merlin_params p = small();
+        p.auto_exposure = 0;
+        p.exposure = 20.0f * (float)sign;
+        assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+        assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+        if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
+        assert_true(maps.gain == again.gain);
+        merlin_maps_free(&maps);
+        merlin_maps_free(&again);
+    }
 }
 
 static void a_folder_has_every_file_and_no_other(void **state)
@@ -539,6 +563,7 @@ int main(void)
         cmocka_unit_test(work_stops_when_told_to),
         cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
         cmocka_unit_test(written_maps_are_read_back),
+        cmocka_unit_test(maps_of_the_farthest_exposures_are_read_back),
         cmocka_unit_test(a_folder_has_every_file_and_no_other),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing),
         cmocka_unit_test(folders_without_maps_are_refused),
