@@ -112,7 +112,8 @@ status file_temporary(const char *path, char **temporary)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     char *out = NULL;
-    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)getpid(), name) < 0)
+    /* the thread's number, which no other thread of any process has: several may write one file */
+    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)gettid(), name) < 0)
         return fail(ERROR_MEMORY, "no memory for a file name");
     *temporary = out;
     return OK;

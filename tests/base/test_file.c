@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include <pthread.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -112,6 +113,32 @@ static void a_write_that_fails_leaves_the_old_file_and_no_other(void **state)
     assert_int_equal(entries(), 1);
     unlink(path);
     free(large), free(data), free(path);
+}
+
+static void *write_often(void *path)
+{
+    uintptr_t failures = 0;
+    for (int i = 0; i < 1000; i++)
+        failures += file_write(path, "whole", 5) != OK;
+    return (void *)failures;
+}
+
+static void threads_may_write_one_file(void **state)
+{
+    (void)state;
+    char *path = in_folder("shared"), *data;
+    pthread_t other;
+    void *failures;
+    size_t size;
+    assert_int_equal(pthread_create(&other, NULL, write_often, path), 0);
+    assert_null(write_often(path));
+    assert_int_equal(pthread_join(other, &failures), 0);
+    assert_null(failures);
+    assert_int_equal(file_read(path, 100, &data, &size), OK);
+    assert_string_equal(data, "whole");
+    assert_int_equal(unlink(path), 0);
+    free(data);
+    free(path);
 }
 
 static void an_interrupted_write_leaves_the_old_file(void **state)
@@ -229,6 +256,7 @@ int main(void)
         cmocka_unit_test(what_was_written_is_read),
         cmocka_unit_test(larger_files_than_wanted_are_refused),
         cmocka_unit_test(a_write_that_fails_leaves_the_old_file_and_no_other),
+        cmocka_unit_test(threads_may_write_one_file),
         cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
