@@ -3,7 +3,9 @@ include(GNUInstallDirs)
 
 add_library(libmerlin SHARED $<TARGET_OBJECTS:merlin_estimate>)
 target_link_libraries(libmerlin PRIVATE merlin_estimate)
-set_target_properties(libmerlin PROPERTIES OUTPUT_NAME merlin VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+# before 1.0 what was built with one minor version may not run with another
+set_target_properties(libmerlin PROPERTIES OUTPUT_NAME merlin VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
   LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/libmerlin.map)
 target_link_options(libmerlin PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/libmerlin.map)
 if(NOT MERLIN_SANITIZE AND NOT MERLIN_FUZZ)
@@ -18,6 +20,7 @@ target_link_libraries(relight_photo PRIVATE libmerlin)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
   OUTPUT_VARIABLE MERLIN_UP)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/merlin.pc.in merlin.pc @ONLY)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/merlin-config.cmake.in merlin-config.cmake @ONLY)
 include(CMakePackageConfigHelpers)
 write_basic_package_version_file(merlin-config-version.cmake COMPATIBILITY SameMinorVersion)
 target_include_directories(libmerlin INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -25,7 +28,7 @@ install(TARGETS merlin)
 set_target_properties(libmerlin PROPERTIES EXPORT_NAME merlin)
 install(TARGETS libmerlin EXPORT merlin-targets)
 install(EXPORT merlin-targets NAMESPACE merlin:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/merlin)
-install(FILES cmake/merlin-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/merlin-config-version.cmake
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/merlin-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/merlin)
 install(DIRECTORY include/merlin TYPE INCLUDE)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

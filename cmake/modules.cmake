@@ -35,7 +35,6 @@ function(merlin_program name)
   if(sources)
     add_executable(${name} ${sources})
     target_link_libraries(${name} PRIVATE ${ARG_LINK})
-    target_compile_definitions(${name} PRIVATE MERLIN_VERSION="${PROJECT_VERSION}"
-      MERLIN_LEAVES_AT_ONCE=$<IF:$<BOOL:${MERLIN_SANITIZE}>,0,1>)
+    target_compile_definitions(${name} PRIVATE MERLIN_LEAVES_AT_ONCE=$<IF:$<BOOL:${MERLIN_SANITIZE}>,0,1>)
   endif()
 endfunction()

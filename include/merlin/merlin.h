@@ -44,6 +44,9 @@ typedef enum merlin_status {
 /* The message of this thread's last failure. Valid until the next call in this thread. */
 const char *merlin_error(void);
 
+/* Of the library that runs, "0.1.0". Before 1.0 another minor version is another library (soname). */
+const char *merlin_version(void);
+
 /* ---- images ---- */
 
 typedef struct merlin_image {

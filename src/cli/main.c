@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "image/start.h"
+#include "merlin/merlin.h"
 
 static const cli_command commands[] = {
     {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
@@ -85,7 +86,7 @@ int main(int argc, char **argv)
         return finish(0);
     }
     if (strcmp(argv[1], "--version") == 0) {
-        puts("merlin " MERLIN_VERSION);
+        printf("merlin %s\n", merlin_version());
         return finish(0);
     }
     const cli_command *command = find_command(argv[1]);

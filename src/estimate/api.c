@@ -13,6 +13,11 @@ static_assert((int)MERLIN_WRONG_USE == (int)ERROR_USAGE && (int)MERLIN_BAD_INPUT
                   (int)MERLIN_DEVICE_FAILED == (int)ERROR_DEVICE && (int)MERLIN_STOPPED == (int)ERROR_STOPPED,
               "the public codes are the inside's");
 
+const char *merlin_version(void)
+{
+    return MERLIN_VERSION;
+}
+
 const char *merlin_error(void)
 {
     return status_message();

@@ -21,6 +21,11 @@ echo "the installed command finds its weights and its manual lies where man look
 succeeds merlin-point prefix/bin/merlin info merlin-point
 present prefix/share/man/man1/merlin.1 prefix/share/bash-completion/completions/merlin
 
+echo "a program that was built with one minor version before 1.0 finds no other"
+version=$(prefix/bin/merlin --version | cut -d ' ' -f 2)
+[[ $version == 0.* ]] && readelf -d prefix/lib*/libmerlin.so | grep -qF "[libmerlin.so.${version%.*}]" ||
+    complain "the library's soname is not of $version: $(readelf -d prefix/lib*/libmerlin.so | grep SONAME)"
+
 relit() {
     LD_LIBRARY_PATH=$(dirname prefix/lib*/libmerlin.so) "$1" weights.safetensors disc.hdr "$2" || complain "$1 fails"
     present "$2"
@@ -32,6 +37,8 @@ export PKG_CONFIG_PATH=$scratch/$description
 # shellcheck disable=SC2046
 cc "$example" $(pkg-config --cflags --libs merlin) -o by-pkg-config || complain "pkg-config's answer does not build it"
 relit ./by-pkg-config pkg-config.png
+present "$(pkg-config --variable=models merlin)/merlin-point.safetensors"
+[[ $(pkg-config --modversion merlin) == "$version" ]] || complain "pkg-config's version is not the command's"
 
 echo "the example is built by CMake's find_package"
 cat >CMakeLists.txt <<CMAKE
@@ -40,8 +47,10 @@ project(other LANGUAGES C)
 find_package(merlin 0.1 REQUIRED)
 add_executable(by-cmake $example)
 target_link_libraries(by-cmake PRIVATE merlin::merlin)
+message("models: \${merlin_MODELS}")
 CMAKE
 cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 || complain "$(cat cmake.log)"
+present "$(sed -n 's/^models: //p' cmake.log)/merlin-point.safetensors"
 cmake --build other >cmake.log 2>&1 || complain "$(cat cmake.log)"
 relit other/by-cmake cmake.png
 
