@@ -14,6 +14,7 @@ _merlin() {
         [eval]="--data --model --means-file --count --white --environments --views --precision --figure --figure-rows --means --output
             --json --quiet --help"
         ["eval stereo"]="--data --model --count --figure --json --quiet --help"
+        ["eval solvers"]="--count --seed --size --json --quiet --help"
         ["eval photos"]="--model --output --mask --quiet --help"
         [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
         [info]="--tensors --json --help"
@@ -26,7 +27,7 @@ _merlin() {
     if ((COMP_CWORD == 2)); then
         case $command in # words that may stand where a file may
         help) mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current") && return ;;
-        eval) mapfile -t more < <(compgen -W "stereo photos" -- "$current") ;;
+        eval) mapfile -t more < <(compgen -W "stereo solvers photos" -- "$current") ;;
         stereo) mapfile -t more < <(compgen -W "calibrate" -- "$current") ;;
         info) mapfile -t more < <(compgen -W "merlin-point merlin-env" -- "$current") ;;
         esac

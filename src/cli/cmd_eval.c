@@ -16,12 +16,12 @@ static const char help[] =
     "usage: merlin eval --data DIR --model W [options]\n"
     "       merlin eval --means DIR -o FILE.exr\n"
     "       merlin eval stereo --data DIR [options]\n"
+    "       merlin eval solvers [options]\n"
     "       merlin eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures a model on samples it was not trained on (a folder made by merlin render), beside two trivial answers:\n"
     "the data set's mean maps, and maps inflated from the mask. The second form computes the mean maps of a folder of\n"
-    "training data, to be given to the first. The third measures photometric stereo (merlin eval stereo --help), the "
-    "fourth\n"
-    "shows photographs taken apart by several weights side by side (merlin eval photos --help).\n\n"
+    "training data, to be given to the first. The others have a --help of their own: photometric stereo from one\n"
+    "photograph, its solvers where the truth is known, and photographs taken apart by several weights side by side.\n\n"
     "  --data DIR         held-out samples\n"
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
@@ -119,6 +119,7 @@ static int run_evaluation(request *r)
 int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
     request r = {.options = {.figure_rows = 8, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());

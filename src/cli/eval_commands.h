@@ -8,4 +8,7 @@ int eval_stereo(int argc, char **argv);
 /* merlin eval photos; argv[0] is "photos". Returns the exit status. */
 int eval_photos(int argc, char **argv);
 
+/* merlin eval solvers; argv[0] is "solvers". Returns the exit status. */
+int eval_solvers(int argc, char **argv);
+
 #endif

@@ -28,7 +28,7 @@ completes() { # PATTERN WORD...: the words of a command line, the last one to be
     _merlin
     [[ " ${COMPREPLY[*]} " == *" $pattern "* ]] || complain "$* is not completed to $pattern but to: ${COMPREPLY[*]}"
 }
-for command in estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval photos" bench info; do
+for command in estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval photos" bench info; do
     read -ra words <<<"$command"
     named=$("$MERLIN" "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+')
     for option in $named; do

@@ -8,7 +8,9 @@
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
-#include "rendered.h"
+#include "eval/rendered_capture.h"
+#include "relief.h"
+#include "scene/material.h"
 #include "stereo/inflate.h"
 
 /* degrees */
@@ -59,7 +61,7 @@ static void render(const rendered *how, uint64_t index, pst_capture *c)
     scn_object object;
     assert_int_equal(scn_object_generate(1, index, 60, &object), OK);
     object.material->bumps = 0; /* relief finer than a pixel has no one normal */
-    rendered_capture(how, &object, c);
+    if (rendered_capture(how, &object, c) != OK) fail_msg("%s", status_message());
     scn_object_free(&object);
 }
 
@@ -102,7 +104,7 @@ static void solve_bare(uint64_t index, bool camera_known, double *normals, doubl
     assert_true(s.lights_near == camera_known);
     assert_true((s.depth.data != NULL) == camera_known);
     pst_surface_free(&s);
-    capture_drop(&c);
+    pst_capture_free(&c);
 }
 
 /* Bounds: a third above what was measured (normals 2.4, 1.5 and 1.0 degrees, lights 2.5, 8.3 and 1.6). */
@@ -150,7 +152,7 @@ static void half_a_surface_that_faces_away_is_no_answer(void **state)
         assert_true(normals <
                     45); /* 22 and 26 measured, give or take some by the order of sums; 77 and 71 by that answer */
         pst_surface_free(&s);
-        capture_drop(&c);
+        pst_capture_free(&c);
     }
 }
 
@@ -167,7 +169,7 @@ static void a_speck_under_unknown_lights_is_refused(void **state)
         c.mask.data[7 * 16 + 6 + i] = 1;
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "known lights"));
-    capture_drop(&c);
+    pst_capture_free(&c);
 }
 
 int main(void)
