@@ -12,6 +12,7 @@
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
+#include "cli/stereo_maps.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -20,9 +21,9 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
     "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate, or its maps.exr; a PHOTO is estimated first. The camera is at 0,0,0 and looks along -z, x "
-    "right,\n"
-    "y up; the object is near 0,0,-1; the crop around the object counts as a frame 60 degrees wide.\n\n"
+    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO is estimated first.\n"
+    "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
+    "counts as a frame 60 degrees wide.\n\n"
     "      --light x,y,z    a light's position; may be given again\n"
     "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
     "      --orbit N        N frames (2 to 240) with the light on a circle in front of the object, also as orbit.webp\n"
@@ -89,6 +90,8 @@ static status check(request *r)
     if (file_is_folder(r->input) && (r->mask || photo_params_given(&r->params)))
         return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
                     r->input);
+    if (r->how == MERLIN_BY_NETWORK && stereo_maps_in(r->input))
+        return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
     return OK;
 }
@@ -148,11 +151,12 @@ static status read_lights(request *r)
     return s;
 }
 
-/* From a folder of estimate's, or by estimating now. */
+/* From a folder of estimate's or stereo's, or by estimating now. */
 static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
-    if (file_is_folder(r->input)) return (status)merlin_maps_read(r->input, maps);
+    if (file_is_folder(r->input))
+        return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
     merlin_image photo;
     photo_object object;
     photo_job job = {.photo = (char *)r->input, .mask = (char *)r->mask};

@@ -22,6 +22,13 @@ succeeds '"pictures": *6' stereo dome --method ls --json
 present "${files[@]/#/dome/stereo/}" dome/stereo/mesh.{ply,obj,mtl,png,glb}
 
 echo "meshes by name, depth that may jump"
+echo "a surface can be relit"
+succeeds surface-relit "$MERLIN" relight dome/stereo --light 0.7,0.2,-0.4 --light -0.7,0.2,-0.4 --light 0,0,-9 -o surface-relit
+present surface-relit/relit_00{0..2}.png
+cmp -s surface-relit/relit_000.png surface-relit/relit_001.png && complain "light from the right as from the left"
+cmp -s surface-relit/relit_000.png surface-relit/relit_002.png && complain "light from the right as from behind"
+refuses 2 'network wants a photograph' "$MERLIN" relight dome/stereo --light 0,0,0 --by network
+
 succeeds out stereo dome --method ls --integrate edges --mesh a.ply --mesh b.glb -o out
 present "${files[@]/#/out/}" a.ply b.glb
 absent out/mesh.ply out/mesh.glb
