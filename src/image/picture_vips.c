@@ -4,12 +4,13 @@
 #include "image/picture.h"
 #include "image/vips_library.h"
 
-/* Replaces *image by what an operation made of it; true on success. */
-static bool replace(VipsImage **image, VipsImage *made, int failed)
+/* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be
+ * written as the last argument: in which order arguments are computed is the compiler's choice. */
+static bool replace(VipsImage **image, VipsImage *const *made, int failed)
 {
     if (failed) return false;
     vips()->g_object_unref(*image);
-    *image = made;
+    *image = *made;
     return true;
 }
 
@@ -58,12 +59,12 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out)
 static bool load_upright(VipsImage **image)
 {
     VipsImage *made = vips()->image_copy_memory(*image);
-    if (!replace(image, made, made == NULL)) return false;
+    if (!replace(image, &made, made == NULL)) return false;
     if (vips()->image_get_coding(*image) == VIPS_CODING_RAD &&
-        !replace(image, made, vips()->rad2float(*image, &made, NULL)))
+        !replace(image, &made, vips()->rad2float(*image, &made, NULL)))
         return false;
     if (vips()->image_get_orientation(*image) <= 1) return true;
-    return replace(image, made, vips()->autorot(*image, &made, NULL));
+    return replace(image, &made, vips()->autorot(*image, &made, NULL));
 }
 
 static bool split_alpha(VipsImage **image, VipsImage **alpha)
@@ -72,7 +73,7 @@ static bool split_alpha(VipsImage **image, VipsImage **alpha)
     if (!vips()->image_hasalpha(*image)) return true;
     VipsImage *made = NULL;
     if (vips()->extract_band(*image, alpha, bands - 1, NULL)) return false;
-    return replace(image, made, vips()->extract_band(*image, &made, 0, "n", bands - 1, NULL));
+    return replace(image, &made, vips()->extract_band(*image, &made, 0, "n", bands - 1, NULL));
 }
 
 /* Whether the samples already mean sRGB, grey or linear light, so that our own tables decode them. */
@@ -94,11 +95,11 @@ static bool convert_space(VipsImage **image)
                                            VIPS_INTENT_RELATIVE, NULL);
         VipsImage *pixels = failed ? NULL : vips()->image_copy_memory(made);
         if (made) vips()->g_object_unref(made);
-        if (replace(image, pixels, pixels == NULL)) return true;
+        if (replace(image, &pixels, pixels == NULL)) return true;
         vips()->error_clear();
     }
     if (is_plain(vips()->image_get_interpretation(*image))) return true;
-    return replace(image, made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
+    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
 }
 
 static void take_floats(const float *from, int bands, img *out)
