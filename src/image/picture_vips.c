@@ -55,14 +55,21 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out)
     return s;
 }
 
-/* Decodes all pixels into memory, unpacks Radiance's coding and turns the picture upright. */
+/* From the codings of Radiance files and of 8-bit CIELAB to samples. */
+static bool unpack(VipsImage **image)
+{
+    VipsImage *made = NULL;
+    VipsCoding coding = vips()->image_get_coding(*image);
+    if (coding == VIPS_CODING_RAD) return replace(image, &made, vips()->rad2float(*image, &made, NULL));
+    if (coding != VIPS_CODING_LABQ) return true;
+    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_LAB, NULL));
+}
+
+/* Decodes all pixels into memory and turns the picture upright. */
 static bool load_upright(VipsImage **image)
 {
     VipsImage *made = vips()->image_copy_memory(*image);
-    if (!replace(image, &made, made == NULL)) return false;
-    if (vips()->image_get_coding(*image) == VIPS_CODING_RAD &&
-        !replace(image, &made, vips()->rad2float(*image, &made, NULL)))
-        return false;
+    if (!replace(image, &made, made == NULL) || !unpack(image)) return false;
     if (vips()->image_get_orientation(*image) <= 1) return true;
     return replace(image, &made, vips()->autorot(*image, &made, NULL));
 }
@@ -141,6 +148,10 @@ static status decode_open(VipsImage **image, VipsImage **opacity, const char *pa
     bool decode = how == PICTURE_LINEARIZE;
     if (!load_upright(image) || !split_alpha(image, opacity) || (decode && !convert_space(image)))
         return vips_refusal(ERROR_INPUT, "read", path);
+    VipsInterpretation space = vips()->image_get_interpretation(*image);
+    if (!decode && !is_plain(space))
+        return fail(ERROR_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", path,
+                    vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = take(*image, path, decode, color);
     if (s == OK && alpha && *opacity) s = take(*opacity, path, false, alpha);
     return s;

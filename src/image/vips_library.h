@@ -42,6 +42,7 @@
     USE(image_set_int)                                                                                                 \
     USE(image_write_to_memory)                                                                                         \
     USE(init)                                                                                                          \
+    USE(interpretation_get_type)                                                                                       \
     USE(jpegload)                                                                                                      \
     USE(pngload)                                                                                                       \
     USE(rad2float)                                                                                                     \

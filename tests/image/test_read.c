@@ -417,6 +417,38 @@ static void what_is_not_finite_is_refused(void **state)
     assert_refused(save(bare, "inf.tif"), "not finite");
 }
 
+static const char *save_quarters_in(VipsInterpretation space, const char *name)
+{
+    VipsImage *light = quarters(), *other = NULL;
+    assert_int_equal(vips_colourspace(light, &other, space, NULL), 0);
+    g_object_unref(light);
+    return save(other, name);
+}
+
+/* Ink where others have light: read as it is, such a mask would choose what lies beside the object. */
+static void masks_in_ink_are_refused(void **state)
+{
+    (void)state;
+    const char *path = save_quarters_in(VIPS_INTERPRETATION_CMYK, "ink.tif");
+    img mask, color;
+    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "ink.tif: its samples are cmyk"));
+    assert_null(mask.data);
+    assert_int_equal(img_read(path, &color, NULL), OK);
+    img_free(&color);
+}
+
+static void cielab_of_8_bits_is_colour(void **state)
+{
+    (void)state;
+    img color = {0};
+    assert_int_equal(img_read(save_quarters_in(VIPS_INTERPRETATION_LABQ, "lab.tif"), &color, NULL), OK);
+    /* half a step of a* and b* is up to three codes of so saturated colours */
+    assert_true(fabsf(srgb_encode(img_at(&color, 2, 1)[0]) - 250 / 255.0f) <= 3.01f / 255);
+    assert_true(fabsf(srgb_encode(img_at(&color, 13, 6)[2]) - 100 / 255.0f) <= 3.01f / 255);
+    img_free(&color);
+}
+
 static int start(void **state)
 {
     return VIPS_INIT("test") || scratch_open(state);
@@ -441,6 +473,8 @@ int main(void)
         cmocka_unit_test(truncated_pictures_are_refused),
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
         cmocka_unit_test(what_is_not_finite_is_refused),
+        cmocka_unit_test(masks_in_ink_are_refused),
+        cmocka_unit_test(cielab_of_8_bits_is_colour),
     };
     return cmocka_run_group_tests(tests, start, scratch_close);
 }
