@@ -229,8 +229,9 @@ static status save(run *r)
     r->saved_at = clock_seconds();
     trn_identity identity = identity_of(r);
     trn_learner learner = learner_of(r);
-    status s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
-    if (s == OK && !r->judge) s = with_average(r, export_weights);
+    /* before the checkpoint: behind the last one nothing is done again */
+    status s = r->judge ? OK : with_average(r, export_weights);
+    if (s == OK) s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
     if (s == OK) s = write_seconds(r);
     if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
     return s;
@@ -308,14 +309,20 @@ static status one_step(run *r)
     if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
     if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
         s = with_average(r, validate);
-    if (s == OK && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes) s = save(r);
     return s;
+}
+
+/* Not behind the last step: that checkpoint says that all is done, which the last validation still is not. */
+static bool is_time_to_save(const run *r, int64_t last)
+{
+    return r->state.step < last && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes;
 }
 
 static status steps(run *r, int64_t last, progress *bar)
 {
     while (r->state.step < last) {
         status s = one_step(r);
+        if (s == OK && is_time_to_save(r, last)) s = save(r);
         if (s != OK) return s;
         char note[64];
         snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->program));

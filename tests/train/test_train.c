@@ -31,6 +31,7 @@ static const char *const no_jitter = "\"exposure_jitter\": 0, \"colour_jitter\":
 typedef struct experiment {
     int presentations, batch, validation;
     const char *lighting, *more;
+    int minutes; /* between checkpoints */
 } experiment;
 
 /* A model of a few thousand parameters. */
@@ -47,14 +48,14 @@ static void write_experiment(const fixture *f, const experiment *e)
                  "\"warmup_steps\": 2, \"beta1\": 0.9, \"beta2\": 0.99, \"clip_norm\": 5, \"depth_weight\": 2, "
                  "\"type\": \"f32\", "
                  "\"seed\": 1, %s, \"memory_gib\": 1, \"validation_count\": %d, "
-                 "\"validation_steps\": 2, \"curve_steps\": 4, \"checkpoint_minutes\": 100}}",
-                 e->lighting, SIZE, e->batch, e->presentations, e->more, e->validation);
+                 "\"validation_steps\": 2, \"curve_steps\": 4, \"checkpoint_minutes\": %d}}",
+                 e->lighting, SIZE, e->batch, e->presentations, e->more, e->validation, e->minutes);
     if (file_write(f->config, text, (size_t)n) != OK) fail_msg("%s", status_message());
 }
 
 static void write_config(const fixture *f, int presentations, int batch, int validation, const char *more)
 {
-    write_experiment(f, &(experiment){presentations, batch, validation, "point", more});
+    write_experiment(f, &(experiment){presentations, batch, validation, "point", more, 100});
 }
 
 static int set_up(void **state)
@@ -86,19 +87,24 @@ static int stop_after_steps(void)
     return --steps_left <= 0;
 }
 
-static status train(const fixture *f, const char *name, bool resume, int stop_after)
+static status train_asked(const fixture *f, const char *name, bool resume, int (*interrupted)(void))
 {
     char *output = file_join(f->root, name);
-    steps_left = stop_after;
     trn_options o = {.config = f->config,
                      .data = f->data,
                      .output = output,
                      .resume = resume,
                      .quiet = true,
-                     .interrupted = stop_after ? stop_after_steps : NULL};
+                     .interrupted = interrupted};
     status s = trn_train(&o);
     free(output);
     return s;
+}
+
+static status train(const fixture *f, const char *name, bool resume, int stop_after)
+{
+    steps_left = stop_after;
+    return train_asked(f, name, resume, stop_after ? stop_after_steps : NULL);
 }
 
 static char *contents(const fixture *f, const char *run, const char *name, size_t *size)
@@ -130,7 +136,7 @@ static void same_run(const fixture *f, const char *a, const char *b)
 
 static void resume_and_compare(const fixture *f, const char *lighting, const char *more)
 {
-    write_experiment(f, &(experiment){12, 2, 2, lighting, more});
+    write_experiment(f, &(experiment){12, 2, 2, lighting, more, 100});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
     assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
@@ -182,6 +188,44 @@ static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
     same_file(f, "a", "b", "validation.csv");
 }
 
+static char blocked[600], aside[620];
+
+/* Nothing can be written to a file from the second step on. */
+static int block_after_two_steps(void)
+{
+    if (--steps_left) return 0;
+    assert_int_equal(rename(blocked, aside), 0);
+    assert_int_equal(file_make_folder(blocked), OK);
+    return 0;
+}
+
+/* What the last step leaves to do is done on resume, wherever the run ended: three steps, a checkpoint at each. */
+static void fail_at_the_end_and_resume(const fixture *f, int validation, const char *file)
+{
+    write_experiment(f, &(experiment){6, 2, validation, "point", jitter, 0});
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    snprintf(blocked, sizeof blocked, "%s/b/%s", f->root, file);
+    snprintf(aside, sizeof aside, "%s.aside", blocked);
+    steps_left = 2;
+    assert_int_equal(train_asked(f, "b", false, block_after_two_steps), ERROR_OUTPUT);
+    assert_int_equal(rmdir(blocked), 0);
+    assert_int_equal(rename(aside, blocked), 0);
+    if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
+    same_file(f, "a", "b", "weights.safetensors");
+    same_file(f, "a", "b", "checkpoint.safetensors");
+    if (validation) same_file(f, "a", "b", "validation.csv");
+}
+
+static void a_last_validation_that_failed_is_made_on_resume(void **state)
+{
+    fail_at_the_end_and_resume(*state, 2, "validation.csv");
+}
+
+static void last_weights_that_were_not_written_are_on_resume(void **state)
+{
+    fail_at_the_end_and_resume(*state, 0, "weights.safetensors");
+}
+
 /* Of curves.csv. */
 static int column_of(const char *loss)
 {
@@ -226,7 +270,7 @@ static void losses_fall_on_two_samples(void **state)
 static void both_lights_can_be_learned(void **state)
 {
     const fixture *f = *state;
-    write_experiment(f, &(experiment){96, 4, 0, "both", no_jitter});
+    write_experiment(f, &(experiment){96, 4, 0, "both", no_jitter, 100});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
     loss_falls_to(f, 4, 0.5);
     loss_falls_to(f, column_of("environment"), 0.5);
@@ -310,6 +354,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(resumed_training_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(rows_behind_the_checkpoint_are_dropped_on_resume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_last_validation_that_failed_is_made_on_resume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(last_weights_that_were_not_written_are_on_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
         cmocka_unit_test_setup_teardown(both_lights_can_be_learned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_of_both_lights_is_bit_identical, set_up, tear_down),
