@@ -30,8 +30,7 @@ static void slice_backward(nn_step *step)
 static void add_backward(nn_step *step)
 {
     for (int k = 0; k < 2; k++)
-        if (step->wants[k] && step->in_gradient[k].data != step->out_gradient.data)
-            cpu_cast(&step->out_gradient, &step->in_gradient[k], step->accumulate[k]);
+        if (step->wants[k]) cpu_cast(&step->out_gradient, &step->in_gradient[k], step->accumulate[k]);
 }
 
 static void gate_backward(nn_step *step)
