@@ -31,9 +31,11 @@ static status write_exr(const stereo_result *r, const char *path)
 {
     const char *method = r->error_name;
     const exr_channel channels[] = {
-        {"albedo.R", r->albedo.data, 3}, {"albedo.G", r->albedo.data + 1, 3}, {"albedo.B", r->albedo.data + 2, 3},
-        {"normal.X", r->normal.data, 3}, {"normal.Y", r->normal.data + 1, 3}, {"normal.Z", r->normal.data + 2, 3},
-        {"depth.Z", r->depth.data, 1},   {"mask.A", r->mask.data, 1},         {"error.Y", r->error.data, 1},
+        {"albedo.R", r->albedo.data, 3, false},     {"albedo.G", r->albedo.data + 1, 3, false},
+        {"albedo.B", r->albedo.data + 2, 3, false}, {"normal.X", r->normal.data, 3, false},
+        {"normal.Y", r->normal.data + 1, 3, false}, {"normal.Z", r->normal.data + 2, 3, false},
+        {"depth.Z", r->depth.data, 1, true},        {"mask.A", r->mask.data, 1, false},
+        {"error.Y", r->error.data, 1, false},
     };
     const exr_attribute attributes[] = {exr_text("merlinError", method),
                                         exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0)};

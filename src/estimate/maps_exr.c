@@ -33,7 +33,7 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     exr_channel channels[CHANNELS];
     for (int i = 0; i < CHANNELS; i++)
         channels[i] = (exr_channel){layers[i].name, images[layers[i].image]->data + layers[i].channel,
-                                    images[layers[i].image]->channels};
+                                    images[layers[i].image]->channels, false};
     exr_attribute square = {.name = "merlinCrop", .count = 3};
     square.values[0] = (float)maps->crop.x;
     square.values[1] = (float)maps->crop.y;

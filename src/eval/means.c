@@ -145,7 +145,7 @@ status eval_means_write(const eval_means *means, const char *path)
         exr_channel channels[CHANNELS];
         name_channels(&file, targets);
         for (int i = 0; i < CHANNELS; i++)
-            channels[i] = (exr_channel){targets[i].name, targets[i].data, targets[i].stride};
+            channels[i] = (exr_channel){targets[i].name, targets[i].data, targets[i].stride, false};
         exr_attribute attributes[] = {exr_number("roughness_mean", (means->roughness + 1) / 2),
                                       exr_number("depth_mean", means->depth),
                                       exr_number("sample_count", (float)means->samples),

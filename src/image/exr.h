@@ -1,6 +1,6 @@
-/* Multi-layer OpenEXR files by OpenEXR Core: named channels and attributes, half float, ZIP.
+/* Multi-layer OpenEXR files by OpenEXR Core: named channels and attributes, half float where not told otherwise, ZIP.
  *
- *     exr_channel channels[] = {{"albedo.R", albedo.data, 3}, {"albedo.G", albedo.data + 1, 3}, ...};
+ *     exr_channel channels[] = {{"albedo.R", albedo.data, 3, false}, {"albedo.G", albedo.data + 1, 3, false}, ...};
  *     exr_attribute attributes[] = {exr_number("fov", 60), exr_text("shape", "union")};
  *     status s = exr_write(path, width, height, channels, n, attributes, 2);
  *
@@ -21,6 +21,7 @@ typedef struct exr_channel {
     const char *name;
     const float *data; /* first value; the next pixel's is stride floats on */
     int stride;
+    bool full; /* 32 bits in the file instead of half's 16, for lengths in whatever unit */
 } exr_channel;
 
 typedef struct exr_target {

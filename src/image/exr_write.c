@@ -18,7 +18,7 @@ typedef struct writer {
     int width, height;
     const exr_channel *channels;
     size_t channel_count;
-    uint16_t *halves; /* one chunk: channel × line × pixel */
+    uint16_t *samples; /* one chunk: channel × line × pixel, of one half or of a float in the place of two */
     size_t chunk_bytes;
     struct libdeflate_compressor *packer;
     uint8_t *shuffled, *zipped; /* a chunk each, on its way to the file */
@@ -31,6 +31,16 @@ static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
     return exr_attr_set_float_vector(context, 0, a->name, a->count, a->values);
 }
 
+static exr_pixel_type_t type_of(const exr_channel *c)
+{
+    return c->full ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF;
+}
+
+static int halves_of(const exr_channel *c)
+{
+    return c->full ? 2 : 1;
+}
+
 static exr_result_t write_head(writer *w, const exr_attribute *attributes, size_t count)
 {
     int part = 0;
@@ -38,7 +48,8 @@ static exr_result_t write_head(writer *w, const exr_attribute *attributes, size_
     if (r == EXR_ERR_SUCCESS)
         r = exr_initialize_required_attr_simple(w->context, part, w->width, w->height, EXR_COMPRESSION_ZIP);
     for (size_t i = 0; r == EXR_ERR_SUCCESS && i < w->channel_count; i++)
-        r = exr_add_channel(w->context, part, w->channels[i].name, EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+        r = exr_add_channel(w->context, part, w->channels[i].name, type_of(&w->channels[i]),
+                            EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     for (size_t i = 0; r == EXR_ERR_SUCCESS && i < count; i++)
         r = add_attribute(w->context, &attributes[i]);
     return r == EXR_ERR_SUCCESS ? exr_write_header(w->context) : r;
@@ -51,7 +62,7 @@ static const exr_channel *find_channel(const writer *w, const char *name)
     return NULL;
 }
 
-static void convert_line(const float *from, int stride, int count, uint16_t *to)
+static void line_of_halves(const float *from, int stride, int count, uint16_t *to)
 {
     for (int i = 0; i < count; i++) {
         float x = from[(size_t)i * (size_t)stride];
@@ -60,22 +71,29 @@ static void convert_line(const float *from, int stride, int count, uint16_t *to)
     }
 }
 
+static void line_of_floats(const float *from, int stride, int count, uint16_t *to)
+{
+    for (int i = 0; i < count; i++)
+        memcpy(to + 2 * (size_t)i, from + (size_t)i * (size_t)stride, sizeof *from);
+}
+
 /* Converts the lines of a chunk and points the encoder's channels (which the library sorts by name) at them. */
 static void fill_chunk(const writer *w, exr_encode_pipeline_t *encoder)
 {
     int first = encoder->chunk.start_y, lines = encoder->chunk.height;
-    uint16_t *to = w->halves;
+    uint16_t *to = w->samples;
     for (int c = 0; c < encoder->channel_count; c++) {
         exr_coding_channel_info_t *out = &encoder->channels[c];
         const exr_channel *from = find_channel(w, out->channel_name);
+        int halves = halves_of(from), bytes = 2 * halves;
         out->encode_from_ptr = (const uint8_t *)to;
-        out->user_bytes_per_element = 2;
-        out->user_data_type = EXR_PIXEL_HALF;
-        out->user_pixel_stride = 2;
-        out->user_line_stride = 2 * w->width;
-        for (int y = first; y < first + lines; y++, to += w->width) {
+        out->user_bytes_per_element = (int16_t)bytes;
+        out->user_data_type = (uint16_t)type_of(from);
+        out->user_pixel_stride = bytes;
+        out->user_line_stride = bytes * w->width;
+        for (int y = first; y < first + lines; y++, to += (size_t)halves * (size_t)w->width) {
             size_t at = (size_t)y * (size_t)w->width * (size_t)from->stride;
-            convert_line(from->data + at, from->stride, w->width, to);
+            (from->full ? line_of_floats : line_of_halves)(from->data + at, from->stride, w->width, to);
         }
     }
 }
@@ -128,15 +146,18 @@ static exr_result_t write_pixels(writer *w)
     exr_result_t r = exr_get_scanlines_per_chunk(w->context, 0, &lines);
     if (r != EXR_ERR_SUCCESS) return r;
     enum { LEVEL = 3 };
-    w->chunk_bytes = (size_t)lines * (size_t)w->width * w->channel_count * sizeof *w->halves;
+    size_t halves = 0;
+    for (size_t i = 0; i < w->channel_count; i++)
+        halves += (size_t)halves_of(&w->channels[i]);
+    w->chunk_bytes = (size_t)lines * (size_t)w->width * halves * sizeof *w->samples;
     size_t room = w->chunk_bytes > 0 ? w->chunk_bytes : 1;
-    w->halves = malloc(room);
+    w->samples = malloc(room);
     w->shuffled = malloc(room);
     w->zipped = malloc(room);
     w->packer = libdeflate_alloc_compressor(LEVEL);
-    bool enough = w->halves && w->shuffled && w->zipped && w->packer;
+    bool enough = w->samples && w->shuffled && w->zipped && w->packer;
     r = enough ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
-    free(w->halves);
+    free(w->samples);
     free(w->shuffled);
     free(w->zipped);
     libdeflate_free_compressor(w->packer);

@@ -132,7 +132,7 @@ status sample_write(const char *path, const sample *s)
     add_targets(list, s);
     for (size_t i = 0; i < list->count; i++)
         work->written[i] =
-            (exr_channel){list->names[i], list->image[i]->data + list->part[i], list->image[i]->channels};
+            (exr_channel){list->names[i], list->image[i]->data + list->part[i], list->image[i]->channels, false};
     describe(&work->attributes, s);
     status st = exr_write(path, s->albedo.width, s->albedo.height, work->written, list->count, work->attributes.items,
                           work->attributes.count);

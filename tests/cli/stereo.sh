@@ -20,6 +20,7 @@ absent dome/dome_006.png
 [ "$(wc -l <dome/dome.lp)" -eq 7 ] || complain "dome.lp is not a count and six lines"
 succeeds '"pictures": *6' stereo dome --method ls --json
 present "${files[@]/#/dome/stereo/}" dome/stereo/mesh.{ply,obj,mtl,png,glb}
+LC_ALL=C grep -qaP 'depth\.Z\x00\x02\x00\x00\x00' dome/stereo/maps.exr || complain "maps.exr has no depth of 32 bits"
 
 echo "meshes by name, depth that may jump"
 echo "a surface can be relit"
@@ -47,7 +48,7 @@ estimated=$(spread)
 cp -r disc.merlin estimated
 succeeds '"normal_spread_mean_degrees"' stereo estimated --json
 present "${files[@]/#/estimated/stereo/}" estimated/stereo/mesh.glb
-# maps.exr is in half floats: three digits
+# what estimate wrote is in half floats: three digits
 awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < 0.01 * $estimated ^ 2) }" || complain "$(spread) is not $estimated"
 cp dome/dome_* dome/dome.lp estimated
 succeeds '"pictures": *6' stereo estimated --method ls --json -o out

@@ -199,8 +199,10 @@ static const char *save_alpha(const fixture *f, float alpha, char *path, size_t 
     float values[SIDE * SIDE][4];
     for (int i = 0; i < SIDE * SIDE; i++)
         values[i][0] = values[i][1] = values[i][2] = 0.5f, values[i][3] = alpha;
-    const exr_channel channels[] = {
-        {"R", &values[0][0], 4}, {"G", &values[0][1], 4}, {"B", &values[0][2], 4}, {"A", &values[0][3], 4}};
+    const exr_channel channels[] = {{"R", &values[0][0], 4, false},
+                                    {"G", &values[0][1], 4, false},
+                                    {"B", &values[0][2], 4, false},
+                                    {"A", &values[0][3], 4, false}};
     snprintf(path, size, "%s/alpha.exr", f->folder);
     assert_int_equal(exr_write(path, SIDE, SIDE, channels, 4, NULL, 0), OK);
     return path;

@@ -283,21 +283,22 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     assert_int_equal(img_new(&picture, 5, 3, 3), OK);
     for (int i = 0; i < 45; i++)
         picture.data[i] = (float)i / 8;
-    const exr_channel rgb[] = {{"R", picture.data, 3}, {"G", picture.data + 1, 3}, {"B", picture.data + 2, 3}};
+    const exr_channel rgb[] = {
+        {"R", picture.data, 3, false}, {"G", picture.data + 1, 3, false}, {"B", picture.data + 2, 3, false}};
     assert_int_equal(exr_write(scratch_path("rgb.exr"), 5, 3, rgb, 3, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("rgb.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     assert_null(alpha.data);
     img_free(&color);
-    const exr_channel layer[] = {{"depth.Z", picture.data, 1},
-                                 {"env.R", picture.data, 3},
-                                 {"env.G", picture.data + 1, 3},
-                                 {"env.B", picture.data + 2, 3}};
+    const exr_channel layer[] = {{"depth.Z", picture.data, 1, false},
+                                 {"env.R", picture.data, 3, false},
+                                 {"env.G", picture.data + 1, 3, false},
+                                 {"env.B", picture.data + 2, 3, false}};
     assert_int_equal(exr_write(scratch_path("layer.exr"), 5, 3, layer, 4, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("layer.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     img_free(&color);
-    const exr_channel grey[] = {{"Y", picture.data, 1}, {"A", picture.data, 1}};
+    const exr_channel grey[] = {{"Y", picture.data, 1, false}, {"A", picture.data, 1, false}};
     assert_int_equal(exr_write(scratch_path("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("grey.exr"), &color, &alpha), OK);
     assert_true(color.data[3] == picture.data[1] && color.data[5] == picture.data[1]);
@@ -400,7 +401,7 @@ static void huge_pictures_are_refused_by_their_header(void **state)
     put("huge.png", head, sizeof head);
     assert_refused(scratch_path("huge.png"), "20000 x 20000");
     static float line[20000];
-    const exr_channel channel = {"Y", line, 1};
+    const exr_channel channel = {"Y", line, 1, false};
     assert_int_equal(exr_write(scratch_path("wide.exr"), 20000, 1, &channel, 1, NULL, 0), OK);
     assert_refused(scratch_path("wide.exr"), "20000 x 1");
 }
@@ -409,7 +410,7 @@ static void what_is_not_finite_is_refused(void **state)
 {
     (void)state;
     float values[4] = {1, NAN, 2, 3};
-    const exr_channel channel = {"Y", values, 1};
+    const exr_channel channel = {"Y", values, 1, false};
     assert_int_equal(exr_write(scratch_path("nan.exr"), 2, 2, &channel, 1, NULL, 0), OK);
     assert_refused(scratch_path("nan.exr"), "not finite");
     values[1] = INFINITY;

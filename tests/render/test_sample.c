@@ -175,7 +175,7 @@ static void image_that_is_no_sample_is_refused(void **state)
 {
     (void)state;
     sample s = make_sample(), r;
-    exr_channel red = {"R", s.albedo.data, 3};
+    exr_channel red = {"R", s.albedo.data, 3, false};
     assert_int_equal(exr_write(path, WIDTH, HEIGHT, &red, 1, NULL, 0), OK);
     assert_int_equal(sample_read(path, &r), ERROR_INPUT);
     assert_int_equal(file_write(path, "no EXR at all", 13), OK);

@@ -87,7 +87,7 @@ static void floats_share_one_scale_below_saturation(void **state)
         assert_int_equal(img_new(&p, 5, 5, 3), OK);
         for (int k = 0; k < 75; k++)
             p.data[k] = value[i];
-        const exr_channel rgb[] = {{"R", p.data, 3}, {"G", p.data + 1, 3}, {"B", p.data + 2, 3}};
+        const exr_channel rgb[] = {{"R", p.data, 3, false}, {"G", p.data + 1, 3, false}, {"B", p.data + 2, 3, false}};
         assert_int_equal(exr_write(scratch_path(name), 5, 5, rgb, 3, NULL, 0), OK);
         img_free(&p);
     }
