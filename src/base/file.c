@@ -227,6 +227,14 @@ char *file_join(const char *folder, const char *name)
     return asprintf(&out, "%s%s%s", folder, between, name) < 0 ? NULL : out;
 }
 
+bool file_is_in(const char *folder, const char *name)
+{
+    char *path = file_join(folder, name);
+    bool there = path && file_exists(path);
+    free(path);
+    return there;
+}
+
 bool file_ends_in(const char *name, const char *ending)
 {
     size_t n = strlen(name), m = strlen(ending);

@@ -47,6 +47,8 @@ status file_check_writable(const char *path);
 
 bool file_exists(const char *path);
 bool file_is_folder(const char *path);
+/* Whether a folder holds a file or folder of this name. */
+bool file_is_in(const char *folder, const char *name);
 /* Whether two paths lead to one file or folder, which exists. */
 bool file_is_same(const char *one, const char *other);
 /* Makes a folder and those above it. */

@@ -90,12 +90,11 @@ static status take_mesh(const char *path, void *into)
 static bool holds_maps(const char *folder)
 {
     static const char *const lights[] = {".txt", ".lp", NULL};
-    char *maps = file_join(folder, "maps.exr"), **names = NULL;
+    char **names = NULL;
     size_t count = 0;
-    bool found = maps && file_exists(maps) && file_list(folder, lights, &names, &count) == OK && count == 0;
+    bool alone = file_is_in(folder, "maps.exr") && file_list(folder, lights, &names, &count) == OK && count == 0;
     file_list_free(names, count);
-    free(maps);
-    return found;
+    return alone;
 }
 
 static bool is_capture(const request *r)

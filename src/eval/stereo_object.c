@@ -18,17 +18,10 @@ static const float PHOTO_WHITE = 1.568f;
 
 /* ---- which ---- */
 
-static bool holds(const char *folder, const char *name)
-{
-    char *path = file_join(folder, name);
-    bool there = path && file_exists(path);
-    free(path);
-    return there;
-}
-
 static bool is_capture(const char *folder)
 {
-    return holds(folder, "led_params.txt") || (holds(folder, "light_directions.txt") && holds(folder, "filenames.txt"));
+    return file_is_in(folder, "led_params.txt") ||
+           (file_is_in(folder, "light_directions.txt") && file_is_in(folder, "filenames.txt"));
 }
 
 static int by_name(const void *a, const void *b)

@@ -68,19 +68,11 @@ status pst_find_file(const char *folder, const char *asked, const char *usual, c
     return first_with_ending(folder, ending, path, found);
 }
 
-static bool folder_has(const char *folder, const char *name)
-{
-    char *path = file_join(folder, name);
-    bool there = path && file_exists(path);
-    free(path);
-    return there;
-}
-
 static layout recognize(const char *folder, const pst_read_options *options)
 {
     if (options->lights) return LAYOUT_PLAIN;
-    if (folder_has(folder, "led_params.txt")) return LAYOUT_LUCES;
-    if (folder_has(folder, "light_directions.txt") && folder_has(folder, "filenames.txt")) return LAYOUT_DILIGENT;
+    if (file_is_in(folder, "led_params.txt")) return LAYOUT_LUCES;
+    if (file_is_in(folder, "light_directions.txt") && file_is_in(folder, "filenames.txt")) return LAYOUT_DILIGENT;
     return LAYOUT_PLAIN;
 }
 

@@ -19,10 +19,8 @@ static status take_names(char *text, const char *path, const char *folder, pst_c
         if (!*name) continue;
         if (strchr(name, '/')) return fail(ERROR_INPUT, "%s: \"%.80s\" is not a plain file name", path, name);
         if (count < c->count) {
-            char *picture = file_join(folder, name);
-            bool there = picture && file_exists(picture);
-            free(picture);
-            if (!there) return fail(ERROR_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
+            if (!file_is_in(folder, name))
+                return fail(ERROR_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
             status s = pst_capture_set_name(c, (size_t)count, name);
             if (s != OK) return s;
         }
