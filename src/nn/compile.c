@@ -13,7 +13,7 @@ typedef struct compilation {
     nn_program *program;
     plan_buffer *buffers;
     int buffer_count;
-    int *step_buffers; /* three a step: saved, forward scratch, backward scratch */
+    int *step_buffers; /* two a step: forward scratch, backward scratch */
 } compilation;
 
 static int backward_time(const compilation *c, int step)
@@ -136,12 +136,10 @@ static void use_values(compilation *c, int i)
 static void use_step_memory(compilation *c, int i)
 {
     const nn_step *step = &c->program->steps[i];
-    int *saved = &c->step_buffers[3 * i], *forward = saved + 1, *backward = saved + 2, back = backward_time(c, i);
-    *saved = *forward = *backward = -1;
-    if (step->saved_bytes) use_buffer(c, saved, step->saved_bytes, i);
-    if (step->saved_bytes && step->backs) use_buffer(c, saved, 0, back);
+    int *forward = &c->step_buffers[2 * i], *backward = forward + 1;
+    *forward = *backward = -1;
     if (step->forward_scratch) use_buffer(c, forward, step->forward_scratch, i);
-    if (step->backs && step->backward_scratch) use_buffer(c, backward, step->backward_scratch, back);
+    if (step->backs && step->backward_scratch) use_buffer(c, backward, step->backward_scratch, backward_time(c, i));
 }
 
 static status plan(compilation *c)
@@ -183,9 +181,8 @@ static status bind_steps(compilation *c)
         }
         step->out.data = address(c, result->buffer);
         step->out_gradient.data = step->backs ? address(c, result->gradient_buffer) : NULL;
-        step->saved = address(c, c->step_buffers[3 * i]);
-        step->forward_space = address(c, c->step_buffers[3 * i + 1]);
-        step->backward_space = address(c, c->step_buffers[3 * i + 2]);
+        step->forward_space = address(c, c->step_buffers[2 * i]);
+        step->backward_space = address(c, c->step_buffers[2 * i + 1]);
         status s = step->run->bind ? step->run->bind(step) : OK;
         if (s != OK) return fail_in(s, "%s", step->name);
     }
@@ -246,9 +243,9 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
     if (s == OK) s = p->device->open(&p->context);
     if (s == OK) s = create_steps(c);
     if (s != OK) return s;
-    /* a value and its gradient for each node, three for each step */
-    c->buffers = calloc((size_t)g->count * 5 + 1, sizeof *c->buffers);
-    c->step_buffers = calloc((size_t)g->count * 3 + 1, sizeof *c->step_buffers);
+    /* a value and its gradient for each node, two for each step */
+    c->buffers = calloc((size_t)g->count * 4 + 1, sizeof *c->buffers);
+    c->step_buffers = calloc((size_t)g->count * 2 + 1, sizeof *c->step_buffers);
     if (!c->buffers || !c->step_buffers) return fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
     order_gradients(c);
     s = plan(c);

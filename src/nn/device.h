@@ -41,13 +41,12 @@ struct nn_step {
     /* the device's answers from create */
     const step_functions *run;
     void *state;
-    size_t saved_bytes;                       /* kept from forward to backward */
     size_t forward_scratch, backward_scratch; /* for the time of one call */
     size_t own_bytes;                         /* held by state: converted weights and the like */
     double forward_flops, backward_flops;
 
     /* memory, given before bind */
-    void *saved, *forward_space, *backward_space;
+    void *forward_space, *backward_space;
 
     /* results of losses */
     float loss;

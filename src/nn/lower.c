@@ -125,12 +125,11 @@ static void make_steps(lowering *l)
     for (int i = 0; i < l->graph->count; i++) {
         value *v = &l->values[i];
         if (!v->live || v->covered || v->node->op == OP_INPUT) continue;
-        lowered_step *step = &l->steps[l->step_count];
+        lowered_step *step = &l->steps[l->step_count++];
         *step = (lowered_step){.head = i, .norm = -1, .result = i};
         fuse(l, step);
         for (int k = i; k != step->result; k = l->values[k].consumer)
             l->values[l->values[k].consumer].covered = true;
-        l->values[step->result].step = l->step_count++;
     }
 }
 
@@ -146,7 +145,7 @@ status lower_graph(const nn_graph *g, const nn_options *options, lowering *out)
     if (!out->values || !out->steps) s = fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
     for (int i = 0; s == OK && i < g->count; i++) {
         value *v = &out->values[i];
-        *v = (value){.node = g->nodes[i], .consumer = -1, .step = -1, .buffer = -1, .gradient_buffer = -1};
+        *v = (value){.node = g->nodes[i], .consumer = -1, .buffer = -1, .gradient_buffer = -1};
         for (int k = 0; k < v->node->inputs; k++)
             v->in[k] = lower_resolve(options->type, v->node->in[k]);
         s = infer_shape(options, v);

@@ -15,7 +15,6 @@ typedef struct value {
     bool covered;                /* by a step that started at an earlier node */
     int consumers;               /* uses by live nodes */
     int consumer;                /* the last of them */
-    int step;                    /* that writes it, -1: an input, or fused into a step that writes something else */
     nn_tensor tensor;            /* shape and type */
     bool differentiable;         /* depends on a parameter, and a loss depends on it */
     int buffer, gradient_buffer; /* in the plan; -1: none */

@@ -124,12 +124,11 @@ static size_t prepared_bytes(const nn_step *step)
     return align64(tensor_bytes(&t));
 }
 
-static size_t own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
+static void own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
 {
     size_t bytes = dnnl_memory_desc_get_size(layout);
     *memory = memory_new(bytes);
     step->own_bytes += bytes;
-    return bytes;
 }
 
 static status describe_backward(nn_step *step, conv *state)
