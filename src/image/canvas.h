@@ -10,7 +10,6 @@
 #include "image/image.h"
 
 #define CANVAS_GROUND 0x20, 0x21, 0x24 /* dark and neutral, so that colours are judged rightly */
-#define CANVAS_GROUND_CSS "#202124"
 #define CANVAS_INK 0xe8, 0xea, 0xed
 #define CANVAS_INK_CSS "#e8eaed"
 #define CANVAS_FONT "DejaVu Sans, sans-serif"

@@ -25,7 +25,6 @@ typedef enum pattern_kind {
     PATTERN_BANDS,    /* random values in layers along y */
     PATTERN_PATCHES,  /* high near chosen centres */
     PATTERN_GRADIENT, /* along y */
-    PATTERN_KINDS
 } pattern_kind;
 
 enum { PATTERN_CENTRES = 6 };

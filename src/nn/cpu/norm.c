@@ -5,7 +5,7 @@
 #include "base/half.h"
 #include "base/inline.h"
 
-enum { CHUNKS = 64, WIDEST = 64 };
+enum { CHUNKS = 64 };
 
 size_t norm_partial_floats(int channels)
 {
