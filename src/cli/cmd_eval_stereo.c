@@ -16,7 +16,7 @@ static const char help[] =
     "relit pictures and 32 of the real ones are drawn five times.\n\n"
     "  --data DIR         samples with many targets (merlin render --targets 52), an object's folder in the LUCES or\n"
     "                     DiLiGenT layout, or a folder of such folders\n"
-    "  --model W          weights to measure (default: merlin-point)\n"
+    "  --model W          weights to measure (default: $MERLIN_MODEL, else merlin-point)\n"
     "  --count N          only the first N objects\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
