@@ -156,9 +156,10 @@ static bool look(rendering *r, int i, int j, sight *out)
     int strata = r->how->strata > 0 ? r->how->strata : 1;
     out->count = strata * strata;
     for (int s = 0; s < out->count; s++) {
+        int column = s % strata, row = s / strata;
         vec3 origin, direction;
-        camera_ray_of(r->how, (float)i + ((float)(s % strata) + 0.5f) / (float)strata,
-                      (float)j + ((float)(s / strata) + 0.5f) / (float)strata, &origin, &direction);
+        camera_ray_of(r->how, (float)i + ((float)column + 0.5f) / (float)strata,
+                      (float)j + ((float)row + 0.5f) / (float)strata, &origin, &direction);
         if (!trace_surface(&r->scene, origin, direction, &out->at[s])) return false;
         out->view[s] = vec3_scale(direction, -1);
         apply_material(r->how, &out->at[s]);
@@ -185,7 +186,7 @@ static bool store_truth(const sight *seen, size_t pixel, pst_capture *c)
 static uint16_t code_of(const rendered *how, float value)
 {
     float v = fminf(how->exposure * value, 1);
-    return how->eight_bit ? (uint16_t)(roundf(v * 255) * 257) : (uint16_t)(v * 65535 + 0.5f);
+    return how->eight_bit ? (uint16_t)(roundf(v * 255) * 257) : (uint16_t)lroundf(v * 65535);
 }
 
 static void render_pixel(rendering *r, int i, int j)
