@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/bench.h"
@@ -100,14 +101,8 @@ static status run(const request *r, const char *weights)
     bench_report report;
     status s = r->profile ? run_profiled(r, &options, &report) : bench_run(&options, &report);
     if (s != OK) return s;
-    if (!r->json) {
-        bench_print_table(&report, stdout);
-        return OK;
-    }
-    char *json = bench_report_json(&report);
-    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
-    puts(json);
-    free(json);
+    if (r->json) return json_report_print(bench_report_json(&report));
+    bench_print_table(&report, stdout);
     return OK;
 }
 
@@ -139,14 +134,8 @@ static status run_stereo(const request *r)
     bench_stereo_report report;
     status s = bench_stereo(&(bench_stereo_options){o->quick, o->quiet, o->stopped}, &report);
     if (s != OK) return s;
-    if (!r->json) {
-        bench_stereo_print(&report, stdout);
-        return OK;
-    }
-    char *json = bench_stereo_json(&report);
-    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
-    puts(json);
-    free(json);
+    if (r->json) return json_report_print(bench_stereo_json(&report));
+    bench_stereo_print(&report, stdout);
     return OK;
 }
 

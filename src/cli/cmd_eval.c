@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/evaluate.h"
@@ -105,14 +106,9 @@ static int run_evaluation(request *r)
     if (s == OK) s = eval_run(&r->options, &report);
     free(weights);
     if (s != OK) return cli_fail("eval", s);
-    if (!r->json) {
-        eval_print_table(&report, stdout);
-        return 0;
-    }
-    char *json = eval_report_json(&report);
-    if (!json) return cli_fail("eval", fail(ERROR_MEMORY, "no memory for the report"));
-    puts(json);
-    free(json);
+    if (r->json) s = json_report_print(eval_report_json(&report));
+    if (s != OK) return cli_fail("eval", s);
+    if (!r->json) eval_print_table(&report, stdout);
     return 0;
 }
 

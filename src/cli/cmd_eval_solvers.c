@@ -1,10 +1,10 @@
 /* merlin eval solvers: photometric stereo where the truth is known. */
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "eval/solver_table.h"
 
@@ -44,14 +44,8 @@ static status parse(int argc, char **argv, request *r)
 
 static status announce(const request *r, const solver_table *t)
 {
-    if (!r->json) {
-        solver_table_print(t, stdout);
-        return OK;
-    }
-    char *json = solver_table_json(t);
-    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
-    puts(json);
-    free(json);
+    if (r->json) return json_report_print(solver_table_json(t));
+    solver_table_print(t, stdout);
     return OK;
 }
 

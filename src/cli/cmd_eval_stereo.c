@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
+#include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/stereo_table.h"
@@ -51,14 +52,8 @@ static status parse(int *argc, char ***argv, request *r)
 
 static status announce(const request *r, const stereo_table *t)
 {
-    if (!r->json) {
-        stereo_table_print(t, stdout);
-        return OK;
-    }
-    char *json = stereo_table_json(t);
-    if (!json) return fail(ERROR_MEMORY, "no memory for the report");
-    puts(json);
-    free(json);
+    if (r->json) return json_report_print(stereo_table_json(t));
+    stereo_table_print(t, stdout);
     return OK;
 }
 

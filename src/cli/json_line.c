@@ -57,3 +57,11 @@ void json_line_print(const cJSON *report)
     if (line) puts(line);
     cJSON_free(line);
 }
+
+status json_report_print(char *text)
+{
+    if (!text) return fail(ERROR_MEMORY, "no memory for the report");
+    puts(text);
+    free(text);
+    return OK;
+}

@@ -13,6 +13,11 @@
 #include <cJSON.h>
 #include <stddef.h>
 
+#include "base/status.h"
+
+/* A report's own text, of several lines, which is freed; NULL: memory ran out. */
+status json_report_print(char *text);
+
 /* Adds a text, U+FFFD in the place of each byte that is not UTF-8. */
 void json_line_text(cJSON *object, const char *key, const char *text);
 /* Adds "output" and "files". */
