@@ -21,7 +21,6 @@ static const char help[] =
 
 typedef struct request {
     solver_options options;
-    int seed;
     bool json, help;
 } request;
 
@@ -29,7 +28,7 @@ static status parse(int argc, char **argv, request *r)
 {
     const cli_option options[] = {
         {"count", .count = &r->options.count, .low = 1, .high = 100000},
-        {"seed", .integer = &r->seed, .low = 0, .high = 2147483647},
+        {"seed", .whole = &r->options.seed, .low = 0, .high = 2147483647},
         {"size", .integer = &r->options.size, .low = 32, .high = 2048},
         {"json", .flag = &r->json},
         {"quiet", .flag = &r->options.quiet},
@@ -38,7 +37,6 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    r->options.seed = (uint64_t)r->seed;
     return argc == 0 ? OK : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
 }
 
@@ -51,7 +49,7 @@ static status announce(const request *r, const solver_table *t)
 
 int eval_solvers(int argc, char **argv)
 {
-    request r = {.options = {.count = 8, .size = 224, .stopped = cli_interrupted}, .seed = 2000};
+    request r = {.options = {.seed = 2000, .count = 8, .size = 224, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval solvers", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();

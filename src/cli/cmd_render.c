@@ -41,24 +41,6 @@ typedef struct request {
     int threads;
 } request;
 
-static status take_whole(const char *option, const char *text, long high, uint64_t *to)
-{
-    long value = 0;
-    status s = cli_int(option, text, 0, high, &value);
-    *to = (uint64_t)value;
-    return s;
-}
-
-static status take_seed(const char *text, void *to)
-{
-    return take_whole("--seed", text, LONG_MAX, to);
-}
-
-static status take_first(const char *text, void *to)
-{
-    return take_whole("--first", text, 1000000000, to);
-}
-
 static status take_strata(const char *text, void *to)
 {
     long value = 0;
@@ -77,8 +59,8 @@ static status read_options(int *argc, char ***argv, request *r)
     const cli_option options[] = {
         {"count", .count = &o->count, .low = 1, .high = 100000000},
         {"output", 'o', .folder = &o->folder},
-        {"seed", .take = take_seed, .into = &o->seed},
-        {"first", .take = take_first, .into = &o->first},
+        {"seed", .whole = &o->seed, .low = 0, .high = LONG_MAX},
+        {"first", .whole = &o->first, .low = 0, .high = 1000000000},
         {"size", .integer = &o->image.size, .low = 8, .high = 4096},
         {"fov", .real = &o->image.fov, .low = 5, .high = 120},
         {"mesh", .text = &o->mesh},

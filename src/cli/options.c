@@ -61,6 +61,7 @@ static status take_number(const cli_option *o, const char *value)
     status s = cli_int(spelled, value, o->low, o->high, &whole);
     if (s == OK && o->integer) *o->integer = (int)whole;
     if (s == OK && o->count) *o->count = (size_t)whole;
+    if (s == OK && o->whole) *o->whole = (uint64_t)whole;
     return s;
 }
 

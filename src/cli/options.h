@@ -17,6 +17,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/status.h"
 
@@ -29,6 +30,7 @@ typedef struct cli_option {
     const char **picture; /* a picture to write, which ends in .png */
     int *integer;         /* from low to high */
     size_t *count;        /* from low to high */
+    uint64_t *whole;      /* from low to high */
     float *real;          /* from low to high */
     long low, high;
     status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
