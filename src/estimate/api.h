@@ -10,6 +10,7 @@
 #include "estimate/shadow.h"
 #include "estimate/staging.h"
 #include "estimate/surface.h"
+#include "image/exr.h"
 #include "image/image.h"
 #include "merlin/merlin.h"
 
@@ -109,5 +110,10 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const maps_outpu
 /* report.json's text, malloc'ed; NULL if memory ran out. */
 char *maps_report(const merlin_maps *maps);
 status maps_write_exr(const merlin_maps *maps, const char *path);
+/* All maps of the file's size and what it holds of them; roughness and photo, unless photographed, are not looked for
+ * and stay zero. After a failure, too, merlin_maps_free. */
+status maps_read_layers(exr_file *f, bool photographed, merlin_maps *maps);
+/* Maps as the inside promises them: half floats are not quite unit normals, and anybody may have edited the file. */
+void maps_tidy(merlin_maps *maps);
 
 #endif

@@ -25,6 +25,8 @@ static const layer layers[CHANNELS] = {
 
 enum { IMAGES = 6 };
 static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
+/* What photometric stereo does not find. */
+static const bool of_photographs[IMAGES] = {[2] = true, [5] = true};
 
 status maps_write_exr(const merlin_maps *maps, const char *path)
 {
@@ -77,11 +79,12 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     return OK;
 }
 
-static status read_layers(exr_file *f, merlin_maps *maps)
+status maps_read_layers(exr_file *f, bool photographed, merlin_maps *maps)
 {
     merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
                                     &maps->depth,  &maps->mask,   &maps->photo};
     exr_target targets[CHANNELS];
+    size_t count = 0;
     for (int i = 0; i < IMAGES; i++) {
         img m = {0};
         status s = img_new(&m, exr_width(f), exr_height(f), image_channels[i]);
@@ -89,13 +92,13 @@ static status read_layers(exr_file *f, merlin_maps *maps)
         *images[i] = image_of(&m);
     }
     for (int i = 0; i < CHANNELS; i++)
-        targets[i] = (exr_target){layers[i].name, images[layers[i].image]->data + layers[i].channel,
-                                  image_channels[layers[i].image]};
-    return exr_read(f, targets, CHANNELS);
+        if (photographed || !of_photographs[layers[i].image])
+            targets[count++] = (exr_target){layers[i].name, images[layers[i].image]->data + layers[i].channel,
+                                            image_channels[layers[i].image]};
+    return exr_read(f, targets, count);
 }
 
-/* Half floats are not quite unit normals, and anybody may have edited the file. */
-static void tidy(merlin_maps *maps)
+void maps_tidy(merlin_maps *maps)
 {
     surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness), img_of(&maps->depth),
                    img_of(&maps->mask)};
@@ -118,11 +121,11 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
     s = file_exists(path) ? exr_open(path, &f)
                           : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
     if (s == OK) s = read_attributes(f, path, maps);
-    if (s == OK) s = read_layers(f, maps);
+    if (s == OK) s = maps_read_layers(f, true, maps);
     if (f) exr_close(f);
     free(path);
     if (s == OK)
-        tidy(maps);
+        maps_tidy(maps);
     else
         merlin_maps_free(maps);
     return result_of(s);
