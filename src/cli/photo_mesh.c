@@ -1,7 +1,5 @@
 #include "cli/photo_mesh.h"
 
-#include <math.h>
-
 #include "estimate/api.h"
 #include "estimate/fill.h"
 #include "stereo/mesh_write.h"
@@ -23,11 +21,8 @@ status photo_mesh_write(const merlin_maps *maps, const char *path)
     if (s == OK) s = maps_albedo(maps, least(maps->crop.side, TEXTURE_SIDE), &texture);
     /* or a texture seen small would mix the zeros beside the object, a mirror, into its outline */
     if (s == OK) s = fill_outside(&shape.roughness, &shape.mask);
-    float middle = 0.5f * (float)side, tangent = tanf(0.5f * SURFACE_FOV * 0.017453293f);
-    pst_mesh_source source = {
-        &shape.depth,     &shape.mask,
-        &shape.normal,    &texture,
-        &shape.roughness, {.perspective = true, .focal = middle / tangent, .center_x = middle, .center_y = middle}};
+    pst_mesh_source source = {&shape.depth, &shape.mask,      &shape.normal,
+                              &texture,     &shape.roughness, pst_camera_of(side, side, SURFACE_FOV)};
     if (s == OK) s = pst_mesh_write(path, &source);
     surface_free(&shape);
     img_free(&texture);

@@ -51,16 +51,15 @@ static void place_depth(merlin_maps *maps, float focal, float pitch)
         maps->depth.data[i] = is_object(maps, i) ? fmaxf(1 + scale * (maps->depth.data[i] - mean), nearest) : 1;
 }
 
-static void turn_normals(merlin_maps *maps, float focal, float pitch)
+static void turn_normals(merlin_maps *maps, float focal)
 {
     pst_camera from = {.perspective = focal > 0,
                        .focal = focal,
                        .center_x = 0.5f * (float)maps->mask.width,
                        .center_y = 0.5f * (float)maps->mask.height};
-    pst_camera to = {.perspective = true,
-                     .focal = 1 / pitch,
-                     .center_x = (float)maps->crop.x + 0.5f * (float)maps->crop.side,
-                     .center_y = (float)maps->crop.y + 0.5f * (float)maps->crop.side};
+    pst_camera to = pst_camera_of(maps->crop.side, maps->crop.side, MODEL_FOV);
+    to.center_x += (float)maps->crop.x;
+    to.center_y += (float)maps->crop.y;
     img normal = img_of(&maps->normal);
     normal_frame_change(&normal, &from, &to);
 }
@@ -76,7 +75,7 @@ static status place(merlin_maps *maps, float focal)
     maps->crop.side = c.side;
     float pitch = camera_pixel_size(&(camera){c.side, c.side, MODEL_FOV});
     place_depth(maps, focal, pitch);
-    turn_normals(maps, focal, pitch);
+    turn_normals(maps, focal);
     for (size_t i = 0, pixels = img_value_count(&mask); i < pixels; i++)
         maps->roughness.data[i] = 1;
     maps_tidy(maps);

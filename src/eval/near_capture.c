@@ -21,13 +21,13 @@ static float mean_over(const img *values, const img *mask)
 status near_capture_new(const img *mask, const img *depth, float field_of_view, int most, pst_capture *out)
 {
     int side = mask->width;
-    *out = (pst_capture){
-        .width = side, .height = mask->height, .channels = 3, .lighting = PST_NEAR, .intensities_known = true};
-    out->camera = (pst_camera){.perspective = true,
-                               .focal = (float)side / (2 * tanf(field_of_view * (float)BRDF_PI / 360)),
-                               .center_x = (float)side / 2,
-                               .center_y = (float)mask->height / 2,
-                               .mean_distance = mean_over(depth, mask)};
+    *out = (pst_capture){.width = side,
+                         .height = mask->height,
+                         .channels = 3,
+                         .lighting = PST_NEAR,
+                         .intensities_known = true,
+                         .camera = pst_camera_of(side, mask->height, field_of_view)};
+    out->camera.mean_distance = mean_over(depth, mask);
     out->picture = calloc((size_t)most, sizeof *out->picture);
     out->light = calloc((size_t)most, sizeof *out->light);
     out->name = calloc((size_t)most, sizeof *out->name);

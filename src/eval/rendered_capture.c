@@ -254,15 +254,6 @@ static status allocate(const rendered *how, pst_capture *c)
     return OK;
 }
 
-static pst_camera camera_of(const rendered *how)
-{
-    if (!is_near(how)) return (pst_camera){0};
-    return (pst_camera){.perspective = true,
-                        .focal = 0.5f * (float)how->size / tanf(how->fov * 0.00872664626f),
-                        .center_x = 0.5f * (float)how->size,
-                        .center_y = 0.5f * (float)how->size};
-}
-
 status rendered_capture(const rendered *how, const scn_object *object, pst_capture *out)
 {
     *out = (pst_capture){.width = how->size,
@@ -270,7 +261,7 @@ status rendered_capture(const rendered *how, const scn_object *object, pst_captu
                          .channels = how->grey ? 1 : 3,
                          .lighting = is_near(how) ? PST_NEAR : PST_DISTANT,
                          .intensities_known = true,
-                         .camera = camera_of(how)};
+                         .camera = is_near(how) ? pst_camera_of(how->size, how->size, how->fov) : (pst_camera){0}};
     job all = {.how = how, .object = object, .capture = out, .result = OK};
     status s = allocate(how, out);
     if (s == OK) s = trace_device_new(&all.device);

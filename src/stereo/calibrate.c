@@ -150,16 +150,6 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
     return s;
 }
 
-static pst_camera camera_of(const pst_calibrate_options *options, const pst_capture *c)
-{
-    static const float HALF_DEGREE = 3.14159265f / 360;
-    if (!(options->field_of_view > 0)) return (pst_camera){0};
-    return (pst_camera){.perspective = true,
-                        .focal = 0.5f * (float)c->width / tanf(options->field_of_view * HALF_DEGREE),
-                        .center_x = 0.5f * (float)c->width,
-                        .center_y = 0.5f * (float)c->height};
-}
-
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
 {
     *out = (pst_calibration){.ball = options->ball};
@@ -167,7 +157,7 @@ status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *opt
     pst_capture c;
     status s = pst_capture_read(folder, &reading, &c);
     if (s != OK) return s;
-    c.camera = camera_of(options, &c);
+    c.camera = options->field_of_view > 0 ? pst_camera_of(c.width, c.height, options->field_of_view) : (pst_camera){0};
     s = calibrate(folder, options, &c, out);
     pst_capture_free(&c);
     if (s != OK) pst_calibration_free(out);

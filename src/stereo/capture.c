@@ -99,20 +99,27 @@ void pst_capture_forget_lights(pst_capture *c)
     c->lighting = PST_UNKNOWN_LIGHT;
 }
 
+pst_camera pst_camera_of(int width, int height, float field_of_view)
+{
+    static const float HALF_DEGREE = 0.00872664626f;
+    return (pst_camera){.perspective = true,
+                        .focal = 0.5f * (float)width / tanf(field_of_view * HALF_DEGREE),
+                        .center_x = 0.5f * (float)width,
+                        .center_y = 0.5f * (float)height};
+}
+
 /* What the user says of the camera wins; a near capture that says nothing has the project's 60 degrees. */
 static void settle_camera(const pst_read_options *options, pst_capture *c)
 {
-    static const float NEAR_FIELD_OF_VIEW = 60, HALF_DEGREE = 0.00872664626f;
+    static const float NEAR_FIELD_OF_VIEW = 60;
     bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
     float field_of_view = options->field_of_view > 0 ? options->field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
-    if (options->camera.focal > 0)
+    if (options->camera.focal > 0) {
         c->camera = options->camera;
-    else if (field_of_view > 0)
-        c->camera = (pst_camera){.perspective = true,
-                                 .focal = 0.5f * (float)c->width / tanf(field_of_view * HALF_DEGREE),
-                                 .center_x = 0.5f * (float)c->width,
-                                 .center_y = 0.5f * (float)c->height,
-                                 .mean_distance = options->camera.mean_distance};
+    } else if (field_of_view > 0) {
+        c->camera = pst_camera_of(c->width, c->height, field_of_view);
+        c->camera.mean_distance = options->camera.mean_distance;
+    }
 }
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)

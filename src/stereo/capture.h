@@ -35,6 +35,9 @@ typedef struct pst_camera {
     float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
 } pst_camera;
 
+/* Whose picture is so many degrees wide, with the axis through its middle. */
+pst_camera pst_camera_of(int width, int height, float field_of_view);
+
 /* A value from here on, as a share of full scale, may be less than the light was. */
 #define PST_SATURATED 0.98f
 

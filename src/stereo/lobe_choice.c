@@ -71,10 +71,10 @@ static void try_kinds(choice *c, int count, bool anew)
 static void try_views(choice *c)
 {
     static const float fov[] = {20, 40, 60}; /* degrees across */
-    float width = (float)c->field.problem->capture->width;
+    const pst_capture *capture = c->field.problem->capture;
     for (size_t k = 0; k < sizeof fov / sizeof *fov; k++) {
         c->trial = c->best;
-        c->trial.focal = 0.5f * width / tanf(fov[k] * 0.00872664626f);
+        c->trial.focal = pst_camera_of(capture->width, capture->height, fov[k]).focal;
         attempt(c, worth_view, false);
     }
 }
