@@ -1,14 +1,13 @@
 #include "cli/stereo_folder.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/progress.h"
 #include "cli/json_line.h"
+#include "eval/surface_error.h"
 #include "stereo/integrate.h"
 
 static const float RESIDUAL_WHITE = 0.25f, KEEP_DEPTH = 1e-4f;
-static const double DEGREES = 57.29577951308232;
 
 static int compare(const void *a, const void *b)
 {
@@ -42,10 +41,9 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
 {
     size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
     for (size_t i = 0; i < pixels; i++) {
-        const float *n = r->normal.data + 3 * i, *t = truth->data + 3 * i;
-        vec3 a = vec3_of(n), b = vec3_of(t);
-        if (r->mask.data[i] <= 0.5f || !(vec3_dot(b, b) > (real)0.25)) continue;
-        values[count++] = DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
+        vec3 n = vec3_of(r->normal.data + 3 * i), t = vec3_of(truth->data + 3 * i);
+        if (r->mask.data[i] <= 0.5f || !(vec3_dot(t, t) > (real)0.25)) continue;
+        values[count++] = normal_angle(n, t);
     }
     return count;
 }

@@ -4,18 +4,6 @@
 #include "optics/camera.h"
 #include "optics/light.h"
 
-static float mean_inside(const img *image, const img *mask)
-{
-    double sum = 0;
-    size_t count = 0;
-    for (size_t i = 0, n = (size_t)mask->width * (size_t)mask->height; i < n; i++) {
-        if (!(mask->data[i] > EVAL_MASK_LEVEL)) continue;
-        sum += image->data[i];
-        count++;
-    }
-    return count ? (float)(sum / (double)count) : 0;
-}
-
 status eval_inflate(const img *image, const img *mask, const eval_means *means, float fov, float power, eval_maps *out)
 {
     *out = (eval_maps){0};
@@ -29,7 +17,7 @@ status eval_inflate(const img *image, const img *mask, const eval_means *means, 
         return s;
     }
     camera view = {mask->width, mask->height, fov};
-    float size = camera_pixel_size(&view) * means->depth, middle = mean_inside(&height, mask);
+    float size = camera_pixel_size(&view) * means->depth, middle = (float)eval_mean(&height, mask);
     for (size_t i = 0, n = (size_t)mask->width * (size_t)mask->height; i < n; i++) {
         float depth = means->depth - size * (height.data[i] - middle);
         out->depth.data[i] = depth > 0.1f ? depth : 0.1f;

@@ -25,6 +25,18 @@ double eval_mse(const img *a, const img *b, const img *mask)
     return count ? sum / (double)count : 0;
 }
 
+double eval_mean(const img *a, const img *mask)
+{
+    size_t count = 0;
+    double sum = 0;
+    for (size_t i = 0, pixels = (size_t)a->width * (size_t)a->height; i < pixels; i++) {
+        if (!(mask->data[i] > EVAL_MASK_LEVEL)) continue;
+        sum += (double)a->data[i];
+        count++;
+    }
+    return count ? sum / (double)count : 0;
+}
+
 /* The angle by atan2 of |p × q| and p·q: acos of the dot product alone loses all digits near zero. */
 static double angle_between(const float *p, const float *q)
 {

@@ -19,6 +19,9 @@
  * [-1, 1], unit normals and depth in scene units. */
 double eval_mse(const img *a, const img *b, const img *mask);
 
+/* Mean of 1 channel over the mask's pixels; 0 for an empty mask. */
+double eval_mean(const img *a, const img *mask);
+
 /* Mean angle in degrees between unit vectors (3 channels) over the mask's pixels; 0 for an empty mask. */
 double eval_angle(const img *a, const img *b, const img *mask);
 

@@ -4,19 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "eval/metrics.h"
 #include "optics/brdf.h"
 #include "optics/light.h"
-
-static float mean_over(const img *values, const img *mask)
-{
-    double sum = 0, count = 0;
-    for (size_t i = 0, n = (size_t)mask->width * (size_t)mask->height; i < n; i++)
-        if (mask->data[i] > 0.5f) {
-            sum += (double)values->data[i];
-            count++;
-        }
-    return count > 0 ? (float)(sum / count) : 1;
-}
 
 status near_capture_new(const img *mask, const img *depth, float field_of_view, int most, pst_capture *out)
 {
@@ -27,12 +17,10 @@ status near_capture_new(const img *mask, const img *depth, float field_of_view, 
                          .lighting = PST_NEAR,
                          .intensities_known = true,
                          .camera = pst_camera_of(side, mask->height, field_of_view)};
-    out->camera.mean_distance = mean_over(depth, mask);
-    out->picture = calloc((size_t)most, sizeof *out->picture);
-    out->light = calloc((size_t)most, sizeof *out->light);
-    out->name = calloc((size_t)most, sizeof *out->name);
-    if (!out->picture || !out->light || !out->name) return fail(ERROR_MEMORY, "no memory for %d lights", most);
-    status s = img_copy(&out->mask, mask);
+    out->camera.mean_distance = (float)eval_mean(depth, mask);
+    status s = pst_capture_reserve(out, (size_t)most);
+    out->count = 0; /* until they are added */
+    if (s == OK) s = img_copy(&out->mask, mask);
     for (size_t i = 0, n = (size_t)side * (size_t)mask->height; s == OK && i < n; i++)
         out->mask.data[i] = mask->data[i] > 0.5f;
     return s;

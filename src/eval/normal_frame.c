@@ -1,10 +1,6 @@
 #include "eval/normal_frame.h"
 
-#include <math.h>
-
 #include "stereo/field_fit.h"
-
-static const double DEGREES = 57.29577951308232;
 
 static vec3 sight(const pst_camera *camera, int x, int y)
 {
@@ -26,19 +22,4 @@ void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *
             vec3 turned = turn(vec3_of(n), sight(from, x, y), sight(to, x, y));
             vec3_put(turned, n);
         }
-}
-
-double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels)
-{
-    double sum = 0;
-    size_t count = 0;
-    for (size_t i = 0, total = (size_t)c->width * (size_t)c->height; i < total; i++) {
-        const float *n = normal->data + 3 * i, *t = c->normal_true.data + 3 * i;
-        vec3 a = vec3_of(n), b = vec3_of(t);
-        if (c->mask.data[i] <= 0.5f || vec3_length(b) < 0.5f) continue;
-        sum += DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
-        count++;
-    }
-    if (pixels) *pixels = count;
-    return count ? sum / (double)count : 0;
 }

@@ -1,4 +1,4 @@
-/* Normals seen by one camera, told to another, and held against the truth. Internal to the evaluation of stereo.
+/* Normals seen by one camera, told to another. Internal to the evaluation of stereo.
  *
  * The network takes the crop around an object for the whole frame of its own camera, 60 degrees wide. What a picture
  * tells is the angle between the surface and the line of sight, so a normal keeps its place relative to the ray of its
@@ -11,9 +11,4 @@
 /* Turns each pixel's normal by the least rotation that takes the first camera's ray to the second's. Pixels without a
  * normal stay so. */
 void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *to);
-
-/* The mean angle in degrees to c->normal_true over the mask, where the truth is known; *pixels (may be NULL) gets how
- * many those are. 0 if there are none. */
-double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels);
-
 #endif

@@ -1,11 +1,11 @@
 #include "eval/rendered_capture.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
+#include "eval/metrics.h"
 #include "optics/brdf.h"
 #include "optics/camera.h"
 #include "render/paths.h"
@@ -22,7 +22,6 @@ typedef struct job {
     const scn_object *object;
     trace_device *device;
     pst_capture *capture;
-    pthread_mutex_t lock; /* of result */
     status result;
 } job;
 
@@ -231,25 +230,22 @@ static void render_rows(void *context, size_t begin, size_t end)
         trace_scene_free(&r.scene);
         return;
     }
-    pthread_mutex_lock(&all->lock);
+#pragma omp atomic write
     all->result = s;
-    pthread_mutex_unlock(&all->lock);
 }
 
 static status allocate(const rendered *how, pst_capture *c)
 {
     size_t values = (size_t)how->size * (size_t)how->size * (size_t)c->channels;
-    status s = img_new(&c->mask, how->size, how->size, 1);
+    status s = pst_capture_reserve(c, (size_t)how->lights);
+    if (s == OK) s = img_new(&c->mask, how->size, how->size, 1);
     if (s == OK) s = img_new(&c->normal_true, how->size, how->size, 3);
     if (s == OK) s = img_new(&c->depth_true, how->size, how->size, 1);
     if (s != OK) return s;
-    c->light = calloc((size_t)how->lights, sizeof *c->light);
-    c->picture = calloc((size_t)how->lights, sizeof *c->picture);
-    if (!c->light || !c->picture) return fail(ERROR_MEMORY, "no memory for %d lights", how->lights);
-    for (c->count = 0; c->count < how->lights; c->count++) {
-        c->picture[c->count] = calloc(values, sizeof **c->picture);
-        if (!c->picture[c->count]) return fail(ERROR_MEMORY, "no memory for %d pictures", how->lights);
-        c->light[c->count] = light_of(how, c->count);
+    for (int k = 0; k < how->lights; k++) {
+        c->picture[k] = calloc(values, sizeof **c->picture);
+        if (!c->picture[k]) return fail(ERROR_MEMORY, "no memory for %d pictures", how->lights);
+        c->light[k] = light_of(how, k);
     }
     return OK;
 }
@@ -266,12 +262,11 @@ status rendered_capture(const rendered *how, const scn_object *object, pst_captu
     status s = allocate(how, out);
     if (s == OK) s = trace_device_new(&all.device);
     if (s == OK) {
-        pthread_mutex_init(&all.lock, NULL);
         parallel_blocks((size_t)how->size, render_rows, &all);
-        pthread_mutex_destroy(&all.lock);
         trace_device_free(all.device);
         s = all.result == OK ? OK : fail(all.result, "cannot trace a %s", object->shape);
     }
+    if (s == OK && is_near(how)) out->camera.mean_distance = (float)eval_mean(&out->depth_true, &out->mask);
     if (s != OK) pst_capture_free(out);
     return s;
 }

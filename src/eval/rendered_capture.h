@@ -7,7 +7,8 @@
  *     pst_capture_free(&c);
  *
  * Distant lights shine with radiance 1 a steradian; near lights are LEDs about the camera, or bare bulbs on the frontal
- * hemisphere. A pixel belongs to the mask if all of it shows the object, not at grazing angles. */
+ * hemisphere, and the camera's mean_distance is the true one then. A pixel belongs to the mask if all of it shows the
+ * object, not at grazing angles. */
 #ifndef MERLIN_EVAL_RENDERED_CAPTURE_H
 #define MERLIN_EVAL_RENDERED_CAPTURE_H
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/progress.h"
-#include "eval/normal_frame.h"
 #include "eval/rendered_capture.h"
+#include "eval/surface_error.h"
 #include "scene/material.h"
 #include "stereo/solve.h"
 
@@ -36,95 +36,63 @@ static rendered scene_of(const evaluation *e)
                       .exposure = 3};
 }
 
-static status solve(const pst_capture *c, pst_method method, double *angle, pst_surface *out)
+static status solve(const pst_capture *c, pst_method method, double *angle, size_t *pixels, pst_surface *out)
 {
     status s = pst_solve(c, &(pst_options){.method = method}, out);
     if (s != OK) return fail_in(s, "%s", pst_method_name(method));
-    *angle = normal_mean_angle(&out->normal, c, NULL);
+    *angle = normal_mean_angle(&out->normal, c, pixels);
     return OK;
 }
 
-static status angle_of(const pst_capture *c, pst_method method, double *angle)
+static status angle_of(const pst_capture *c, pst_method method, double *angle, size_t *pixels)
 {
     pst_surface found;
-    status s = solve(c, method, angle, &found);
+    status s = solve(c, method, angle, pixels, &found);
     if (s == OK) pst_surface_free(&found);
     return s;
 }
 
-static size_t pixels_of(const pst_capture *c)
-{
-    size_t count = 0;
-    for (size_t i = 0, all = (size_t)c->width * (size_t)c->height; i < all; i++)
-        count += c->mask.data[i] > 0.5f;
-    return count;
-}
-
-static double mean_depth(const pst_capture *c)
-{
-    double sum = 0;
-    for (size_t i = 0, all = (size_t)c->width * (size_t)c->height; i < all; i++)
-        sum += (double)c->depth_true.data[i]; /* 0 outside the object */
-    return sum / (double)pixels_of(c);
-}
-
-/* Mean share of the true depth by which it is off, once its scale is aligned. */
-static double depth_error(const pst_capture *c, const img *depth)
-{
-    double product = 0, square = 0, off = 0;
-    size_t all = (size_t)c->width * (size_t)c->height;
-    for (size_t i = 0; i < all; i++) {
-        double d = c->mask.data[i] > 0.5f ? (double)depth->data[i] : 0;
-        product += d * (double)c->depth_true.data[i];
-        square += d * d;
-    }
-    for (size_t i = 0; i < all; i++)
-        if (c->mask.data[i] > 0.5f)
-            off += fabs((double)depth->data[i] * product / square / (double)c->depth_true.data[i] - 1);
-    return off / (double)pixels_of(c);
-}
-
 /* ---- the captures ---- */
 
-static status lambert(const pst_capture *c, double figure[SOLVER_FIGURES])
+static status lambert(const pst_capture *c, solver_row *row)
 {
-    return angle_of(c, PST_LS, &figure[SOLVER_LAMBERT_LS]);
+    return angle_of(c, PST_LS, &row->figure[SOLVER_LAMBERT_LS], NULL);
 }
 
-static status glossy(const pst_capture *c, double figure[SOLVER_FIGURES])
+static status glossy(const pst_capture *c, solver_row *row)
 {
-    status s = angle_of(c, PST_LS, &figure[SOLVER_GLOSSY_LS]);
+    status s = angle_of(c, PST_LS, &row->figure[SOLVER_GLOSSY_LS], &row->pixels);
     double best = HUGE_VAL;
     for (int i = 0; i < TIMED_RUNS && s == OK; i++) {
         double began = clock_seconds();
-        s = angle_of(c, PST_ROBUST, &figure[SOLVER_GLOSSY_ROBUST]);
+        s = angle_of(c, PST_ROBUST, &row->figure[SOLVER_GLOSSY_ROBUST], NULL);
         best = fmin(best, clock_seconds() - began);
     }
-    figure[SOLVER_ROBUST_TIME] = best * timed_pixels / (double)pixels_of(c);
+    if (s == OK) row->figure[SOLVER_ROBUST_TIME] = best * timed_pixels / (double)row->pixels;
     return s;
 }
 
 static status near_lights(const pst_capture *c, double *angle, double *depth)
 {
     pst_surface found;
-    status s = solve(c, PST_NEAR_LIGHTS, angle, &found);
+    status s = solve(c, PST_NEAR_LIGHTS, angle, NULL, &found);
     if (s != OK) return s;
-    *depth = depth_error(c, &found.depth);
+    *depth = depth_mean_error(&found.depth, c);
     pst_surface_free(&found);
     return OK;
 }
 
-static status near_matte(const pst_capture *c, double figure[SOLVER_FIGURES])
+static status near_matte(const pst_capture *c, solver_row *row)
 {
-    return near_lights(c, &figure[SOLVER_NEAR_MATTE], &figure[SOLVER_NEAR_MATTE_DEPTH]);
+    return near_lights(c, &row->figure[SOLVER_NEAR_MATTE], &row->figure[SOLVER_NEAR_MATTE_DEPTH]);
 }
 
-static status near_glossy(const pst_capture *c, double figure[SOLVER_FIGURES])
+static status near_glossy(const pst_capture *c, solver_row *row)
 {
-    return near_lights(c, &figure[SOLVER_NEAR_GLOSSY], &figure[SOLVER_NEAR_GLOSSY_DEPTH]);
+    return near_lights(c, &row->figure[SOLVER_NEAR_GLOSSY], &row->figure[SOLVER_NEAR_GLOSSY_DEPTH]);
 }
 
-typedef status (*capture_figures)(const pst_capture *c, double figure[SOLVER_FIGURES]);
+typedef status (*capture_figures)(const pst_capture *c, solver_row *row);
 
 static status measure(evaluation *e, const rendered *how, capture_figures take)
 {
@@ -132,12 +100,7 @@ static status measure(evaluation *e, const rendered *how, capture_figures take)
     pst_capture c;
     status s = rendered_capture(how, &e->object, &c);
     if (s != OK) return s;
-    if (pixels_of(&c) == 0) s = fail(ERROR_INPUT, "nothing of it is seen at %d pixels", how->size);
-    if (s == OK) {
-        if (how->leds) c.camera.mean_distance = (float)mean_depth(&c);
-        if (!how->leds) e->row->pixels = pixels_of(&c);
-        s = take(&c, e->row->figure);
-    }
+    s = take(&c, e->row);
     pst_capture_free(&c);
     progress_update(&e->bar, ++e->done, e->row->name);
     return s;

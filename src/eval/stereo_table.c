@@ -12,6 +12,7 @@
 #include "eval/relit.h"
 #include "eval/stereo_object.h"
 #include "eval/stereo_sheet.h"
+#include "eval/surface_error.h"
 
 typedef struct evaluation {
     const stereo_options *options;

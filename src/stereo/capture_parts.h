@@ -7,8 +7,6 @@
 
 enum { PST_MOST_PICTURES = 4096 };
 
-/* Room for count lights of intensity 1 and count names. */
-status pst_capture_reserve(pst_capture *c, size_t count);
 status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
 
 /* The file names (without folder, sorted) of the pictures that are part of the capture: not masks, ambient, ground

@@ -14,6 +14,7 @@
 #include "eval/stereo_frame.h"
 #include "eval/stereo_object.h"
 #include "eval/stereo_table.h"
+#include "eval/surface_error.h"
 #include "scratch.h"
 #include "sphere.h"
 

@@ -10,6 +10,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "eval/rendered_capture.h"
+#include "eval/surface_error.h"
 #include "relief.h"
 #include "scene/material.h"
 
@@ -144,23 +145,6 @@ static void unknown_light_is_found_despite_highlights(void **state)
     pst_capture_free(&c);
 }
 
-/* Mean share of the depth by which it is off, once its scale is aligned. */
-static double depth_error(const pst_capture *c, const img *depth)
-{
-    double product = 0, square = 0, off = 0, count = 0;
-    for (int i = 0; i < c->width * c->height; i++) {
-        if (c->mask.data[i] < 0.5f) continue;
-        product += (double)depth->data[i] * (double)c->depth_true.data[i];
-        square += (double)depth->data[i] * (double)depth->data[i];
-    }
-    for (int i = 0; i < c->width * c->height; i++) {
-        if (c->mask.data[i] < 0.5f) continue;
-        off += fabs((double)depth->data[i] * product / square / (double)c->depth_true.data[i] - 1);
-        count++;
-    }
-    return off / count;
-}
-
 static void check_leds(uint64_t index, const rendered *how, double angle_bound)
 {
     scn_object object;
@@ -168,14 +152,8 @@ static void check_leds(uint64_t index, const rendered *how, double angle_bound)
     pst_surface s;
     generate(index, &object);
     take(how, &object, &c);
-    double sum = 0, count = 0;
-    for (int i = 0; i < c.width * c.height; i++) {
-        sum += c.depth_true.data[i];
-        count += c.mask.data[i];
-    }
-    c.camera.mean_distance = (float)(sum / count);
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), OK);
-    double angle = mean_angle(&c, &s.normal), error = depth_error(&c, &s.depth);
+    double angle = mean_angle(&c, &s.normal), error = depth_mean_error(&s.depth, &c);
     print_message("object %d under %d LEDs: %.2f degrees, depth off by %.2f %%\n", (int)index, c.count, angle,
                   100 * error);
     assert_true(angle < angle_bound);

@@ -9,16 +9,10 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "eval/rendered_capture.h"
+#include "eval/surface_error.h"
 #include "relief.h"
 #include "scene/material.h"
 #include "stereo/inflate.h"
-
-/* degrees */
-static double normal_angle(const float *a, const float *b)
-{
-    vec3 p = vec3_make(a[0], a[1], a[2]), q = vec3_make(b[0], b[1], b[2]);
-    return 57.29577951 * atan2((double)vec3_length(vec3_cross(p, q)), (double)vec3_dot(p, q));
-}
 
 static void an_inflated_disc_is_a_hemisphere(void **state)
 {
@@ -43,7 +37,7 @@ static void an_inflated_disc_is_a_hemisphere(void **state)
     double off = 0, count = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
         if (mask.data[i] < 0.5f) continue;
-        off += normal_angle(normal.data + 3 * i, truth.data + 3 * i);
+        off += normal_angle(vec3_of(normal.data + 3 * i), vec3_of(truth.data + 3 * i));
         count++;
     }
     assert_true(off / count < 2);
@@ -65,23 +59,13 @@ static void render(const rendered *how, uint64_t index, pst_capture *c)
     scn_object_free(&object);
 }
 
-static float mean_distance(const pst_capture *c)
-{
-    float sum = 0, count = 0;
-    for (int i = 0; i < c->width * c->height; i++) {
-        sum += c->depth_true.data[i];
-        count += c->mask.data[i];
-    }
-    return sum / count;
-}
-
 /* Mean angle between the lights' true and found directions from the object's middle, degrees. */
-static double light_angle(const pst_capture *c, const pst_light *found)
+static double light_angle(const pst_capture *c, float distance, const pst_light *found)
 {
     double sum = 0;
     for (int k = 0; k < c->count; k++) {
-        vec3 to = vec3_sub(c->light[k].position, vec3_make(0, 0, -mean_distance(c))), d = found[k].direction;
-        sum += normal_angle(&(float[3]){to.x, to.y, to.z}[0], &(float[3]){d.x, d.y, d.z}[0]) / c->count;
+        vec3 to = vec3_sub(c->light[k].position, vec3_make(0, 0, -distance));
+        sum += normal_angle(to, found[k].direction) / c->count;
     }
     return sum;
 }
@@ -93,12 +77,12 @@ static void solve_bare(uint64_t index, bool camera_known, double *normals, doubl
     pst_surface s;
     render(&bare, index, &c);
     c.lighting = PST_UNKNOWN_LIGHT;
-    c.camera.mean_distance = mean_distance(&c);
+    float distance = c.camera.mean_distance;
     if (!camera_known) c.camera = (pst_camera){0};
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
     assert_int_equal(s.method, PST_UNCALIBRATED);
     *normals = mean_angle(&c, &s.normal);
-    *lights = light_angle(&c, s.light);
+    *lights = light_angle(&c, distance, s.light);
     print_message("object %d, camera %s: normals %.2f, lights %.2f degrees\n", (int)index,
                   camera_known ? "known" : "unknown", *normals, *lights);
     assert_true(s.lights_near == camera_known);
@@ -144,7 +128,6 @@ static void half_a_surface_that_faces_away_is_no_answer(void **state)
         dark.paleness = 0.15f;
         render(&dark, index[i], &c);
         c.lighting = PST_UNKNOWN_LIGHT;
-        c.camera.mean_distance = mean_distance(&c);
         assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
         double normals = mean_angle(&c, &s.normal);
         print_message("object %d: normals %.2f degrees\n", (int)index[i], normals);
