@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/options.h"
-#include "cli/photos.h"
+#include "cli/photo_ahead.h"
 #include "estimate/overview.h"
 #include "image/resize.h"
 
@@ -114,18 +114,14 @@ static status put_tiles(comparison *c, size_t photo, int model, const overview *
 static status take_apart(comparison *c, merlin_model *m, size_t photo, int model)
 {
     const photo_job *job = &c->photos->at[photo];
-    merlin_image picture = {0}, mask = {0};
     merlin_maps maps = {0};
     overview o = {0};
-    status s = photo_read(job, &picture, &mask);
-    if (s == OK) s = (status)merlin_estimate(m, &picture, &mask, NULL, &maps);
+    status s = photo_maps(m, job->photo, job->mask, NULL, &maps);
     if (s == OK) s = overview_new(m->network, &maps, &o);
     if (s == OK) s = put_tiles(c, photo, model, &o);
     overview_free(&o);
     merlin_maps_free(&maps);
-    merlin_image_free(&picture);
-    merlin_image_free(&mask);
-    return s == OK ? OK : fail_in(s, "%s", job->photo);
+    return s;
 }
 
 /* The others' rows are worth having. */

@@ -157,14 +157,7 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
-    merlin_image photo;
-    photo_object object;
-    photo_job job = {.photo = (char *)r->input, .mask = (char *)r->mask};
-    double seconds;
-    status s = photo_read_object(&job, &photo, &object, &seconds);
-    if (s != OK) return s;
-    s = estimate_object(model, &photo, &object, &r->params, maps);
-    return s == OK ? OK : fail_in(s, "%s", r->input);
+    return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
 
 static char *choose_output(const request *r)

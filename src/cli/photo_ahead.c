@@ -4,13 +4,22 @@
 
 #include "base/progress.h"
 
+/* mask: the job's, else alpha; without data if neither. */
+static status read_both(const photo_job *job, merlin_image *photo, merlin_image *mask)
+{
+    merlin_status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);
+    if (s == MERLIN_OK && job->mask) s = merlin_mask_read(job->mask, mask);
+    if (s != MERLIN_OK) merlin_image_free(photo);
+    return (status)s;
+}
+
 status photo_read_object(const photo_job *job, merlin_image *photo, photo_object *object, double *read_seconds)
 {
     merlin_image mask = {0};
     double began = clock_seconds();
     *photo = (merlin_image){0};
     *object = (photo_object){0};
-    status s = photo_read(job, photo, &mask);
+    status s = read_both(job, photo, &mask);
     *read_seconds = clock_seconds() - began;
     if (s == OK) {
         s = photo_object_choose(photo, &mask, object);
@@ -19,6 +28,19 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
     merlin_image_free(&mask);
     if (s != OK) merlin_image_free(photo);
     return s;
+}
+
+status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
+                  merlin_maps *maps)
+{
+    photo_job job = {.photo = (char *)photo, .mask = (char *)mask};
+    merlin_image picture;
+    photo_object object;
+    double seconds;
+    status s = photo_read_object(&job, &picture, &object, &seconds);
+    if (s != OK) return s;
+    s = estimate_object(model, &picture, &object, params, maps);
+    return s == OK ? OK : fail_in(s, "%s", photo);
 }
 
 static void *read_photo(void *context)

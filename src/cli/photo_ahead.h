@@ -29,7 +29,11 @@ void photo_begin(photo_ahead *ahead, const photo_job *job);
 /* Waits. Both are the caller's then, empty after a failure. */
 status photo_finish(photo_ahead *ahead, merlin_image *photo, photo_object *object);
 
-/* photo_read and photo_object_choose without a thread. */
+/* The same without a thread. */
 status photo_read_object(const photo_job *job, merlin_image *photo, photo_object *object, double *read_seconds);
+
+/* All of it, and estimated; mask, params (the usual ones then) may be NULL. The message names the photograph. */
+status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
+                  merlin_maps *maps);
 
 #endif

@@ -192,15 +192,6 @@ status photo_list_make(char *const *arguments, int count, const char *mask, cons
     return s;
 }
 
-status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask)
-{
-    *mask = (merlin_image){0};
-    merlin_status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);
-    if (s == MERLIN_OK && job->mask) s = merlin_mask_read(job->mask, mask);
-    if (s != MERLIN_OK) merlin_image_free(photo);
-    return (status)s;
-}
-
 /* ---- options ---- */
 
 /* NAME.safetensors where the program's own weights are; *path is NULL if there is none. */

@@ -27,9 +27,6 @@ void photo_list_free(photo_list *list);
 /* name without its ending + ".merlin", malloc'ed. */
 char *photo_default_output(const char *photo);
 
-/* Reads photograph and mask (the job's, else alpha; without data if neither). */
-status photo_read(const photo_job *job, merlin_image *photo, merlin_image *mask);
-
 /* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models
  * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed.
  */

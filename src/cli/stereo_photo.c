@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "cli/photos.h"
+#include "cli/photo_ahead.h"
 #include "eval/draws.h"
 #include "eval/relit.h"
 #include "stereo/integrate.h"
@@ -22,32 +22,14 @@ typedef struct work {
     int draws;
 } work;
 
-static status estimate(work *w)
-{
-    const stereo_photo *p = w->photo;
-    merlin_image photo = {0}, mask = {0};
-    photo_job job = {.photo = (char *)p->photo, .mask = (char *)p->mask};
-    status s = photo_read(&job, &photo, &mask);
-    if (s == OK) s = (status)merlin_model_open(p->weights, &w->model);
-    if (s == OK) {
-        s = (status)merlin_estimate(w->model, &photo, &mask, &p->params, &w->maps);
-        if (s != OK) s = fail_in(s, "%s", p->photo);
-    }
-    merlin_image_free(&photo);
-    merlin_image_free(&mask);
-    return s;
-}
-
-static status read_maps(work *w)
-{
-    status s = (status)merlin_maps_read(w->photo->photo, &w->maps);
-    return s == OK ? (status)merlin_model_open(w->photo->weights, &w->model) : s;
-}
-
 static status open_photo(work *w)
 {
     const stereo_photo *p = w->photo;
-    status s = file_is_folder(p->photo) ? read_maps(w) : estimate(w);
+    status s = (status)merlin_model_open(p->weights, &w->model);
+    if (s == OK && file_is_folder(p->photo))
+        s = (status)merlin_maps_read(p->photo, &w->maps);
+    else if (s == OK)
+        s = photo_maps(w->model, p->photo, p->mask, &p->params, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

@@ -33,7 +33,7 @@ cmp -s kept.png folder/disc.hdr || complain "the photograph was replaced"
 refuses 1 'missing' photos missing --model weights.safetensors -o none.png --quiet
 refuses 1 'missing.safetensors' photos --quiet folder --model missing.safetensors -o none.png
 echo "not an image" >folder/worse.png
-refuses 1 'worse.png' photos folder --model weights.safetensors --model weights.safetensors -o rest.png --quiet
+refuses 1 '^merlin eval photos: cannot read folder/worse.png: ' photos folder --model weights.safetensors --model weights.safetensors -o rest.png --quiet
 cmp -s rest.png two.png || complain "the others' rows are not those of a folder without the bad photograph"
 rm folder/*.hdr
 refuses 1 'worse.png' photos folder --model weights.safetensors -o none.png --quiet
