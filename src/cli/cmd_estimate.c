@@ -190,10 +190,7 @@ int cmd_estimate(int argc, char **argv)
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
     if (parse(&argc, &argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
-    if (r.help) {
-        fputs(help, stdout);
-        return 0;
-    }
+    if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
     photo_list photos;
     char *weights = NULL;

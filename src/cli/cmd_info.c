@@ -135,10 +135,7 @@ static status print_json(const weights_info *info, bool tensors)
     if (tensors) add_tensors(o, info->file);
     char *text = cJSON_Print(o);
     cJSON_Delete(o);
-    if (!text) return fail(ERROR_MEMORY, "no memory for the report");
-    puts(text);
-    free(text);
-    return OK;
+    return json_report_print(text);
 }
 
 int cmd_info(int argc, char **argv)

@@ -87,9 +87,8 @@ static status check(request *r)
         return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
     if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
     if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
-    if (file_is_folder(r->input) && (r->mask || photo_params_given(&r->params)))
-        return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
-                    r->input);
+    status s = file_is_folder(r->input) ? photo_check_maps(r->input, r->mask, &r->params) : OK;
+    if (s != OK) return s;
     if (r->how == MERLIN_BY_NETWORK && stereo_maps_in(r->input))
         return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
@@ -158,15 +157,6 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
     return photo_maps(model, r->input, r->mask, &r->params, maps);
-}
-
-static char *choose_output(const request *r)
-{
-    if (r->output) return strdup(r->output);
-    char *base = file_is_folder(r->input) ? strdup(r->input) : photo_default_output(r->input);
-    char *out = base ? file_join(base, "relit") : NULL;
-    free(base);
-    return out;
 }
 
 static void print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)
@@ -238,7 +228,7 @@ static status relight(const request *r, const char *weights, const char *output)
 
 static status run(request *r)
 {
-    char *weights = NULL, *output = choose_output(r);
+    char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
     status s = output ? read_lights(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
     if (s == OK) s = photo_find_model(r->weights, &weights);

@@ -124,10 +124,7 @@ int cmd_render(int argc, char **argv)
     r.options.seed = 1;
     r.options.interrupted = cli_interrupted;
     if (parse(argc, argv, &r) != OK) return cli_usage("render", "%s", status_message());
-    if (r.help) {
-        fputs(help, stdout);
-        return 0;
-    }
+    if (r.help) return fputs(help, stdout) < 0;
     if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
     render_stats stats;

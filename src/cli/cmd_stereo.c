@@ -111,9 +111,7 @@ static status check(request *r)
     if (file_exists(r->input) && !is_capture(r) &&
         (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))
         return fail(ERROR_USAGE, "--lights, --near, --fov, --ambient and --linear are for a folder of pictures");
-    if (r->maps && (o->mask || photo_params_given(&r->params)))
-        return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
-                    r->input);
+    if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");
     return OK;
@@ -150,15 +148,6 @@ static status parse(int *argc, char ***argv, request *r)
 }
 
 /* ---- the work ---- */
-
-static char *choose_output(const request *r)
-{
-    if (r->output) return strdup(r->output);
-    char *base = file_is_folder(r->input) ? strdup(r->input) : photo_default_output(r->input);
-    char *out = base ? file_join(base, "stereo") : NULL;
-    free(base);
-    return out;
-}
 
 static status from_photo(const request *r, stereo_result *out, cJSON *report)
 {
@@ -228,7 +217,7 @@ static status run(request *r)
                     "-o %s is the folder of the pictures, where results would be taken for pictures the next "
                     "time; without it they go to stereo inside it",
                     r->output);
-    char *output = choose_output(r);
+    char *output = photo_output_inside(r->input, "stereo", r->output);
     cJSON *report = cJSON_CreateObject();
     status s = output && report ? work(r, output, report) : fail(ERROR_MEMORY, "no memory for a report");
     cJSON_Delete(report);
@@ -242,10 +231,7 @@ int cmd_stereo(int argc, char **argv)
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
     if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo", "%s", status_message());
-    if (r.help) {
-        fputs(help, stdout);
-        return 0;
-    }
+    if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
     status s = run(&r);
     return s == OK ? 0 : cli_fail("stereo", s);

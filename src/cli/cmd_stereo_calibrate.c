@@ -130,10 +130,7 @@ int stereo_calibrate(int argc, char **argv)
 {
     request r = {0};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo calibrate", "%s", status_message());
-    if (r.help) {
-        fputs(help, stdout);
-        return 0;
-    }
+    if (r.help) return fputs(help, stdout) < 0;
     status s = run(&r);
     return s == OK ? 0 : cli_fail("stereo calibrate", s);
 }

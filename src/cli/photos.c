@@ -38,6 +38,15 @@ char *photo_default_output(const char *photo)
     return format_name(photo, stem_length(photo), ".merlin");
 }
 
+char *photo_output_inside(const char *input, const char *name, const char *asked)
+{
+    if (asked) return strdup(asked);
+    char *base = file_is_folder(input) ? strdup(input) : photo_default_output(input);
+    char *out = base ? file_join(base, name) : NULL;
+    free(base);
+    return out;
+}
+
 static bool is_mask_name(const char *path)
 {
     size_t stem = stem_length(path);
@@ -249,4 +258,11 @@ bool photo_params_given(const merlin_params *params)
 {
     merlin_params usual = merlin_params_default();
     return params->size != usual.size || params->views != usual.views || params->auto_exposure != usual.auto_exposure;
+}
+
+status photo_check_maps(const char *folder, const char *mask, const merlin_params *params)
+{
+    if (!mask && !photo_params_given(params)) return OK;
+    return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
+                folder);
 }

@@ -26,6 +26,9 @@ void photo_list_free(photo_list *list);
 
 /* name without its ending + ".merlin", malloc'ed. */
 char *photo_default_output(const char *photo);
+/* Where what is made of a photograph, or of a folder, goes: asked if that is not NULL, else NAME inside the folder or
+ * inside the photograph's default output; malloc'ed. */
+char *photo_output_inside(const char *input, const char *name, const char *asked);
 
 /* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models
  * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed.
@@ -37,5 +40,7 @@ status photo_take_size(const char *text, void *into);
 status photo_take_exposure(const char *text, void *into);
 /* Whether --size, --views or --exposure ask for anything but the defaults. */
 bool photo_params_given(const merlin_params *params);
+/* ERROR_USAGE where these options go with a folder of maps, which is not estimated again; mask may be NULL. */
+status photo_check_maps(const char *folder, const char *mask, const merlin_params *params);
 
 #endif
