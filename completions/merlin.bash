@@ -17,7 +17,7 @@ _merlin() {
         ["eval solvers"]="--count --seed --size --json --quiet --help"
         ["eval photos"]="--model --output --mask --quiet --help"
         [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
-        [info]="--tensors --json --help"
+        [info]="--tensors --json --quiet --help"
     )
     local commands="estimate relight stereo render train eval bench info"
     if ((COMP_CWORD == 1)); then

@@ -10,12 +10,13 @@
 #include "model/model.h"
 #include "nn/safetensors.h"
 
-static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json]\n\n"
+static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json] [--quiet]\n\n"
                            "Says what is in a weights file, or in the shipped merlin-point or merlin-env: the model's\n"
                            "configuration, where the weights come from, their number, and what one picture of 256x256\n"
                            "costs.\n\n"
                            "      --tensors  every tensor with its type and shape\n"
                            "      --json     as JSON\n"
+                           "      --quiet    no other output than errors\n"
                            "  -h, --help     this text\n";
 
 enum { COST_SIZE = 256 };

@@ -11,6 +11,9 @@ succeeds "GMAC" "$MERLIN" info "$weights"
 succeeds "encoder.*F16 .*x3x3" "$MERLIN" info "$weights" --tensors
 succeeds '"parameters":' "$MERLIN" info "$weights" --json
 succeeds '"type":.*"F16"' "$MERLIN" info "$weights" --json --tensors
+succeeds '--quiet' "$MERLIN" info --help
+"$MERLIN" info "$weights" --quiet >"$scratch/stdout" || complain "--quiet fails"
+[[ ! -s $scratch/stdout ]] || complain "--quiet says $(cat "$scratch/stdout")"
 
 refuses 2 "one weights file" "$MERLIN" info
 refuses 2 "one weights file" "$MERLIN" info "$weights" "$weights"
