@@ -123,11 +123,10 @@ status eval_run(const eval_options *options, eval_report *out)
     char **names;
     size_t count;
     status s = options->figure ? file_check_writable(options->figure) : OK;
-    if (s == OK) s = file_list(options->data, (const char *const[]){".exr", NULL}, &names, &count);
+    if (s == OK) s = sample_list(options->data, &names, &count);
     if (s != OK) return s;
-    if (!count) s = fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin render", options->data);
     size_t used = options->count && options->count < count ? options->count : count;
-    if (s == OK) s = begin(&e, names[0]);
+    s = begin(&e, names[0]);
     if (s == OK) s = evaluate_files(&e, names, used);
     if (s == OK && e.scorer.sheet) s = eval_sheet_write(e.scorer.sheet, options->figure);
     out->seconds = clock_seconds() - started;

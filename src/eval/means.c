@@ -85,9 +85,8 @@ status eval_means_of_folder(const char *folder, size_t limit, bool quiet, eval_m
     *out = (eval_means){0};
     char **names;
     size_t count;
-    status s = file_list(folder, (const char *const[]){".exr", NULL}, &names, &count);
+    status s = sample_list(folder, &names, &count);
     if (s != OK) return s;
-    if (!count) s = fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin render", folder);
     size_t used = limit && limit < count ? limit : count;
     mean_sums sums = {0};
     progress p;

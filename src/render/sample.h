@@ -63,6 +63,9 @@ status sample_read_sh(const char *path, float sh[9][3]);
 /* Only generator_version, from the file's header. */
 status sample_read_version(const char *path, int *version);
 
+/* The paths of a folder's samples, at least one, sorted; free with file_list_free. */
+status sample_list(const char *folder, char ***paths, size_t *count);
+
 /* "folder/000123.exr", malloc'ed. */
 char *sample_path(const char *folder, uint64_t index);
 

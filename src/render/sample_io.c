@@ -314,6 +314,16 @@ status sample_read_version(const char *path, int *version)
     return st;
 }
 
+status sample_list(const char *folder, char ***paths, size_t *count)
+{
+    static const char *const endings[] = {".exr", NULL};
+    status s = file_list(folder, endings, paths, count);
+    if (s != OK || *count > 0) return s;
+    file_list_free(*paths, 0);
+    *paths = NULL;
+    return fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin render", folder);
+}
+
 char *sample_path(const char *folder, uint64_t index)
 {
     char name[32];

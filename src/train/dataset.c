@@ -31,15 +31,12 @@ struct trn_dataset {
 status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out)
 {
     *out = NULL;
-    static const char *const endings[] = {".exr", NULL};
     trn_dataset *d = calloc(1, sizeof *d);
     if (!d) return fail(ERROR_MEMORY, "out of memory opening %s", folder);
     d->options = *options;
     d->values = options->environment ? VALUES_WITH_ENVIRONMENT : VALUES;
     d->memory_limit = (size_t)(options->memory_gib * 0x1p30);
-    status s = file_list(folder, endings, &d->paths, &d->count);
-    if (s == OK && d->count == 0)
-        s = fail(ERROR_INPUT, "%s holds no .exr samples (make some with merlin render)", folder);
+    status s = sample_list(folder, &d->paths, &d->count);
     if (s == OK) {
         d->kept = calloc(d->count, sizeof *d->kept);
         if (!d->kept) s = fail(ERROR_MEMORY, "out of memory opening %s", folder);
