@@ -15,7 +15,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* "NAME_mean" and "NAME_median" of the values, which get sorted. */
+/* The values get sorted. */
 static void put_statistics(cJSON *report, const char *name, double *values, size_t count)
 {
     double sum = 0;

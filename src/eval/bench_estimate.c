@@ -18,6 +18,7 @@
 #include "base/progress.h"
 #include "eval/maps.h"
 #include "image/write.h"
+#include "model/model.h"
 #include "optics/camera.h"
 
 extern char **environ;
@@ -47,7 +48,7 @@ size_t bench_peak_resident(void)
 /* The maps of a ball of radius 0.4 about (0, 0, -1.2), with rings of two colours. */
 static void draw_ball(eval_maps *maps, img *mask)
 {
-    camera view = {PICTURE, PICTURE, 60};
+    camera view = {PICTURE, PICTURE, MODEL_FOV};
     vec3 centre = {0, 0, -1.2f};
     for (int y = 0; y < PICTURE; y++) {
         for (int x = 0; x < PICTURE; x++) {
@@ -74,7 +75,7 @@ static status write_picture(const char *path)
     s = img_new(&mask, PICTURE, PICTURE, 1);
     if (s == OK) {
         draw_ball(&maps, &mask);
-        s = eval_render(&maps, &mask, 60, 5.95f, &(illumination){{0, 0, 0}, NULL}, &picture);
+        s = eval_render(&maps, &mask, MODEL_FOV, MODEL_LIGHT_POWER, &(illumination){{0, 0, 0}, NULL}, &picture);
         if (s == OK) s = img_write_png(path, &picture, IMG_SRGB8);
     }
     img_free(&picture);

@@ -55,10 +55,9 @@ static status make_capture(const bench_stereo_report *report, const bench_stereo
                        .channels = report->channels,
                        .lighting = PST_DISTANT,
                        .intensities_known = true};
-    c->picture = calloc((size_t)run->pictures, sizeof *c->picture);
-    c->light = calloc((size_t)run->pictures, sizeof *c->light);
-    if (!c->picture || !c->light) return fail(ERROR_MEMORY, "no memory for %d pictures", run->pictures);
-    status s = img_new(&c->mask, c->width, c->height, 1);
+    status s = pst_capture_reserve(c, (size_t)run->pictures);
+    c->count = 0; /* until they are added */
+    if (s == OK) s = img_new(&c->mask, c->width, c->height, 1);
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; s == OK && i < n; i++)
         c->mask.data[i] = 1;
     for (int k = 0; k < run->pictures && s == OK; k++)

@@ -28,10 +28,16 @@ void eval_maps_free(eval_maps *maps)
     img_free(&maps->depth);
 }
 
-static void to_network_range(img *image)
+void eval_to_file_range(img *map)
 {
-    for (size_t i = 0, n = img_value_count(image); i < n; i++)
-        image->data[i] = 2 * image->data[i] - 1;
+    for (size_t i = 0, n = img_value_count(map); i < n; i++)
+        map->data[i] = (map->data[i] + 1) / 2;
+}
+
+void eval_to_network_range(img *map)
+{
+    for (size_t i = 0, n = img_value_count(map); i < n; i++)
+        map->data[i] = 2 * map->data[i] - 1;
 }
 
 status eval_maps_of_sample(const sample *s, eval_maps *out)
@@ -45,8 +51,8 @@ status eval_maps_of_sample(const sample *s, eval_maps *out)
         eval_maps_free(out);
         return st;
     }
-    to_network_range(&out->albedo);
-    to_network_range(&out->roughness);
+    eval_to_network_range(&out->albedo);
+    eval_to_network_range(&out->roughness);
     return OK;
 }
 

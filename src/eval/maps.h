@@ -23,6 +23,9 @@ typedef struct eval_maps {
 status eval_maps_new(eval_maps *out, int width, int height);
 void eval_maps_free(eval_maps *maps);
 status eval_maps_of_sample(const sample *s, eval_maps *out);
+/* An albedo's or a roughness' values from [-1, 1] to [0, 1], as files have them, and back. */
+void eval_to_file_range(img *map);
+void eval_to_network_range(img *map);
 /* Means of normals (3 channels) are shorter than 1. */
 void eval_make_unit(img *normal);
 

@@ -111,12 +111,6 @@ void eval_means_free(eval_means *means)
     eval_maps_free(&means->maps);
 }
 
-static void scale_shift(img *image, float scale, float shift)
-{
-    for (size_t i = 0, n = (size_t)image->width * (size_t)image->height * (size_t)image->channels; i < n; i++)
-        image->data[i] = scale * image->data[i] + shift;
-}
-
 enum { CHANNELS = 8 };
 
 /* The maps' channels by their names in files, for reading and writing alike. */
@@ -138,8 +132,8 @@ status eval_means_write(const eval_means *means, const char *path)
     if (s != OK) return s;
     s = img_copy(&file.roughness, &means->maps.roughness);
     if (s == OK) {
-        scale_shift(&file.albedo, 0.5f, 0.5f);
-        scale_shift(&file.roughness, 0.5f, 0.5f);
+        eval_to_file_range(&file.albedo);
+        eval_to_file_range(&file.roughness);
         exr_target targets[CHANNELS];
         exr_channel channels[CHANNELS];
         name_channels(&file, targets);
@@ -172,8 +166,8 @@ static status read_means_file(const char *path, exr_file *f, eval_means *out)
         eval_maps_free(&out->maps);
         return s;
     }
-    scale_shift(&out->maps.albedo, 2, -1);
-    scale_shift(&out->maps.roughness, 2, -1);
+    eval_to_network_range(&out->maps.albedo);
+    eval_to_network_range(&out->maps.roughness);
     out->roughness = 2 * roughness - 1;
     out->depth = depth;
     out->samples = (size_t)samples;

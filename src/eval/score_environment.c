@@ -66,12 +66,6 @@ static status render_truth(const eval_subject *on, elsewhere *out)
     return st;
 }
 
-static void to_file_range(img *image)
-{
-    for (size_t i = 0, n = (size_t)image->width * (size_t)image->height * (size_t)image->channels; i < n; i++)
-        image->data[i] = (image->data[i] + 1) / 2;
-}
-
 /* Estimated ones as merlin estimate gives them. */
 static status surface_of(const eval_maps *maps, const img *mask, bool estimated, surface *out)
 {
@@ -83,8 +77,8 @@ static status surface_of(const eval_maps *maps, const img *mask, bool estimated,
     if (s == OK) s = img_copy(&out->mask, mask);
     if (s == OK && estimated) s = smooth_estimate(out);
     if (s == OK) {
-        to_file_range(&out->albedo);
-        to_file_range(&out->roughness);
+        eval_to_file_range(&out->albedo);
+        eval_to_file_range(&out->roughness);
         surface_tidy(out);
     } else {
         surface_free(out);
