@@ -227,6 +227,12 @@ char *file_join(const char *folder, const char *name)
     return asprintf(&out, "%s%s%s", folder, between, name) < 0 ? NULL : out;
 }
 
+char *file_in_scratch(const char *name)
+{
+    const char *folder = getenv("TMPDIR");
+    return file_join(folder && *folder ? folder : "/tmp", name);
+}
+
 bool file_is_in(const char *folder, const char *name)
 {
     char *path = file_join(folder, name);

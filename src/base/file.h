@@ -55,6 +55,8 @@ bool file_is_same(const char *one, const char *other);
 status file_make_folder(const char *path);
 /* "folder/name", malloc'ed. */
 char *file_join(const char *folder, const char *name);
+/* The name in the folder for passing files, $TMPDIR, else /tmp; malloc'ed. */
+char *file_in_scratch(const char *name);
 /* Whether a name ends so (".png", in any case) behind at least one letter; any: in one of a list up to NULL. */
 bool file_ends_in(const char *name, const char *ending);
 bool file_ends_in_any(const char *name, const char *const *endings);

@@ -1,4 +1,5 @@
 /* merlin bench: what the model, the estimate and the renderer cost on this machine. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,13 +109,19 @@ static status run(const request *r, const char *weights)
 
 static status run_with_random_weights(const request *r)
 {
-    char path[] = "/tmp/merlin-bench-XXXXXX.safetensors";
+    char *path = file_in_scratch("merlin-bench-XXXXXX.safetensors");
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
     int file = mkstemps(path, (int)strlen(".safetensors"));
-    if (file < 0) return fail(ERROR_OUTPUT, "cannot make a temporary file in /tmp");
-    close(file);
-    status s = write_random_weights(r->config, path);
-    if (s == OK) s = run(r, path);
-    unlink(path);
+    status s = OK;
+    if (file < 0) {
+        s = fail(ERROR_OUTPUT, "cannot make the file %s: %s (TMPDIR says where)", path, strerror(errno));
+    } else {
+        close(file);
+        s = write_random_weights(r->config, path);
+        if (s == OK) s = run(r, path);
+        unlink(path);
+    }
+    free(path);
     return s;
 }
 

@@ -209,8 +209,7 @@ static status run_in(const char *folder, const char *program, const char *weight
 
 status bench_estimate(const char *program, const char *weights, int runs, bench_estimation *out)
 {
-    const char *where = getenv("TMPDIR");
-    char *folder = file_join(where && *where ? where : "/tmp", "merlin-bench-XXXXXX");
+    char *folder = file_in_scratch("merlin-bench-XXXXXX");
     if (!folder) return fail(ERROR_MEMORY, "no memory for a path");
     status s = OK;
     if (mkdtemp(folder)) {

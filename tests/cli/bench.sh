@@ -36,6 +36,7 @@ refuses 1 "missing/p.txt" "$MERLIN" bench --quick --quiet --profile "$scratch/mi
 refuses 2 "--batch wants" "$MERLIN" bench --batch 0
 refuses 2 "exclude each other" "$MERLIN" bench --model a --config b
 refuses 2 "unexpected argument" "$MERLIN" bench more
+TMPDIR=$scratch/missing refuses 1 "$scratch/missing/merlin-bench" "$MERLIN" bench --config "$scratch/tiny.json" --quiet
 refuses 1 "missing.json" "$MERLIN" bench --config "$scratch/missing.json" --quiet
 for bad in missing empty truncated altered; do
     refuses 1 "$bad.safetensors" "$MERLIN" bench --model "$scratch/$bad.safetensors" --quiet
