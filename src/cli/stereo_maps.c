@@ -89,7 +89,7 @@ status stereo_maps_read(const char *folder, merlin_maps *out)
     char *path = file_join(folder, "maps.exr");
     if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
     exr_file *f = NULL;
-    float focal;
+    float focal = 0;
     status s = exr_open(path, &f);
     if (s == OK) s = read_focal(f, path, &focal);
     if (s == OK) s = maps_read_layers(f, false, out);
