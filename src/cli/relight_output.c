@@ -78,7 +78,7 @@ static status relight(const relight_job *job, const stage *st, const vec3 *light
 static status make_stage(const relight_job *job, int side, bool last, stage *out)
 {
     merlin_maps *m = job->maps;
-    status s = stage_new(m, side, job->how, out);
+    status s = stage_new(job->model->network, m, side, job->how, out);
     merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
     for (int i = 0; i < 5 && last; i++)
         merlin_image_free(spent[i]);

@@ -79,6 +79,7 @@ status estimate_object(merlin_model *model, merlin_image *photo, photo_object *o
 typedef struct stage {
     surface full, low;
     img low_photo;              /* radiance */
+    network_look *look;         /* the network's at it, for the relighting decoder; else NULL */
     img flash;                  /* `low` under it, bounce 1 */
     shadow_caster caster;       /* empty unless shadows are cast */
     horizon horizon;            /* the same, and an environment was given */
@@ -88,7 +89,7 @@ typedef struct stage {
 } stage;
 
 /* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
-status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out);
+status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
 /* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
 status stage_surround(stage *s, const env_map *environment);

@@ -21,14 +21,18 @@ struct network {
     model_config config;
     nn_params *params;
     pthread_mutex_t lock; /* of the programs: a run uses their buffers */
-    compiled maps, relit, indirect;
+    compiled maps, look, relit, indirect;
     double compile_seconds;
 };
 
 /* What each program is made for; the rest of the whole network is left out of it. */
 static const char *const single_outputs[] = {"albedo",   "normal",           "roughness", "depth",
                                              "indirect", "environment_code", NULL};
-static const char *const relit_outputs[] = {"relit_direct", NULL};
+
+struct network_look {
+    img mask;
+    view_features views[NETWORK_VIEWS];
+};
 
 status network_open(const char *weights, network **out)
 {
@@ -60,6 +64,7 @@ void network_close(network *n)
 {
     if (!n) return;
     compiled_free(&n->maps);
+    compiled_free(&n->look);
     compiled_free(&n->relit);
     compiled_free(&n->indirect);
     nn_params_free(n->params);
@@ -95,7 +100,7 @@ status network_prepare(network *n, int size, int views)
         return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
                     MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, size);
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_WHOLE, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
     if (s == OK && views > 1 && n->config.global_illumination) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
@@ -134,17 +139,6 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     return OK;
 }
 
-/* The network on photograph and light in an orientation. */
-static status run_view(network *n, const img *photo, const img *mask, const illumination *light, int view,
-                       const char *const *outputs, compiled *c)
-{
-    status s = compile(n, MODEL_WHOLE, outputs, photo->width, c);
-    if (s != OK) return s;
-    view_put(c->program, 0, view, photo, mask);
-    view_put_light(c->program, &n->config, 0, view, light);
-    return nn_forward(c->program);
-}
-
 /* Albedo and roughness leave the network in [-1, 1]. */
 static status take_maps(nn_program *p, int size, surface *maps)
 {
@@ -169,9 +163,14 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    status s = run_view(n, photo, mask, &(illumination){{0, 0, 0}, NULL}, view, outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
-    if (s == OK) take_environment(n->maps.program, out->environment);
+    status s = compile(n, MODEL_MAPS, outputs, photo->width, &n->maps);
+    if (s != OK) return s;
+    nn_program *p = n->maps.program;
+    view_put(p, 0, view, photo, mask);
+    view_put_light(p, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
+    s = nn_forward(p);
+    if (s == OK) s = take_maps(p, photo->width, &out->maps);
+    if (s == OK) take_environment(p, out->environment);
     return s;
 }
 
@@ -229,30 +228,70 @@ void network_estimation_free(network_estimation *e)
     img_free(&e->indirect);
 }
 
+static status look_from(network *n, const img *photo, const img *mask, int view, view_features *out)
+{
+    status s = compile(n, MODEL_MAPS, model_features, photo->width, &n->look);
+    if (s != OK) return s;
+    view_put(n->look.program, 0, view, photo, mask);
+    s = nn_forward(n->look.program);
+    return s == OK ? view_features_take(n->look.program, &n->config, photo->width, out) : s;
+}
+
+status network_look_new(network *n, const img *photo, const img *mask, network_look **out)
+{
+    *out = NULL;
+    if (n->config.relight != MODEL_RELIGHT_NETWORK)
+        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
+    network_look *look = calloc(1, sizeof *look);
+    if (!look) return fail(ERROR_MEMORY, "no memory for what the network sees");
+    status s = img_copy(&look->mask, mask);
+    pthread_mutex_lock(&n->lock);
+    for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
+        s = look_from(n, photo, mask, view, &look->views[view]);
+    pthread_mutex_unlock(&n->lock);
+    if (s != OK)
+        network_look_free(look);
+    else
+        *out = look;
+    return s;
+}
+
+void network_look_free(network_look *look)
+{
+    if (!look) return;
+    for (int view = 0; view < NETWORK_VIEWS; view++)
+        view_features_free(&look->views[view]);
+    img_free(&look->mask);
+    free(look);
+}
+
 /* In one orientation, added to the mean. */
-static status relight_view(network *n, const img *photo, const img *mask, const illumination *light, int view,
-                           img *mean)
+static status relight_view(network *n, const network_look *look, const illumination *light, int view, img *mean)
 {
     img relit = {0};
-    status s = run_view(n, photo, mask, light, view, relit_outputs, &n->relit);
-    if (s == OK) s = take(n->relit.program, "relit_direct", photo->width, 3, 1, 0, &relit);
+    status s = compile(n, MODEL_RELIGHT, NULL, mean->width, &n->relit);
+    if (s != OK) return s;
+    nn_program *p = n->relit.program;
+    view_features_put(&look->views[view], p, 0);
+    view_put_mask(p, 0, view, &look->mask);
+    view_put_light(p, &n->config, 0, view, light);
+    s = nn_forward(p);
+    if (s == OK) s = take(p, "relit_direct", mean->width, 3, 1, 0, &relit);
     if (s == OK) view_add(mean, &relit, view, 1.0f / NETWORK_VIEWS);
     img_free(&relit);
     return s;
 }
 
-status network_relight(network *n, const img *photo, const img *mask, const illumination *light, img *direct)
+status network_relight(network *n, const network_look *look, const illumination *light, img *direct)
 {
     *direct = (img){0};
-    if (n->config.relight != MODEL_RELIGHT_NETWORK)
-        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
     if (light->sh && n->config.lighting != MODEL_LIGHT_BOTH)
         return fail(ERROR_USAGE, "model \"%s\" relights by point lights only, not by environments; relight by BRDF",
                     n->config.name);
     pthread_mutex_lock(&n->lock);
-    status s = img_new(direct, photo->width, photo->height, 3);
+    status s = img_new(direct, look->mask.width, look->mask.height, 3);
     for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
-        s = relight_view(n, photo, mask, light, view, direct);
+        s = relight_view(n, look, light, view, direct);
     pthread_mutex_unlock(&n->lock);
     if (s != OK) img_free(direct);
     return s;

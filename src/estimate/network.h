@@ -45,9 +45,15 @@ status network_estimate(network *n, const img *photo, const img *mask, int views
                         network_estimation *out);
 void network_estimation_free(network_estimation *e);
 
-/* The same photograph under other light, by the relighting decoder, the mean of NETWORK_VIEWS orientations; without
- * bounces. ERROR_USAGE if the model has none or it does not take environments. */
-status network_relight(network *n, const img *photo, const img *mask, const illumination *light, img *direct);
+/* What the relighting decoder takes of a photograph, whatever the light; as photo and mask of network_estimate.
+ * ERROR_USAGE if the model has no such decoder. */
+typedef struct network_look network_look;
+status network_look_new(network *n, const img *photo, const img *mask, network_look **out);
+void network_look_free(network_look *look);
+
+/* That photograph under other light, by the relighting decoder of the same network, the mean of NETWORK_VIEWS
+ * orientations; without bounces. ERROR_USAGE if the model does not take environments. */
+status network_relight(network *n, const network_look *look, const illumination *light, img *direct);
 
 /* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point lights and
  * `environment` (diffuse only; may be NULL) under an environment. */

@@ -42,7 +42,7 @@ static status show_reconstruction(const merlin_maps *maps, img *out)
 
 static status make(network *n, const merlin_maps *maps, overview *o)
 {
-    status s = stage_new(maps, maps->size, MERLIN_BY_BRDF, &o->stage);
+    status s = stage_new(n, maps, maps->size, MERLIN_BY_BRDF, &o->stage);
     if (s == OK && !maps->reconstruction.data)
         s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;

@@ -47,7 +47,7 @@ static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
 static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
 {
     illumination both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
-    status result = network_relight(n, &s->low_photo, &s->low.mask, &both, low);
+    status result = network_relight(n, s->look, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     if (result == OK && full->width != low->width) multiply_mask(full, &s->full.mask);
     return result;
@@ -144,7 +144,7 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const v
     if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
         return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
     stage st;
-    status s = stage_new(maps, 0, how, &st);
+    status s = stage_new(model->network, maps, 0, how, &st);
     if (s != OK) return s;
     img part = {0}, whole = {0};
     s = stage_surround(&st, environment);

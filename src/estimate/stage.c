@@ -13,6 +13,7 @@ void stage_free(stage *s)
     surface_free(&s->full);
     surface_free(&s->low);
     img_free(&s->low_photo);
+    network_look_free(s->look);
     img_free(&s->flash);
     shadow_caster_free(&s->caster);
     horizon_free(&s->horizon);
@@ -138,7 +139,7 @@ static status caster_of(const surface *low, shadow_caster *out)
     return s;
 }
 
-status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage *out)
+status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how, .white = maps->gain};
     img mask = {0};
@@ -152,6 +153,7 @@ status stage_new(const merlin_maps *maps, int side, merlin_relighting how, stage
     img_free(&mask);
     if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
     if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
+    if (s == OK && how == MERLIN_BY_NETWORK) s = network_look_new(n, &out->low_photo, &out->low.mask, &out->look);
     if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
     if (s != OK) stage_free(out);
     return s;

@@ -1,5 +1,6 @@
 #include "estimate/view.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "optics/orientation.h"
@@ -31,15 +32,20 @@ void view_put(nn_program *p, size_t slot, int view, const img *photo, const img 
     float *image = nn_input_data(p, "image") + 3 * slot * pixels;
     turn_into(photo, view, image);
     model_encode_image(image, image, 3 * pixels);
-    turn_into(mask, view, nn_input_data(p, "mask") + slot * pixels);
+    view_put_mask(p, slot, view, mask);
+}
+
+void view_put_mask(nn_program *p, size_t slot, int view, const img *mask)
+{
+    turn_into(mask, view, nn_input_data(p, "mask") + slot * pixel_count(mask));
 }
 
 void view_put_light(nn_program *p, const model_config *config, size_t slot, int view, const illumination *light)
 {
     float place[3] = {light->place.x, light->place.y, light->place.z}, sh[9][3] = {0};
     orientation_turn(view, place);
-    memcpy(nn_input_data(p, "light_position") + 3 * slot, place, sizeof place);
-    float *code = nn_input_data(p, "light");
+    float *position = nn_input_data(p, "light_position"), *code = nn_input_data(p, "light");
+    if (position) memcpy(position + 3 * slot, place, sizeof place);
     if (!code) return;
     code += slot * (size_t)model_light_size(config);
     memcpy(code, place, sizeof place);
@@ -47,6 +53,42 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
     if (light->sh) memcpy(sh, light->sh, sizeof sh);
     orientation_turn_sh(view, sh);
     model_encode_sh((const float(*)[3])sh, code + 3);
+}
+
+static size_t feature_values(const model_config *config, int feature, int size)
+{
+    int level = feature % MODEL_LEVELS;
+    size_t side = (size_t)(size >> (level + 1));
+    return side * side * (size_t)config->widths[level];
+}
+
+status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out)
+{
+    size_t total = 0;
+    view_features_free(out);
+    for (int i = 0; i < MODEL_FEATURES; i++) {
+        out->counts[i] = nn_output_data(maps, model_features[i]) ? feature_values(config, i, size) : 0;
+        total += out->counts[i];
+    }
+    float *to = out->values = malloc(total * sizeof *to);
+    if (!to) return fail(ERROR_MEMORY, "no memory for what the network sees");
+    for (int i = 0; i < MODEL_FEATURES; to += out->counts[i++])
+        if (out->counts[i]) memcpy(to, nn_output_data(maps, model_features[i]), out->counts[i] * sizeof *to);
+    return OK;
+}
+
+void view_features_put(const view_features *f, nn_program *relight, size_t slot)
+{
+    const float *from = f->values;
+    for (int i = 0; i < MODEL_FEATURES; from += f->counts[i++])
+        if (f->counts[i])
+            memcpy(nn_input_data(relight, model_features[i]) + slot * f->counts[i], from, f->counts[i] * sizeof *from);
+}
+
+void view_features_free(view_features *f)
+{
+    free(f->values);
+    *f = (view_features){0};
 }
 
 void view_add(img *mean, const img *turned, int view, float weight)

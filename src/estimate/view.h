@@ -13,11 +13,23 @@
 
 #include "estimate/network.h"
 
-/* Into picture `slot` of the inputs of a program of MODEL_WHOLE, both before every run, which may overwrite them: a
- * square photograph and its mask in this orientation (optics/orientation.h), and a light as it stands to the turned
+/* Into picture `slot` of a program's inputs, both before every run, which may overwrite them: a square photograph and
+ * its mask (or a mask alone) in this orientation (optics/orientation.h), and a light as it stands to the turned
  * photograph: the target, or for maps the flash. A model of setting A leaves surroundings out. */
 void view_put(nn_program *p, size_t slot, int view, const img *photo, const img *mask);
+void view_put_mask(nn_program *p, size_t slot, int view, const img *mask);
 void view_put_light(nn_program *p, const model_config *config, size_t slot, int view, const illumination *light);
+
+/* What the relighting decoder takes of a view (model_features), whatever the light: from picture 0 of a program of
+ * MODEL_MAPS that has run, into picture `slot` of one of MODEL_RELIGHT, before every run. What out held is freed.
+ * ERROR_MEMORY. */
+typedef struct view_features {
+    size_t counts[MODEL_FEATURES]; /* values of each; 0: the variant does without */
+    float *values;
+} view_features;
+status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out);
+void view_features_put(const view_features *f, nn_program *relight, size_t slot);
+void view_features_free(view_features *f);
 
 /* Adds weight times an image of the turned frame, turned back; of unit normals, whose sum is not unit. */
 void view_add(img *mean, const img *turned, int view, float weight);

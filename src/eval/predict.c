@@ -3,12 +3,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "estimate/view.h"
-
+enum { MOST_OUTPUTS = 8 + MODEL_FEATURES };
 static const char *const estimated[] = {"albedo",   "normal",           "roughness",   "depth", "direct",
                                         "indirect", "environment_code", "environment", NULL};
-static const char *const relit_by_both[] = {"relit_direct", "relit_brdf", NULL};
-static const char *const relit_by_network[] = {"relit_direct", NULL};
+
+/* What one of several views is asked for, and what the network's own rendering layer makes of a single one. */
+static void choose_outputs(int views, const char *names[MOST_OUTPUTS + 1])
+{
+    const char *const *lists[] = {views == 1 ? estimated : view_outputs, model_features};
+    for (int i = 0; i < 2; i++)
+        for (const char *const *name = lists[i]; *name; name++)
+            *names++ = *name;
+    *names = NULL;
+}
 
 static status build_program(eval_model *m, model_part part, int batch, const char *const *outputs, nn_type type,
                             eval_program *p)
@@ -25,13 +32,13 @@ static void free_program(eval_program *p)
     nn_graph_free(p->graph);
 }
 
-/* The network's own rendering layer shows maps of a single view only. */
 static status build_programs(eval_model *m, nn_type type)
 {
     bool single = m->views == 1;
-    status s = build_program(m, MODEL_WHOLE, 1, single ? estimated : view_outputs, type, &m->maps);
-    if (s == OK && (single || eval_model_relights(m)))
-        s = build_program(m, MODEL_WHOLE, EVAL_LIGHTS, single ? relit_by_both : relit_by_network, type, &m->relit);
+    const char *outputs[MOST_OUTPUTS + 1];
+    choose_outputs(m->views, outputs);
+    status s = build_program(m, MODEL_MAPS, 1, outputs, type, &m->maps);
+    if (s == OK && eval_model_relights(m)) s = build_program(m, MODEL_RELIGHT, EVAL_LIGHTS, NULL, type, &m->relit);
     if (s != OK || !m->config.global_illumination) return s;
     s = build_program(m, MODEL_INDIRECT, EVAL_LIGHTS, NULL, type, &m->indirect);
     if (s == OK && !single) s = build_program(m, MODEL_INDIRECT, 1, NULL, type, &m->mean_indirect);
@@ -103,6 +110,8 @@ void eval_prediction_free(eval_prediction *p)
     img_free(&p->flash);
     img_free(&p->indirect);
     img_free(&p->reconstruction);
+    for (int view = 0; view < ORIENTATIONS; view++)
+        view_features_free(&p->seen[view]);
     for (int i = 0; i < EVAL_LIGHTS; i++) {
         img_free(&p->by_network[i]);
         img_free(&p->by_brdf[i]);

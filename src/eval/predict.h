@@ -5,7 +5,7 @@
  *     eval_prediction p;
  *     if (s == OK) s = eval_prediction_new(m, &p);
  *     if (s == OK) s = eval_estimate(m, &image, &mask, &p);
- *     if (s == OK) s = eval_relight(m, &image, &mask, lights, &p);
+ *     if (s == OK) s = eval_relight(m, &mask, lights, &p);
  *     ...
  *     eval_prediction_free(&p);
  *     eval_model_close(m);
@@ -13,8 +13,10 @@
 #ifndef MERLIN_EVAL_PREDICT_H
 #define MERLIN_EVAL_PREDICT_H
 
+#include "estimate/view.h"
 #include "eval/maps.h"
 #include "model/model.h"
+#include "optics/orientation.h"
 
 enum { EVAL_LIGHTS = 4 };
 
@@ -33,6 +35,7 @@ typedef struct eval_prediction {
     img indirect;                     /* what the network adds to the flash and the surroundings */
     img reconstruction;               /* direct + indirect light, of the surroundings too */
     float sh[9][3];                   /* the surroundings as estimated, by models of setting B; else 0 */
+    view_features seen[ORIENTATIONS]; /* by the model's views, for the relighting decoder */
     img by_network[EVAL_LIGHTS];      /* the relighting decoder */
     img by_brdf[EVAL_LIGHTS];         /* the rendering layer */
     img full_by_network[EVAL_LIGHTS]; /* the same, with the light that the global-illumination network adds */
@@ -49,8 +52,7 @@ status eval_estimate(eval_model *m, const img *image, const img *mask, eval_pred
 
 /* After eval_estimate of the same picture: by_network, by_brdf, both in full. Only models of setting B relight under
  * surroundings. */
-status eval_relight(eval_model *m, const img *image, const img *mask, const illumination lights[EVAL_LIGHTS],
-                    eval_prediction *out);
+status eval_relight(eval_model *m, const img *mask, const illumination lights[EVAL_LIGHTS], eval_prediction *out);
 
 /* After eval_relight with the same lights: the cast shadows that merlin relight makes of such maps. fov in degrees. */
 status eval_relight_shadows(eval_model *m, const img *mask, float fov, const illumination lights[EVAL_LIGHTS],

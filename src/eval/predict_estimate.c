@@ -11,7 +11,8 @@ static status take(const eval_model *m, const char *name, int channels, img *out
 }
 
 /* What the network says of the picture in this orientation, as it lies there. */
-static status look(eval_model *m, const img *image, const img *mask, int view, network_estimation *out)
+static status look(eval_model *m, const img *image, const img *mask, int view, view_features *seen,
+                   network_estimation *out)
 {
     view_put(m->maps.program, 0, view, image, mask);
     view_put_light(m->maps.program, &m->config, 0, view, &(illumination){{0, 0, 0}, NULL});
@@ -20,17 +21,19 @@ static status look(eval_model *m, const img *image, const img *mask, int view, n
     if (s == OK) s = take(m, "normal", 3, &out->maps.normal);
     if (s == OK) s = take(m, "roughness", 1, &out->maps.roughness);
     if (s == OK) s = take(m, "depth", 1, &out->maps.depth);
+    if (s == OK && m->relit.program) s = view_features_take(m->maps.program, &m->config, m->size, seen);
     const float *code = nn_output_data(m->maps.program, "environment_code");
     if (code) model_decode_sh(code, out->environment);
     return s;
 }
 
-static status mean_of_views(eval_model *m, const img *image, const img *mask, network_estimation *mean)
+static status mean_of_views(eval_model *m, const img *image, const img *mask, view_features *seen,
+                            network_estimation *mean)
 {
     status s = view_mean_new(m->size, mean);
     for (int view = 0; view < m->views && s == OK; view++) {
         network_estimation turned = {0};
-        s = look(m, image, mask, view, &turned);
+        s = look(m, image, mask, view, &seen[view], &turned);
         if (s == OK) view_mean_add(mean, &turned, view, 1 / (float)m->views);
         network_estimation_free(&turned);
     }
@@ -103,7 +106,7 @@ status eval_estimate(eval_model *m, const img *image, const img *mask, eval_pred
         return fail(ERROR_INPUT, "a picture of %dx%d does not fit a model prepared for %dx%d", image->width,
                     image->height, m->size, m->size);
     network_estimation mean = {0};
-    status s = mean_of_views(m, image, mask, &mean);
+    status s = mean_of_views(m, image, mask, out->seen, &mean);
     if (s == OK) keep(&mean, out);
     network_estimation_free(&mean);
     if (s == OK) s = m->views == 1 ? show_by_network(m, mask, out) : show_by_rendering(m, mask, out);

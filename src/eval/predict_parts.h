@@ -13,7 +13,7 @@ struct eval_model {
     model_config config;
     nn_params *params;
     eval_program maps;          /* of one picture */
-    eval_program relit;         /* of EVAL_LIGHTS; empty where nothing is relit by the network */
+    eval_program relit;         /* the decoder, of EVAL_LIGHTS; empty where nothing is relit by the network */
     eval_program mean_indirect; /* of one picture, the mean of several views; empty for one view */
     eval_program indirect;      /* of EVAL_LIGHTS; both empty for a variant without global illumination */
     int size, views;

@@ -11,12 +11,6 @@ static float clip(float x)
     return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
-static void clip_image(img *image)
-{
-    for (size_t i = 0, n = (size_t)image->width * (size_t)image->height * 3; i < n; i++)
-        image->data[i] = clip(image->data[i]);
-}
-
 /* Clipped. */
 static void add(const img *direct, const img *bounces, img *out)
 {
@@ -74,13 +68,14 @@ static status add_bounces(eval_model *m, const eval_prediction *p, const img *ma
 }
 
 /* By the network, in one orientation; added to what the others say. */
-static status relight_view(eval_model *m, const img *image, const img *mask, const illumination lights[EVAL_LIGHTS],
-                           int view, eval_prediction *out)
+static status relight_view(eval_model *m, const img *mask, const illumination lights[EVAL_LIGHTS], int view,
+                           eval_prediction *out)
 {
     nn_program *p = m->relit.program;
     img relit = {0};
     for (size_t i = 0; i < EVAL_LIGHTS; i++) {
-        view_put(p, i, view, image, mask);
+        view_features_put(&out->seen[view], p, i);
+        view_put_mask(p, i, view, mask);
         view_put_light(p, &m->config, i, view, &lights[i]);
     }
     status s = nn_forward(p);
@@ -98,27 +93,20 @@ static void clear(img *image)
     memset(image->data, 0, img_value_count(image) * sizeof *image->data);
 }
 
-/* By the network, and while maps are of a single view by its rendering layer, too. */
-static status relight(eval_model *m, const img *image, const img *mask, const illumination lights[EVAL_LIGHTS],
-                      eval_prediction *out)
+static status relight(eval_model *m, const img *mask, const illumination lights[EVAL_LIGHTS], eval_prediction *out)
 {
     status s = OK;
     for (int i = 0; i < EVAL_LIGHTS; i++)
         clear(&out->by_network[i]);
     for (int view = 0; view < m->views && s == OK; view++)
-        s = relight_view(m, image, mask, lights, view, out);
-    for (size_t i = 0; i < EVAL_LIGHTS && s == OK && m->views == 1; i++) {
-        eval_take(m->relit.program, "relit_brdf", i, &out->by_brdf[i]);
-        clip_image(&out->by_brdf[i]);
-    }
+        s = relight_view(m, mask, lights, view, out);
     return s;
 }
 
-status eval_relight(eval_model *m, const img *image, const img *mask, const illumination lights[EVAL_LIGHTS],
-                    eval_prediction *out)
+status eval_relight(eval_model *m, const img *mask, const illumination lights[EVAL_LIGHTS], eval_prediction *out)
 {
-    status s = m->relit.program ? relight(m, image, mask, lights, out) : OK;
-    for (int i = 0; i < EVAL_LIGHTS && s == OK && m->views > 1; i++)
+    status s = m->relit.program ? relight(m, mask, lights, out) : OK;
+    for (int i = 0; i < EVAL_LIGHTS && s == OK; i++)
         s = eval_show(&out->maps, mask, &lights[i], &out->by_brdf[i]);
     if (s == OK) s = add_bounces(m, out, mask, out->by_brdf, out->full_by_brdf);
     if (s == OK && eval_model_relights(m)) s = add_bounces(m, out, mask, out->by_network, out->full_by_network);

@@ -32,7 +32,7 @@ status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*s
 {
     *out = (relit){0};
     stage st;
-    status s = stage_new(maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
+    status s = stage_new(model->network, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
     if (s != OK) return s;
     st.white = NEAR_CAPTURE_WHITE;
     s = relight_all(model, &st, stop, &out->capture);

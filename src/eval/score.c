@@ -59,7 +59,7 @@ void eval_repeat_trivial(eval_scores *scores, eval_row from, eval_row to)
     }
 }
 
-status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row network,
+status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row decoder,
                              eval_row brdf, const img *by_network, const img *by_brdf)
 {
     status s = OK;
@@ -67,13 +67,13 @@ status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_religh
         const img *target = &r->targets[i];
         const illumination *light = &r->lights[i];
         if (eval_model_relights(e->model))
-            s = eval_note_similarity(&on->scores, network, EVAL_MODEL, &by_network[i], target);
+            s = eval_note_similarity(&on->scores, decoder, EVAL_MODEL, &by_network[i], target);
         if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
         if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, brdf, light, target);
         if (s == OK) s = score_trivial_picture(on, &on->inflated, EVAL_INFLATED, brdf, light, target);
         if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_UNCHANGED, &on->image, target);
     }
-    eval_repeat_trivial(&on->scores, brdf, network);
+    eval_repeat_trivial(&on->scores, brdf, decoder);
     return s;
 }
 
@@ -118,7 +118,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
         r.lights[i].place = eval_light(on->sample, i);
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
-    s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
+    s = eval_relight(e->model, &on->mask, r.lights, &e->prediction);
     if (s == OK) {
         score_maps(on, &e->prediction.maps, EVAL_MODEL);
         score_maps(on, &e->means.maps, EVAL_MEAN);
@@ -178,7 +178,7 @@ static status score_traced_targets(eval_scorer *e, eval_subject *on)
         eval_relighting r;
         s = relight_by_tracing(on, first, &r);
         if (s != OK) return s;
-        s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
+        s = eval_relight(e->model, &on->mask, r.lights, &e->prediction);
         if (s == OK)
             s = eval_score_relighting(e, on, &r, EVAL_TRACED_NETWORK, EVAL_TRACED_BRDF, e->prediction.full_by_network,
                                       e->prediction.full_by_brdf);

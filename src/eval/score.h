@@ -53,7 +53,7 @@ status eval_note_similarity(eval_scores *scores, eval_row row, eval_answer answe
 /* The trivial answers know nothing of what sets the rows apart. */
 void eval_repeat_trivial(eval_scores *scores, eval_row from, eval_row to);
 /* The model's pictures (by_network may be NULL) and the trivial answers' against the targets. */
-status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row network,
+status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row decoder,
                              eval_row brdf, const img *by_network, const img *by_brdf);
 /* Of the true maps under every light of r, without shadows. */
 status eval_render_targets(const eval_subject *on, eval_relighting *r);

@@ -60,7 +60,7 @@ status eval_score_both_lights(eval_scorer *e, eval_subject *on)
     }
     status s = eval_render_targets(on, &r);
     if (s != OK) return s;
-    s = eval_relight(e->model, &on->photo, &on->mask, r.lights, &e->prediction);
+    s = eval_relight(e->model, &on->mask, r.lights, &e->prediction);
     if (s == OK)
         s = eval_score_relighting(e, on, &r, EVAL_BOTH_NETWORK, EVAL_BOTH_BRDF, e->prediction.by_network,
                                   e->prediction.by_brdf);

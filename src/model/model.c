@@ -13,6 +13,10 @@ const char *const model_losses[MODEL_LOSSES] = {
     "albedo",         "normal",  "depth",       "roughness",    "roughness_gradient", "direct",           "indirect",
     "reconstruction", "relight", "environment", "relight_brdf", "relight_ssim",       "relight_brdf_ssim"};
 
+const char *const model_features[MODEL_FEATURES + 1] = {
+    "encoder_features0",  "encoder_features1",  "encoder_features2",  "encoder_features3",  "encoder_features4",
+    "material_features0", "material_features1", "material_features2", "material_features3", NULL};
+
 typedef struct maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
 } maps;
@@ -187,6 +191,11 @@ static nn_node *render_environment(network *n, nn_node *code)
     return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
 }
 
+static void add_light(network *n)
+{
+    n->light = nn_input(n->g, "light", model_light_size(n->config), NN_VECTOR);
+}
+
 static void build_lights(network *n, model_part part)
 {
     nn_graph *g = n->g;
@@ -199,7 +208,8 @@ static void build_lights(network *n, model_part part)
     }
     first_bounce first = {n->direct, n->environment};
     if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
-    if (both || by_network) n->light = nn_input(g, "light", model_light_size(n->config), NN_VECTOR);
+    if (part == MODEL_MAPS) return;
+    if (both || by_network) add_light(n);
     if (by_network) relight_by_network(n);
     if (part == MODEL_TRAINING && by_network) return;
     n->relit_brdf = render(n, n->light_position);
@@ -220,6 +230,26 @@ static void build_network(network *n, model_part part)
     else
         material_by_four_decoders(n);
     build_lights(n, part);
+}
+
+/* Where a level of model_features is in the network, and of which level it is. */
+static nn_node **feature(network *n, int i, int *level)
+{
+    *level = i < MODEL_LEVELS ? i : i - MODEL_LEVELS;
+    return i < MODEL_LEVELS ? &n->encoder[i] : &n->material[*level];
+}
+
+static int feature_count(const model_config *config)
+{
+    if (config->relight != MODEL_RELIGHT_NETWORK) return 0;
+    return config->feature_sharing ? MODEL_FEATURES : MODEL_LEVELS;
+}
+
+static void name_features(network *n)
+{
+    int level;
+    for (int i = 0; i < feature_count(n->config); i++)
+        nn_output(n->g, *feature(n, i, &level), model_features[i]);
 }
 
 static void name_outputs(const network *n)
@@ -290,6 +320,22 @@ static status build_indirect(nn_graph *g, const model_config *config)
     return OK;
 }
 
+static status build_relighting(nn_graph *g, const model_config *config)
+{
+    if (config->relight != MODEL_RELIGHT_NETWORK)
+        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder", config->name);
+    network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
+    for (int i = 0; i < feature_count(config); i++) {
+        int level;
+        nn_node **to = feature(&n, i, &level);
+        *to = nn_compute(g, nn_input(g, model_features[i], config->widths[level], 2 << level));
+    }
+    add_light(&n);
+    relight_by_network(&n);
+    nn_output(g, n.relit_direct, "relit_direct");
+    return OK;
+}
+
 status model_build(const model_config *config, model_part part, nn_graph **out)
 {
     *out = NULL;
@@ -298,11 +344,14 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     status s = OK;
     if (part == MODEL_INDIRECT) {
         s = build_indirect(g, config);
+    } else if (part == MODEL_RELIGHT) {
+        s = build_relighting(g, config);
     } else {
         network n = {.g = g, .config = config};
         build_network(&n, part);
         name_outputs(&n);
-        if (part != MODEL_WHOLE) add_losses(&n, part);
+        if (part == MODEL_MAPS) name_features(&n);
+        if (part != MODEL_WHOLE && part != MODEL_MAPS) add_losses(&n, part);
     }
     if (s != OK) {
         nn_graph_free(g);

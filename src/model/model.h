@@ -80,13 +80,21 @@ void model_encode_image(const float *linear, float *encoded, size_t n);
 void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
 void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
 
+/* What the relighting decoder takes of a photograph, whatever the light, NULL behind: the encoder's features at levels
+ * 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant
+ * without feature sharing has no use for the latter (nn_input_data: NULL), one that relights by BRDF for any. */
+enum { MODEL_FEATURES = 2 * MODEL_LEVELS - 1 };
+extern const char *const model_features[MODEL_FEATURES + 1];
+
 typedef enum model_part {
     MODEL_WHOLE,         /* everything a photograph goes through once */
+    MODEL_MAPS,          /* the same without what depends on a new light, but with the outputs model_features */
     MODEL_TRAINING,      /* the same with losses */
     MODEL_TRAINING_BRDF, /* beside them "relight_brdf", of "relit_brdf", where "relight" is the network's */
     MODEL_TRAINING_SSIM, /* beside these "relight_ssim" and "relight_brdf_ssim", structural dissimilarity of both */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                        "mask", for both lights "environment"; output "indirect" */
+    MODEL_RELIGHT,  /* the relighting decoder alone: inputs model_features, "mask" and "light"; output "relit_direct" */
 } model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);
 

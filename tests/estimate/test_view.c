@@ -114,7 +114,10 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
-    assert_int_equal(network_relight(n, &photo, &mask, &light, &relit), OK);
+    network_look *look;
+    assert_int_equal(network_look_new(n, &photo, &mask, &look), OK);
+    assert_int_equal(network_relight(n, look, &light, &relit), OK);
+    network_look_free(look);
     for (int o = 1; o < 4; o++) {
         img turned_photo, turned_mask, other, back;
         float place[3] = {light.place.x, light.place.y, light.place.z}, turned_environment[9][3];
@@ -124,12 +127,14 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
         const illumination turned = {vec3_of(place), (const float(*)[3])turned_environment};
         turn(&photo, o, &turned_photo);
         turn(&mask, o, &turned_mask);
-        assert_int_equal(network_relight(n, &turned_photo, &turned_mask, &light, &other), OK);
+        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, &look), OK);
+        assert_int_equal(network_relight(n, look, &light, &other), OK);
         assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
         view_add(&back, &other, o, 1);
         assert_true(largest_difference(&back, &relit) > 1e-3f); /* the light stood still */
         img_free(&other);
-        assert_int_equal(network_relight(n, &turned_photo, &turned_mask, &turned, &other), OK);
+        assert_int_equal(network_relight(n, look, &turned, &other), OK);
+        network_look_free(look);
         memset(back.data, 0, img_value_count(&back) * sizeof *back.data);
         view_add(&back, &other, o, 1);
         assert_true(largest_difference(&back, &relit) < 1e-5f);

@@ -233,6 +233,67 @@ static void indirect_part_equals_the_whole_models(void **unused)
     nn_params_free(params);
 }
 
+/* The decoder for features that MODEL_MAPS gave: what the whole model makes of photograph and light at once. */
+static void relighting_part_equals_the_whole_models(const char *name)
+{
+    enum { SIZE = 64, PIXELS = SIZE * SIZE };
+    model_config c;
+    read_config(name, &c);
+    nn_params *params = NULL;
+    nn_program *programs[] = {compile(&c, MODEL_WHOLE, NN_INFER, SIZE, &params),
+                              compile(&c, MODEL_MAPS, NN_INFER, SIZE, &params)};
+    nn_program *part = compile(&c, MODEL_RELIGHT, NN_INFER, SIZE, &params);
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 3 * PIXELS; i++)
+            nn_input_data(programs[k], "image")[i] = (float)(i % 17) / 17;
+        for (int i = 0; i < PIXELS; i++)
+            nn_input_data(programs[k], "mask")[i] = nn_input_data(part, "mask")[i] = i % SIZE > SIZE / 4;
+    }
+    for (int i = 0; i < model_light_size(&c); i++)
+        nn_input_data(programs[0], "light")[i] = nn_input_data(part, "light")[i] = 0.4f - 0.1f * (float)(i % 5);
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(nn_forward(programs[k]), OK);
+    for (int k = 0; k < MODEL_FEATURES; k++) {
+        int level = k % MODEL_LEVELS, side = SIZE >> (level + 1);
+        const float *from = nn_output_data(programs[1], model_features[k]);
+        assert_true(!from == !nn_input_data(part, model_features[k]));
+        if (from)
+            memcpy(nn_input_data(part, model_features[k]), from,
+                   (size_t)(side * side * c.widths[level]) * sizeof *from);
+    }
+    assert_int_equal(nn_forward(part), OK);
+    const float *a = nn_output_data(programs[0], "relit_direct"), *b = nn_output_data(part, "relit_direct");
+    float least = 1, largest = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        assert_float_equal(a[i], b[i], 1e-5);
+        if (nn_input_data(part, "mask")[i / 3] == 0) continue;
+        least = fminf(least, a[i]);
+        largest = fmaxf(largest, a[i]);
+    }
+    assert_true(largest - least > 1e-3f);
+    assert_null(nn_output_data(programs[1], "relit_direct"));
+    nn_program_free(programs[0]), nn_program_free(programs[1]), nn_program_free(part);
+    nn_params_free(params);
+}
+
+static void relighting_parts_equal_their_models(void **unused)
+{
+    (void)unused;
+    relighting_part_equals_the_whole_models("merlin-point");
+    relighting_part_equals_the_whole_models("merlin-env");
+    relighting_part_equals_the_whole_models("table1-3"); /* without feature sharing */
+}
+
+static void models_without_the_decoder_have_no_part_for_it(void **unused)
+{
+    (void)unused;
+    model_config c;
+    nn_graph *g = NULL;
+    read_config("table1-5", &c);
+    assert_int_equal(model_build(&c, MODEL_RELIGHT, &g), ERROR_USAGE);
+    assert_null(g);
+}
+
 static void maps_stay_in_their_ranges(void **unused)
 {
     (void)unused;
@@ -281,6 +342,8 @@ int main(void)
         cmocka_unit_test(default_models_keep_the_budget),
         cmocka_unit_test(residual_blocks_begin_as_nothing),
         cmocka_unit_test(indirect_part_equals_the_whole_models),
+        cmocka_unit_test(relighting_parts_equal_their_models),
+        cmocka_unit_test(models_without_the_decoder_have_no_part_for_it),
         cmocka_unit_test(maps_stay_in_their_ranges),
         cmocka_unit_test(image_is_encoded_as_square_root),
     };
