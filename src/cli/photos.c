@@ -33,7 +33,7 @@ static char *format_name(const char *path, size_t length, const char *suffix)
     return asprintf(&out, "%.*s%s", (int)length, path, suffix) < 0 ? NULL : out;
 }
 
-char *photo_default_output(const char *photo)
+static char *default_output(const char *photo)
 {
     return format_name(photo, stem_length(photo), ".merlin");
 }
@@ -41,7 +41,7 @@ char *photo_default_output(const char *photo)
 char *photo_output_inside(const char *input, const char *name, const char *asked)
 {
     if (asked) return strdup(asked);
-    char *base = file_is_folder(input) ? strdup(input) : photo_default_output(input);
+    char *base = file_is_folder(input) ? strdup(input) : default_output(input);
     char *out = base ? file_join(base, name) : NULL;
     free(base);
     return out;

@@ -24,10 +24,8 @@ typedef struct photo_list {
 status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out);
 void photo_list_free(photo_list *list);
 
-/* name without its ending + ".merlin", malloc'ed. */
-char *photo_default_output(const char *photo);
 /* Where what is made of a photograph, or of a folder, goes: asked if that is not NULL, else NAME inside the folder or
- * inside the photograph's default output; malloc'ed. */
+ * inside the photograph's own, its name without ending + ".merlin"; malloc'ed. */
 char *photo_output_inside(const char *input, const char *name, const char *asked);
 
 /* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models

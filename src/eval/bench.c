@@ -1,6 +1,5 @@
 #include "eval/bench.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -9,11 +8,6 @@
 #include "eval/bench_time.h"
 #include "model/model.h"
 #include "render/generate.h"
-
-double bench_inference_peak(const nn_peak *peak)
-{
-    return peak->forward;
-}
 
 double bench_training_peak(const nn_peak *peak)
 {
@@ -131,7 +125,7 @@ static status measure_type(const bench_options *o, nn_type type, bench_report *o
                         .width = BENCH_TRAINING_SIZE,
                         .type = type,
                         .purpose = NN_TRAIN};
-    s = measure_network(o, o->weights, &infer, bench_inference_peak(&out->peak[type]), &out->inference[type]);
+    s = measure_network(o, o->weights, &infer, out->peak[type].forward, &out->inference[type]);
     if (s != OK) return s;
     return measure_network(o, o->weights, &train, bench_training_peak(&out->peak[type]), &out->training[type]);
 }

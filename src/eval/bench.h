@@ -27,8 +27,7 @@ typedef struct bench_network {
     size_t resident_bytes; /* the most that this process held while it ran; 0 if the system does not tell */
 } bench_network;
 
-/* The machine's peak: forward for inference, the harmonic mean of the three directions for training. */
-double bench_inference_peak(const nn_peak *peak);
+/* The machine's peak for training, the harmonic mean of the three directions; for inference it is forward's. */
 double bench_training_peak(const nn_peak *peak);
 
 typedef struct bench_report {

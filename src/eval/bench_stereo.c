@@ -105,7 +105,8 @@ status bench_stereo(const bench_stereo_options *options, bench_stereo_report *ou
     return s;
 }
 
-double bench_stereo_rate(const bench_stereo_run *run)
+/* Bytes of pictures a second. */
+static double rate(const bench_stereo_run *run)
 {
     return (double)run->input_bytes / run->seconds;
 }
@@ -122,8 +123,7 @@ void bench_stereo_print(const bench_stereo_report *r, FILE *stream)
         snprintf(what, sizeof what, "%dx%d, %d channels of 16 bits%s", r->width, r->height, r->channels,
                  run->shadows ? ", shadows" : "");
         fprintf(stream, "%-44s%9d%9.1f%9.2f%8.0f %%%15.0f MB\n", what, run->pictures, run->seconds * 1e3,
-                bench_stereo_rate(run) * 1e-9, 100 * bench_stereo_rate(run) / r->copy_rate,
-                (double)run->working_bytes * 1e-6);
+                rate(run) * 1e-9, 100 * rate(run) / r->copy_rate, (double)run->working_bytes * 1e-6);
     }
 }
 
@@ -144,8 +144,8 @@ char *bench_stereo_json(const bench_stereo_report *r)
         cJSON_AddBoolToObject(one, "shadows", run->shadows);
         cJSON_AddNumberToObject(one, "seconds", run->seconds);
         cJSON_AddNumberToObject(one, "input_bytes", (double)run->input_bytes);
-        cJSON_AddNumberToObject(one, "bytes_per_second", bench_stereo_rate(run));
-        cJSON_AddNumberToObject(one, "share_of_copy_rate", bench_stereo_rate(run) / r->copy_rate);
+        cJSON_AddNumberToObject(one, "bytes_per_second", rate(run));
+        cJSON_AddNumberToObject(one, "share_of_copy_rate", rate(run) / r->copy_rate);
         cJSON_AddNumberToObject(one, "working_bytes", (double)run->working_bytes);
     }
     char *text = cJSON_Print(o);

@@ -38,9 +38,6 @@ typedef struct bench_stereo_options {
 
 status bench_stereo(const bench_stereo_options *options, bench_stereo_report *out);
 
-/* Bytes of pictures a second. */
-double bench_stereo_rate(const bench_stereo_run *run);
-
 void bench_stereo_print(const bench_stereo_report *report, FILE *stream);
 /* malloc'ed; NULL if memory ran out. */
 char *bench_stereo_json(const bench_stereo_report *report);

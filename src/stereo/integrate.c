@@ -6,10 +6,15 @@
 #include "stereo/integrate_steps.h"
 
 static const double TOLERANCE = 1e-7;
+/* Slopes steeper than 1/this, about 87 degrees, are taken as that. */
+static const real GRAZING = (real)0.05;
+/* What keeps a pair from falling apart when nothing is known of it. */
+static const float LEAST_WEIGHT = 1e-6f;
 
 /* ---- steps between neighbours ---- */
 
-vec3 steps_normal(const integration_steps *s, int node)
+/* Zero if there is none or it is not finite. */
+static vec3 normal_at(const integration_steps *s, int node)
 {
     const float *n = s->normal->data + 3 * (size_t)s->grid.pixel[node];
     vec3 v = vec3_of(n);
@@ -25,16 +30,18 @@ static vec3 ray_of(const integration_steps *s, int node)
                      -1);
 }
 
-real steps_facing(const integration_steps *s, int node, vec3 m)
+/* cos of the angle between m and the line of sight at a node, at least GRAZING; times the ray's length. */
+static real facing_at(const integration_steps *s, int node, vec3 m)
 {
     vec3 ray = ray_of(s, node);
-    real length = vec3_length(ray), facing = -vec3_dot(m, ray), least = STEPS_GRAZING * length * vec3_length(m);
+    real length = vec3_length(ray), facing = -vec3_dot(m, ray), least = GRAZING * length * vec3_length(m);
     return facing > least ? facing : least;
 }
 
-real steps_between(const integration_steps *s, int direction, int to, vec3 m)
+/* x[to] − x[from] for `to` the next of `from` in the direction, along a chord perpendicular to m (not zero). */
+static real step_to(const integration_steps *s, int direction, int to, vec3 m)
 {
-    real across = direction == 0 ? m.x : -m.y, step = across / steps_facing(s, to, m);
+    real across = direction == 0 ? m.x : -m.y, step = across / facing_at(s, to, m);
     if (!s->camera.perspective) return step;
     step /= s->camera.focal;
     return log1p(step > (real)-0.9 ? step : (real)-0.9);
@@ -42,7 +49,7 @@ real steps_between(const integration_steps *s, int direction, int to, vec3 m)
 
 /* The chord of a circular arc is perpendicular to the sum of the normals at its ends, so planes and spheres come out
  * exact. An error of the normal's angle changes the slope by 1/cos² of it: hence cos⁴ as weight. */
-void steps_least_squares(integration_steps *s)
+static void weigh_by_facing(integration_steps *s)
 {
     poisson_grid *g = &s->grid;
     for (int k = 0; k < 2; k++) {
@@ -50,11 +57,11 @@ void steps_least_squares(integration_steps *s)
         for (int i = 0; i < g->count; i++) {
             int to = g->next[k][i];
             if (to < 0) continue;
-            vec3 m = vec3_normalize(vec3_add(steps_normal(s, i), steps_normal(s, to)));
+            vec3 m = vec3_normalize(vec3_add(normal_at(s, i), normal_at(s, to)));
             bool known = vec3_dot(m, m) > 0;
-            real facing = known ? steps_facing(s, to, m) : 0, square = facing * facing;
-            g->target[k][i] = known ? (float)steps_between(s, k, to, m) : 0;
-            g->weight[k][i] = known ? (float)(square * square) : STEPS_LEAST_WEIGHT;
+            real facing = known ? facing_at(s, to, m) : 0, square = facing * facing;
+            g->target[k][i] = known ? (float)step_to(s, k, to, m) : 0;
+            g->weight[k][i] = known ? (float)(square * square) : LEAST_WEIGHT;
         }
     }
 }
@@ -144,7 +151,7 @@ static status solve(integration_steps *s, const pst_integration *o, int *piece, 
     int *held = calloc((size_t)pieces, sizeof *held);
     if (!held) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", s->grid.count);
     anchor(s, o, piece, held);
-    steps_least_squares(s);
+    weigh_by_facing(s);
     poisson_solver *solver;
     result = poisson_solver_new(&s->grid, &solver);
     bool stepped = o->preserve_edges && o->from_prior && has_prior(o);
