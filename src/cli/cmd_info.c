@@ -1,7 +1,6 @@
 /* merlin info: what is in a weights file. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/json_line.h"

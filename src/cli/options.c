@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
 #include "cli/cli.h"

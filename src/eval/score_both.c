@@ -1,6 +1,5 @@
 /* Setting B: photographs by flash in surroundings, and relighting under both. */
 #include <math.h>
-#include <string.h>
 
 #include "eval/score.h"
 #include "optics/sh.h"

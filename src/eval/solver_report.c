@@ -1,6 +1,5 @@
 /* solver_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
-#include <math.h>
 
 #include "eval/solver_table.h"
 

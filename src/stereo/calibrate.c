@@ -1,9 +1,7 @@
 #include "stereo/calibrate.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "image/read.h"
 #include "stereo/calibrate_parts.h"
 #include "stereo/capture_parts.h"
 

@@ -1,7 +1,6 @@
 #include "stereo/fall_off.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Normal (two angles), albedo, gloss, sharpness; then depth. */
 enum { SURFACE = 5, UNKNOWNS = SURFACE + 1 };

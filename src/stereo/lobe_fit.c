@@ -6,7 +6,6 @@
 #include "stereo/lobe_fit.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "stereo/solve_parts.h"
 

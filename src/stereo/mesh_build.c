@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Neighbours whose depths differ by more than this many pixel sizes (a slope of 84 degrees) are not joined. */
 static const float JUMP = 10;

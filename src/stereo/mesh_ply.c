@@ -1,6 +1,5 @@
 /* PLY, binary little-endian, with normals and vertex colours. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"

@@ -1,5 +1,4 @@
 #include <stdlib.h>
-#include <string.h>
 
 #include "stereo/poisson.h"
 #include "stereo/poisson_level.h"

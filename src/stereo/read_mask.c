@@ -1,5 +1,4 @@
 #include <stdlib.h>
-#include <string.h>
 
 #include "image/read.h"
 #include "stereo/capture_parts.h"
