@@ -111,5 +111,5 @@ static void copy_row(const void *context, int y, void *codes)
 
 status canvas_write(const canvas *c, const char *path)
 {
-    return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, copy_row, c});
+    return codes_write_png(path, &(code_rows){c->width, c->height, 3, false, true, copy_row, c});
 }

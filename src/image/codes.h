@@ -7,10 +7,10 @@
 #include "base/status.h"
 
 /* A picture whose rows are asked for one by one, in any order and by several threads: what 8 or 16 bits (wide) a code
- * of row y are. */
+ * of row y are, and whether they are sRGB's, which the file then says. */
 typedef struct code_rows {
     int width, height, channels;
-    bool wide;
+    bool wide, srgb;
     void (*row)(const void *context, int y, void *codes);
     const void *context;
 } code_rows;

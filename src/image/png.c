@@ -9,8 +9,8 @@
 #include "base/file.h"
 #include "image/codes.h"
 
-/* Bytes of signature and header, of a chunk without content, and before its content. */
-enum { HEAD = 8 + 25, CHUNK = 12, CHUNK_CONTENT = 8 };
+/* Bytes of a chunk without content, before its content, and of signature, header and colour space. */
+enum { CHUNK = 12, CHUNK_CONTENT = 8, HEAD = 8 + CHUNK + 13 + CHUNK + 1 };
 enum { SUB = 1, LEVEL = 3 };
 
 static uint8_t *put_number(uint8_t *to, uint32_t number)
@@ -38,7 +38,9 @@ static uint8_t *put_head(uint8_t *to, const code_rows *p)
     h[0] = p->wide ? 16 : 8;
     h[1] = p->channels == 3 ? 2 : 0; /* RGB or grey */
     memcpy(to, signature, sizeof signature);
-    return put_chunk(to + sizeof signature, "IHDR", header, sizeof header);
+    to = put_chunk(to + sizeof signature, "IHDR", header, sizeof header);
+    static const uint8_t perceptual = 0;
+    return p->srgb ? put_chunk(to, "sRGB", &perceptual, 1) : to;
 }
 
 /* A row as big-endian bytes, each less the one of the pixel before. */

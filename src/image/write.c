@@ -66,7 +66,8 @@ status img_write_png_changed(const char *path, const img *image, img_encoding en
     if (!image->data || (image->channels != 1 && image->channels != 3))
         return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
     encoding_job job = {image, encoding, change, context};
-    code_rows rows = {image->width, image->height, image->channels, encoding == IMG_LINEAR16, encode_row, &job};
+    code_rows rows = {image->width, image->height, image->channels, encoding == IMG_LINEAR16, encoding == IMG_SRGB8,
+                      encode_row,   &job};
     return codes_write_png(path, &rows);
 }
 

@@ -1,4 +1,6 @@
 #include <math.h>
+#include <png.h>
+#include <stdio.h>
 #include <vips/vips.h>
 
 #include "image/figure.h"
@@ -37,6 +39,35 @@ static int header(const char *path, const char *field)
     if (vips_image_get_int(image, field, &value)) value = -1;
     g_object_unref(image);
     return value;
+}
+
+/* What libpng sees: the colour space that a file of this encoding names. */
+static bool says_srgb(img_encoding encoding)
+{
+    img image = make(5, 3, 3);
+    const char *path = scratch_path("named.png");
+    assert_int_equal(img_write_png(path, &image, encoding), OK);
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, f);
+    png_read_png(png, info, PNG_TRANSFORM_IDENTITY, NULL);
+    int intent = -1;
+    bool named = png_get_sRGB(png, info, &intent) == PNG_INFO_sRGB;
+    assert_true(!named || intent == PNG_sRGB_INTENT_PERCEPTUAL);
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(f);
+    img_free(&image);
+    return named;
+}
+
+static void pictures_name_their_colour_space(void **state)
+{
+    (void)state;
+    assert_true(says_srgb(IMG_SRGB8));
+    assert_false(says_srgb(IMG_LINEAR8));
+    assert_false(says_srgb(IMG_LINEAR16));
 }
 
 static void animations_loop_with_their_frames_and_delays(void **state)
@@ -205,6 +236,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(srgb_formula_inverts_itself),
+        cmocka_unit_test(pictures_name_their_colour_space),
         cmocka_unit_test(animations_loop_with_their_frames_and_delays),
         cmocka_unit_test(failed_writes_leave_nothing_and_say_where),
         cmocka_unit_test(sheet_shows_its_tiles_where_they_belong),
