@@ -139,6 +139,16 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     return OK;
 }
 
+/* The network on a photograph by its flash, in an orientation. */
+static status run_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs, compiled *c)
+{
+    status s = compile(n, MODEL_MAPS, outputs, photo->width, c);
+    if (s != OK) return s;
+    view_put(c->program, 0, view, photo, mask);
+    view_put_light(c->program, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
+    return nn_forward(c->program);
+}
+
 /* Albedo and roughness leave the network in [-1, 1]. */
 static status take_maps(nn_program *p, int size, surface *maps)
 {
@@ -163,14 +173,9 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    status s = compile(n, MODEL_MAPS, outputs, photo->width, &n->maps);
-    if (s != OK) return s;
-    nn_program *p = n->maps.program;
-    view_put(p, 0, view, photo, mask);
-    view_put_light(p, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
-    s = nn_forward(p);
-    if (s == OK) s = take_maps(p, photo->width, &out->maps);
-    if (s == OK) take_environment(p, out->environment);
+    status s = run_view(n, photo, mask, view, outputs, &n->maps);
+    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
+    if (s == OK) take_environment(n->maps.program, out->environment);
     return s;
 }
 
@@ -230,10 +235,7 @@ void network_estimation_free(network_estimation *e)
 
 static status look_from(network *n, const img *photo, const img *mask, int view, view_features *out)
 {
-    status s = compile(n, MODEL_MAPS, model_features, photo->width, &n->look);
-    if (s != OK) return s;
-    view_put(n->look.program, 0, view, photo, mask);
-    s = nn_forward(n->look.program);
+    status s = run_view(n, photo, mask, view, model_features, &n->look);
     return s == OK ? view_features_take(n->look.program, &n->config, photo->width, out) : s;
 }
 

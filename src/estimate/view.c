@@ -55,19 +55,12 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
     model_encode_sh((const float(*)[3])sh, code + 3);
 }
 
-static size_t feature_values(const model_config *config, int feature, int size)
-{
-    int level = feature % MODEL_LEVELS;
-    size_t side = (size_t)(size >> (level + 1));
-    return side * side * (size_t)config->widths[level];
-}
-
 status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out)
 {
     size_t total = 0;
     view_features_free(out);
     for (int i = 0; i < MODEL_FEATURES; i++) {
-        out->counts[i] = nn_output_data(maps, model_features[i]) ? feature_values(config, i, size) : 0;
+        out->counts[i] = nn_output_data(maps, model_features[i]) ? model_feature_values(config, i, size) : 0;
         total += out->counts[i];
     }
     float *to = out->values = malloc(total * sizeof *to);

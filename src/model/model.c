@@ -232,11 +232,22 @@ static void build_network(network *n, model_part part)
     build_lights(n, part);
 }
 
-/* Where a level of model_features is in the network, and of which level it is. */
-static nn_node **feature(network *n, int i, int *level)
+static int feature_level(int feature)
 {
-    *level = i < MODEL_LEVELS ? i : i - MODEL_LEVELS;
-    return i < MODEL_LEVELS ? &n->encoder[i] : &n->material[*level];
+    return feature % MODEL_LEVELS;
+}
+
+/* Where one of model_features is in the network. */
+static nn_node **feature_node(network *n, int feature)
+{
+    return feature < MODEL_LEVELS ? &n->encoder[feature] : &n->material[feature_level(feature)];
+}
+
+size_t model_feature_values(const model_config *config, int feature, int size)
+{
+    int level = feature_level(feature);
+    size_t side = (size_t)(size >> (level + 1));
+    return side * side * (size_t)config->widths[level];
 }
 
 static int feature_count(const model_config *config)
@@ -247,9 +258,8 @@ static int feature_count(const model_config *config)
 
 static void name_features(network *n)
 {
-    int level;
     for (int i = 0; i < feature_count(n->config); i++)
-        nn_output(n->g, *feature(n, i, &level), model_features[i]);
+        nn_output(n->g, *feature_node(n, i), model_features[i]);
 }
 
 static void name_outputs(const network *n)
@@ -326,9 +336,8 @@ static status build_relighting(nn_graph *g, const model_config *config)
         return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder", config->name);
     network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
     for (int i = 0; i < feature_count(config); i++) {
-        int level;
-        nn_node **to = feature(&n, i, &level);
-        *to = nn_compute(g, nn_input(g, model_features[i], config->widths[level], 2 << level));
+        int level = feature_level(i);
+        *feature_node(&n, i) = nn_compute(g, nn_input(g, model_features[i], config->widths[level], 2 << level));
     }
     add_light(&n);
     relight_by_network(&n);

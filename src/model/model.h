@@ -85,13 +85,15 @@ void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
  * without feature sharing has no use for the latter (nn_input_data: NULL), one that relights by BRDF for any. */
 enum { MODEL_FEATURES = 2 * MODEL_LEVELS - 1 };
 extern const char *const model_features[MODEL_FEATURES + 1];
+/* Values of one of them, of a picture of size × size. */
+size_t model_feature_values(const model_config *config, int feature, int size);
 
 typedef enum model_part {
     MODEL_WHOLE,         /* everything a photograph goes through once */
-    MODEL_MAPS,          /* the same without what depends on a new light, but with the outputs model_features */
     MODEL_TRAINING,      /* the same with losses */
     MODEL_TRAINING_BRDF, /* beside them "relight_brdf", of "relit_brdf", where "relight" is the network's */
     MODEL_TRAINING_SSIM, /* beside these "relight_ssim" and "relight_brdf_ssim", structural dissimilarity of both */
+    MODEL_MAPS,          /* MODEL_WHOLE without what depends on a new light, but with the outputs model_features */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                        "mask", for both lights "environment"; output "indirect" */
     MODEL_RELIGHT,  /* the relighting decoder alone: inputs model_features, "mask" and "light"; output "relit_direct" */
