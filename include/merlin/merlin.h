@@ -155,6 +155,19 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
                                          const merlin_environment *environment, const float *light,
                                          merlin_relighting how, merlin_image *out);
 
+/* Maps made ready once for many lights, which each take a fraction of the time then. */
+typedef struct merlin_stage merlin_stage;
+
+/* side: pixels a side of the pictures, which show the square `crop`; 0: as many as it has in the photograph. The maps
+ * may be freed afterwards; the model must outlive the stage. */
+merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
+                               merlin_stage **out);
+/* The square under a point light (or NULL), in surroundings (or NULL), or both: side x side, 3 channels in [0, 1], zero
+ * beside the object. One thread at a time for a stage. */
+merlin_status merlin_stage_relight(merlin_stage *stage, const float *light, const merlin_environment *environment,
+                                   merlin_image *out);
+void merlin_stage_free(merlin_stage *stage);
+
 #ifdef __cplusplus
 }
 #endif

@@ -13,6 +13,7 @@
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 #include "cli/stereo_maps.h"
+#include "estimate/api.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -231,6 +232,7 @@ static status run(request *r)
     char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
     status s = output ? read_lights(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
+    if (s == OK && r->env) s = stage_check(r->how, r->lights.count > 0);
     if (s == OK) s = photo_find_model(r->weights, &weights);
     if (s == OK) s = relight(r, weights, output);
     free(weights);

@@ -67,20 +67,8 @@ static status sheet_add(sheet *s, const img *picture, const char *label)
 
 static status relight(const relight_job *job, const stage *st, const vec3 *light, img *out)
 {
-    network *n = job->model->network;
-    status s = light ? stage_relight(n, st, *light, out) : stage_relight_environment(n, st, out);
+    status s = stage_relight(job->model->network, st, light, out);
     progress_update(job->progress, job->progress->done + 1, NULL);
-    return s;
-}
-
-/* side as in stage_new; last: no other stage follows. */
-static status make_stage(const relight_job *job, int side, bool last, stage *out)
-{
-    merlin_maps *m = job->maps;
-    status s = stage_new(job->model->network, m, side, job->how, out);
-    merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
-    for (int i = 0; i < 5 && last; i++)
-        merlin_image_free(spent[i]);
     return s;
 }
 
@@ -117,22 +105,18 @@ static status write_light(const relight_job *job, const stage *st, const staging
     return s;
 }
 
-static status write_lights(const relight_job *job, const staging *t)
+static status write_lights(const relight_job *job, stage *st, const staging *t)
 {
     size_t count = job->lights.count;
     if (count == 0 && !job->environment) return OK;
-    stage st;
-    status s = make_stage(job, 0, job->dome == 0 && job->orbit == 0, &st);
-    if (s != OK) return s;
     sheet all = {.count = 0};
-    if (job->environment) s = stage_surround(&st, &job->environment->map);
-    if (s == OK && count == 0) s = write_light(job, &st, t, &(picture){"relit", 0, NULL}, &all);
+    status s = job->environment ? stage_surround(st, &job->environment->map) : OK;
+    if (s == OK && count == 0) s = write_light(job, st, t, &(picture){"relit", 0, NULL}, &all);
     for (size_t i = 0; i < count && s == OK; i++)
         s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
-                         : write_light(job, &st, t, &(picture){"relit", i, &job->lights.at[i]}, &all);
+                         : write_light(job, st, t, &(picture){"relit", i, &job->lights.at[i]}, &all);
     if (s == OK) s = sheet_write(&all, t, "relit.png");
     sheet_free(&all);
-    stage_free(&st);
     return s;
 }
 
@@ -170,21 +154,17 @@ static status write_dome_mask(const relight_job *job, const staging *t)
     return img_write_png(staging_path(t, "mask.png", path), &mask, IMG_LINEAR8);
 }
 
-static status write_dome(const relight_job *job, const staging *t)
+static status write_dome(const relight_job *job, const stage *st, const staging *t)
 {
     if (job->dome == 0) return OK;
-    stage st;
-    status s = make_stage(job, 0, job->orbit == 0, &st);
-    if (s != OK) return s;
+    status s = OK;
     for (int i = 0; i < job->dome && s == OK; i++) {
         vec3 light = dome_light(i, job->dome);
         s = stopped(job) ? fail(ERROR_STOPPED, "stopped")
-                         : write_light(job, &st, t, &(picture){"dome", (size_t)i, &light}, NULL);
+                         : write_light(job, st, t, &(picture){"dome", (size_t)i, &light}, NULL);
     }
     if (s == OK) s = write_dome_mask(job, t);
-    if (s == OK && job->lp) s = write_lp(job, t);
-    stage_free(&st);
-    return s;
+    return s == OK && job->lp ? write_lp(job, t) : s;
 }
 
 /* ---- an orbit, in the square ---- */
@@ -241,30 +221,60 @@ static status write_frames(const relight_job *job, stage *st, const staging *t, 
     return s;
 }
 
-static status write_orbit(const relight_job *job, const staging *t)
+static status write_orbit(const relight_job *job, stage *st, const staging *t)
 {
     if (job->orbit == 0) return OK;
-    int side = job->maps->crop.side < USUAL_FRAME ? job->maps->crop.side : USUAL_FRAME;
-    if (job->frame) side = job->frame;
     img *frames = calloc((size_t)job->orbit, sizeof *frames);
     if (!frames) return fail(ERROR_MEMORY, "no memory for %d frames", job->orbit);
-    stage st;
-    status s = make_stage(job, side, true, &st);
-    if (s == OK) {
-        s = write_frames(job, &st, t, frames);
-        if (s == OK) s = write_animations(job, t, frames);
-        stage_free(&st);
-    }
+    status s = write_frames(job, st, t, frames);
+    if (s == OK) s = write_animations(job, t, frames);
     for (int i = 0; i < job->orbit; i++)
         img_free(&frames[i]);
     free(frames);
     return s;
 }
 
+/* ---- all of them ---- */
+
+static size_t count_whole(const relight_job *job)
+{
+    size_t lights = job->lights.count > 0 ? job->lights.count : job->environment != NULL;
+    return lights + (size_t)job->dome;
+}
+
 size_t relight_count(const relight_job *job)
 {
-    size_t in_the_photograph = job->lights.count > 0 ? job->lights.count : job->environment != NULL;
-    return in_the_photograph + (size_t)job->dome + (size_t)job->orbit;
+    return count_whole(job) + (size_t)job->orbit;
+}
+
+static int frame_side(const relight_job *job)
+{
+    int crop = job->maps->crop.side;
+    return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
+}
+
+/* What the stage has taken over. */
+static void let_go(merlin_maps *m)
+{
+    merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
+    for (size_t i = 0; i < sizeof spent / sizeof spent[0]; i++)
+        merlin_image_free(spent[i]);
+}
+
+static status write_all(const relight_job *job, const staging *t)
+{
+    bool whole = count_whole(job) > 0, both = whole && job->orbit > 0;
+    stage st;
+    status s = stage_new(job->model->network, job->maps, whole ? 0 : frame_side(job), job->how, &st);
+    if (s != OK) return s;
+    if (!both) let_go(job->maps);
+    s = write_lights(job, &st, t);
+    if (s == OK) s = write_dome(job, &st, t);
+    if (s == OK && both) s = stage_resize(&st, job->maps, frame_side(job));
+    if (both) let_go(job->maps);
+    if (s == OK) s = write_orbit(job, &st, t);
+    stage_free(&st);
+    return s;
 }
 
 status relight_output(const relight_job *job, staged_files *written)
@@ -272,9 +282,7 @@ status relight_output(const relight_job *job, staged_files *written)
     staging *t;
     status s = staging_begin(job->output, job->inputs, &t);
     if (s != OK) return s;
-    s = write_lights(job, t);
-    if (s == OK) s = write_dome(job, t);
-    if (s == OK) s = write_orbit(job, t);
+    s = write_all(job, t);
     if (s == OK && stopped(job)) s = fail(ERROR_STOPPED, "stopped");
     return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }

@@ -91,12 +91,15 @@ typedef struct stage {
 /* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
+/* Another side for what follows. After a failure the stage is good for nothing but stage_free. */
+status stage_resize(stage *s, const merlin_maps *maps, int side);
 /* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
 status stage_surround(stage *s, const env_map *environment);
-/* The square under a point light and the stage's environment, bounces included: 3 channels in [0, 1] of `white`. */
-status stage_relight(network *n, const stage *s, vec3 light, img *out);
-/* Under its environment alone, which it must have. */
-status stage_relight_environment(network *n, const stage *s, img *out);
+/* ERROR_USAGE for a way of relighting that does not exist, or that wants a point light where there is none. */
+status stage_check(merlin_relighting how, bool light);
+/* The square under a point light (NULL: none) and the stage's environment, one of them at least and as stage_check
+ * wants it, bounces included: 3 channels in [0, 1] of `white`. */
+status stage_relight(network *n, const stage *s, const vec3 *light, img *out);
 
 /* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
 typedef struct maps_output {

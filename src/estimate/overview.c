@@ -56,8 +56,8 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
     if (s == OK) s = show_reconstruction(maps, &o->reconstruction);
-    if (s == OK) s = stage_relight(n, &o->stage, from_left, &o->left);
-    if (s == OK) s = stage_relight(n, &o->stage, from_right, &o->right);
+    if (s == OK) s = stage_relight(n, &o->stage, &from_left, &o->left);
+    if (s == OK) s = stage_relight(n, &o->stage, &from_right, &o->right);
     return s;
 }
 

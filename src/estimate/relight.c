@@ -1,4 +1,4 @@
-/* merlin_relight and merlin_relight_environment: maps under other light. */
+/* A stage under light. */
 #include <math.h>
 #include <stdbool.h>
 
@@ -106,8 +106,15 @@ static status dark(const stage *s, img *full, img *low)
     return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
 }
 
-/* light NULL: no point light. */
-static status relight(network *n, const stage *s, const vec3 *light, img *out)
+status stage_check(merlin_relighting how, bool light)
+{
+    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
+        return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
+    if (how != MERLIN_BY_NETWORK || light) return OK;
+    return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
+}
+
+status stage_relight(network *n, const stage *s, const vec3 *light, img *out)
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
@@ -123,70 +130,4 @@ static status relight(network *n, const stage *s, const vec3 *light, img *out)
     img_free(&ambient);
     if (result != OK) img_free(out);
     return result;
-}
-
-status stage_relight(network *n, const stage *s, vec3 light, img *out)
-{
-    return relight(n, s, &light, out);
-}
-
-status stage_relight_environment(network *n, const stage *s, img *out)
-{
-    if (s->how == MERLIN_BY_NETWORK)
-        return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
-    return relight(n, s, NULL, out);
-}
-
-/* In the photograph's frame, under the point light, the environment, or both. */
-static status relight_maps(merlin_model *model, const merlin_maps *maps, const vec3 *light, const env_map *environment,
-                           merlin_relighting how, merlin_image *out)
-{
-    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
-        return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
-    stage st;
-    status s = stage_new(model->network, maps, 0, how, &st);
-    if (s != OK) return s;
-    img part = {0}, whole = {0};
-    s = stage_surround(&st, environment);
-    if (s == OK)
-        s = light ? stage_relight(model->network, &st, *light, &part)
-                  : stage_relight_environment(model->network, &st, &part);
-    img mask = st.full.mask;
-    st.full.mask = (img){0};
-    stage_free(&st);
-    if (s == OK) s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
-    if (s == OK) crop_put(&part, crop_of(maps), &mask, &whole);
-    img_free(&mask);
-    img_free(&part);
-    *out = image_of(&whole);
-    return s;
-}
-
-static status check_light(const float light[3])
-{
-    if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
-    return fail(ERROR_USAGE, "the light's position is not finite");
-}
-
-merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
-                             merlin_image *out)
-{
-    if (out) *out = (merlin_image){0};
-    status s = api_needs(__func__, model && maps && light && out);
-    if (s != OK) return result_of(s);
-    vec3 place = vec3_of(light);
-    s = check_light(light);
-    return result_of(s == OK ? relight_maps(model, maps, &place, NULL, how, out) : s);
-}
-
-merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
-                                         const float *light, merlin_relighting how, merlin_image *out)
-{
-    if (out) *out = (merlin_image){0};
-    status s = api_needs(__func__, model && maps && env && out);
-    if (s != OK) return result_of(s);
-    s = light ? check_light(light) : OK;
-    if (s != OK) return result_of(s);
-    vec3 place = light ? vec3_of(light) : vec3_make(0, 0, 0);
-    return result_of(relight_maps(model, maps, light ? &place : NULL, &env->map, how, out));
 }

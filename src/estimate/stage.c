@@ -139,22 +139,36 @@ static status caster_of(const surface *low, shadow_caster *out)
     return s;
 }
 
+status stage_resize(stage *s, const merlin_maps *maps, int side)
+{
+    surface_free(&s->full);
+    status result = maps_check(maps);
+    if (result != OK) return result;
+    if (side == 0 || side == maps->crop.side) return crop_surface(maps, &s->full);
+    img mask = {0};
+    result = take_mask(maps, &mask);
+    if (result == OK) result = take_surface(maps, &mask, side, false, &s->full);
+    img_free(&mask);
+    return result;
+}
+
+/* What the network saw, and what every light wants of it. */
+static status take_low(network *n, const merlin_maps *maps, stage *s)
+{
+    status result = maps_surface(maps, maps->size, &s->low);
+    if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
+    if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
+    if (result == OK && s->how == MERLIN_BY_NETWORK)
+        result = network_look_new(n, &s->low_photo, &s->low.mask, &s->look);
+    if (result == OK && s->how == MERLIN_BY_BRDF) result = caster_of(&s->low, &s->caster);
+    return result;
+}
+
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how, .white = maps->gain};
-    img mask = {0};
-    status s = maps_check(maps);
-    if (s == OK) s = take_mask(maps, &mask);
-    if (s == OK) s = take_surface(maps, &mask, maps->size, true, &out->low);
-    if (s == OK && side != 0 && side != maps->crop.side)
-        s = take_surface(maps, &mask, side, false, &out->full);
-    else if (s == OK)
-        s = crop_surface(maps, &out->full);
-    img_free(&mask);
-    if (s == OK) s = take_low_photo(maps, &out->low.mask, &out->low_photo);
-    if (s == OK) s = surface_shade(&out->low, vec3_make(0, 0, 0), &out->flash);
-    if (s == OK && how == MERLIN_BY_NETWORK) s = network_look_new(n, &out->low_photo, &out->low.mask, &out->look);
-    if (s == OK && how == MERLIN_BY_BRDF) s = caster_of(&out->low, &out->caster);
+    status s = take_low(n, maps, out);
+    if (s == OK) s = stage_resize(out, maps, side);
     if (s != OK) stage_free(out);
     return s;
 }

@@ -176,6 +176,94 @@ static void relighting_decoder_takes_both_lights_if_it_learned_them(void **state
     merlin_environment_free(room);
 }
 
+/* The square of a picture in the photograph's frame. */
+static void assert_shows_the_square(const fixture *f, const merlin_image *square, const merlin_image *whole)
+{
+    int side = f->maps.crop.side;
+    assert_int_equal(square->width, side);
+    assert_int_equal(square->height, side);
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            int u = x - f->maps.crop.x, v = y - f->maps.crop.y;
+            if (u < 0 || v < 0 || u >= side || v >= side || f->mask.data[y * SIDE + x] == 0) continue;
+            assert_memory_equal(whole->data + 3 * (y * SIDE + x), square->data + 3 * (v * side + u), 3 * sizeof(float));
+        }
+    }
+}
+
+static void stage_serves_many_lights(void **state)
+{
+    fixture *f = *state;
+    const float lights[3][3] = {{0.3f, 0.5f, -0.3f}, {-0.6f, 0, -0.4f}, {0.3f, 0.5f, -0.3f}};
+    const merlin_relighting ways[] = {MERLIN_BY_BRDF, MERLIN_BY_NETWORK, MERLIN_BY_BRDF_UNSHADOWED};
+    merlin_environment *room;
+    assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
+    for (int w = 0; w < 3; w++) {
+        merlin_stage *stage;
+        assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, ways[w], &stage), MERLIN_OK);
+        for (int i = 0; i < 6; i++) { /* in the dark and in the room by turns */
+            merlin_image square, whole;
+            const merlin_environment *in = i % 2 ? room : NULL;
+            const float *light = lights[i / 2];
+            assert_int_equal(merlin_stage_relight(stage, light, in, &square), MERLIN_OK);
+            assert_int_equal(in ? merlin_relight_environment(f->model, &f->maps, in, light, ways[w], &whole)
+                                : merlin_relight(f->model, &f->maps, light, ways[w], &whole),
+                             MERLIN_OK);
+            assert_shows_the_square(f, &square, &whole);
+            merlin_image_free(&square);
+            merlin_image_free(&whole);
+        }
+        merlin_stage_free(stage);
+    }
+    merlin_environment_free(room);
+}
+
+static void stage_outlives_its_maps_at_any_side(void **state)
+{
+    fixture *f = *state;
+    const float light[3] = {0.3f, 0.5f, -0.3f};
+    merlin_maps maps;
+    merlin_stage *stage;
+    merlin_image square;
+    merlin_params p = merlin_params_default();
+    p.size = SIDE;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+    assert_int_equal(merlin_stage_new(f->model, &maps, 40, MERLIN_BY_BRDF, &stage), MERLIN_OK);
+    merlin_maps_free(&maps);
+    assert_int_equal(merlin_stage_relight(stage, light, NULL, &square), MERLIN_OK);
+    assert_int_equal(square.width, 40);
+    assert_int_equal(square.height, 40);
+    assert_true(square.data[3 * (20 * 40 + 20)] > 0);
+    merlin_image_free(&square);
+    merlin_stage_free(stage);
+}
+
+static void stage_says_what_it_misses(void **state)
+{
+    fixture *f = *state;
+    const float nowhere[3] = {NAN, 0, 0};
+    const merlin_maps empty = {0};
+    merlin_environment *room;
+    merlin_stage *stage;
+    merlin_image image;
+    assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
+    assert_int_equal(merlin_stage_new(f->model, &f->maps, -1, MERLIN_BY_BRDF, &stage), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, (merlin_relighting)7, &stage), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_stage_new(f->model, &empty, 0, MERLIN_BY_BRDF, &stage), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, MERLIN_BY_BRDF, NULL), MERLIN_WRONG_USE);
+    assert_null(stage);
+    merlin_stage_free(NULL);
+    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, MERLIN_BY_NETWORK, &stage), MERLIN_OK);
+    assert_int_equal(merlin_stage_relight(stage, NULL, NULL, &image), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "neither a light nor an environment"));
+    assert_int_equal(merlin_stage_relight(stage, NULL, room, &image), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "point light"));
+    assert_int_equal(merlin_stage_relight(stage, nowhere, NULL, &image), MERLIN_WRONG_USE);
+    assert_null(image.data);
+    merlin_stage_free(stage);
+    merlin_environment_free(room);
+}
+
 static void surroundings_without_light_are_refused(void **state)
 {
     fixture *f = *state;
@@ -200,6 +288,9 @@ int main(void)
         cmocka_unit_test(point_models_know_no_environment),
         cmocka_unit_test(any_model_relights_by_surroundings_which_turn),
         cmocka_unit_test(relighting_decoder_takes_both_lights_if_it_learned_them),
+        cmocka_unit_test(stage_serves_many_lights),
+        cmocka_unit_test(stage_outlives_its_maps_at_any_side),
+        cmocka_unit_test(stage_says_what_it_misses),
         cmocka_unit_test(surroundings_without_light_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,113 @@
+/* merlin_relight, merlin_relight_environment and merlin_stage: maps under other light. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "estimate/api.h"
+
+enum { LARGEST_SIDE = 8000 };
+
+struct merlin_stage {
+    network *network;
+    stage stage;
+};
+
+/* Copies the light, if there is one. */
+static status take_light(const float *light, vec3 *place)
+{
+    if (!light) return OK;
+    *place = vec3_of(light);
+    if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
+    return fail(ERROR_USAGE, "the light's position is not finite");
+}
+
+/* Into the photograph's frame; takes the square over. */
+static status put_back(const merlin_maps *maps, const stage *st, img *square, merlin_image *out)
+{
+    img whole = {0};
+    status s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
+    if (s == OK) crop_put(square, crop_of(maps), &st->full.mask, &whole);
+    img_free(square);
+    *out = image_of(&whole);
+    return s;
+}
+
+/* Under the point light, the environment, or both. */
+static status relight_maps(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
+                           merlin_relighting how, merlin_image *out)
+{
+    vec3 place;
+    stage st;
+    img square = {0};
+    status s = take_light(light, &place);
+    if (s == OK) s = stage_check(how, light);
+    if (s == OK) s = stage_new(model->network, maps, 0, how, &st);
+    if (s != OK) return s;
+    s = stage_surround(&st, environment);
+    if (s == OK) s = stage_relight(model->network, &st, light ? &place : NULL, &square);
+    if (s == OK) s = put_back(maps, &st, &square, out);
+    stage_free(&st);
+    return s;
+}
+
+merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
+                             merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, model && maps && light && out);
+    return result_of(s == OK ? relight_maps(model, maps, light, NULL, how, out) : s);
+}
+
+merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
+                                         const float *light, merlin_relighting how, merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, model && maps && env && out);
+    return result_of(s == OK ? relight_maps(model, maps, light, &env->map, how, out) : s);
+}
+
+/* ---- many lights ---- */
+
+merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
+                               merlin_stage **out)
+{
+    if (out) *out = NULL;
+    status s = api_needs(__func__, model && maps && out);
+    if (s == OK) s = stage_check(how, true);
+    if (s == OK && (side < 0 || side > LARGEST_SIDE))
+        s = fail(ERROR_USAGE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE, side);
+    if (s != OK) return result_of(s);
+    merlin_stage *made = calloc(1, sizeof *made);
+    if (!made) return result_of(fail(ERROR_MEMORY, "no memory for a stage"));
+    made->network = model->network;
+    s = stage_new(model->network, maps, side, how, &made->stage);
+    if (s != OK)
+        free(made);
+    else
+        *out = made;
+    return result_of(s);
+}
+
+merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const merlin_environment *environment,
+                                   merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, st && out);
+    if (s == OK && !light && !environment)
+        s = fail(ERROR_USAGE, "neither a light nor an environment to relight the stage by");
+    vec3 place;
+    img square = {0};
+    if (s == OK) s = take_light(light, &place);
+    if (s == OK) s = stage_check(st->stage.how, light);
+    if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
+    if (s == OK) s = stage_relight(st->network, &st->stage, light ? &place : NULL, &square);
+    if (s != OK) return result_of(s);
+    *out = image_of(&square);
+    return MERLIN_OK;
+}
+
+void merlin_stage_free(merlin_stage *st)
+{
+    if (!st) return;
+    stage_free(&st->stage);
+    free(st);
+}
