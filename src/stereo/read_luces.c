@@ -17,7 +17,7 @@ void luces_free(luces_params *p)
     *p = (luces_params){0};
 }
 
-/* LUCES has y down and z away from the camera. */
+/* The file's positions and directions have y down and z away from the camera, unlike its picture of normals. */
 static vec3 turn(const double v[3])
 {
     return vec3_make((real)v[0], (real)-v[1], (real)-v[2]);
@@ -50,21 +50,23 @@ static status parse_camera(const text_numbers *t, luces_params *p)
     p->count = (int)v[0];
     p->height = (int)v[1];
     p->width = (int)v[2];
-    p->camera = (pst_camera){true, (float)v[3], (float)v[4], (float)v[5], (float)v[6]};
+    /* the data set's own code puts the middle of the first pixel at 0 */
+    p->camera = (pst_camera){true, (float)v[3], (float)v[4] + 0.5f, (float)v[5] + 0.5f, (float)v[6]};
     return OK;
 }
 
-/* position, direction, intensity (1 or 3), attenuation */
+/* position, direction, intensity (1 or 3), attenuation; the data set's own files end their lines with a 0 besides,
+ * which its code does not read */
 static status parse_light(const text_numbers *t, pst_light *out)
 {
     const double *v = t->value;
-    if (t->count != 8 && t->count != 10)
+    if (t->count < 8 || t->count > 11)
         return fail(
             ERROR_INPUT,
             "%s:%d: expected a light's position, direction, intensity and attenuation (8 or 10 numbers), found %d",
             t->where, t->line, t->count);
-    int colours = t->count - 7;
-    *out = (pst_light){.position = turn(v), .direction = vec3_normalize(turn(v + 3)), .lobe = (float)v[t->count - 1]};
+    int colours = t->count < 10 ? 1 : 3;
+    *out = (pst_light){.position = turn(v), .direction = vec3_normalize(turn(v + 3)), .lobe = (float)v[6 + colours]};
     for (int k = 0; k < 3; k++) {
         out->intensity[k] = (float)v[6 + (colours == 3 ? k : 0)];
         if (!(out->intensity[k] > 0))
@@ -168,10 +170,10 @@ static status read_normals(const char *path, pst_capture *c)
                     n->channels, c->width, c->height);
     size_t pixels = (size_t)c->width * (size_t)c->height;
     for (size_t i = 0; i < pixels; i++) {
-        const float *v = n->data + 3 * i;
-        double theirs[3] = {2 * v[0] - 1, 2 * v[1] - 1, 2 * v[2] - 1};
-        vec3 ours = c->mask.data[i] > 0 ? vec3_normalize(turn(theirs)) : vec3_make(0, 0, 0);
-        memcpy(n->data + 3 * i, (float[3]){ours.x, ours.y, ours.z}, 3 * sizeof(float));
+        float *v = n->data + 3 * i;
+        vec3 unit = vec3_normalize(vec3_make(2 * v[0] - 1, 2 * v[1] - 1, 2 * v[2] - 1));
+        if (!(c->mask.data[i] > 0)) unit = vec3_make(0, 0, 0);
+        memcpy(v, (float[3]){unit.x, unit.y, unit.z}, 3 * sizeof(float));
     }
     return OK;
 }

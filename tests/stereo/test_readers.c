@@ -211,6 +211,9 @@ static void leds_are_turned_into_this_projects_axes(void **state)
     assert_int_equal(p.width, 6);
     assert_float_equal(p.camera.focal, 900, 0);
     assert_float_equal(p.camera.mean_distance, 150, 0);
+    /* they count pixels from the middle of the first one, this project from its corner */
+    assert_float_equal(p.camera.center_x, 3.5, 0);
+    assert_float_equal(p.camera.center_y, 2.5, 0);
     assert_float_equal(p.light[0].position.x, 10, 0);
     assert_float_equal(p.light[0].position.y, -20, 0);
     assert_float_equal(p.light[0].position.z, -30, 0);
@@ -219,6 +222,24 @@ static void leds_are_turned_into_this_projects_axes(void **state)
     assert_float_equal(p.light[0].lobe, 0.7, 1e-6);
     assert_float_equal(p.light[0].intensity[2], 1.5, 0);
     assert_float_equal(p.light[1].intensity[2], 3, 0);
+    luces_free(&p);
+}
+
+/* As the data set's own code writes it, and as it read older files. */
+static void leds_may_end_in_a_number_that_means_nothing(void **state)
+{
+    (void)state;
+    luces_params p;
+    assert_int_equal(parse_leds("N_img nrows ncols f x0 y0 mean_distance sfull:[Lpos Ldir Phi mu 0]\n"
+                                "2 4 6 900.000000 3.000000 2.000000 150.000000\n"
+                                "1 2 3 0 0 1 4.5 5.5 6.5 0.75 0.0000\n1 2 3 0 0 1 4.5 0.75 0.0000 \n",
+                                &p),
+                     OK);
+    for (int i = 0; i < 2; i++) {
+        assert_float_equal(p.light[i].intensity[0], 4.5, 0);
+        assert_float_equal(p.light[i].intensity[2], i == 0 ? 6.5 : 4.5, 0);
+        assert_float_equal(p.light[i].lobe, 0.75, 0);
+    }
     luces_free(&p);
 }
 
@@ -234,6 +255,7 @@ static void damaged_led_files_are_refused(void **state)
         {"1 4 6 0 3 2 150\n", "not a camera"},
         {"2 4 6 900 3 2 150\n0 0 0 0 0 1 1 1\n", "1 lights for 2 images"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 1\n", ":2: expected a light's"},
+        {"1 4 6 900 3 2 150\n0 0 0 0 0 1 1 1 1 1 0 0\n", ":2: expected a light's"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 0 1\n", "intensity"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 1 -1\n", "attenuation"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 0 1 1\n", "no length"},
@@ -257,7 +279,7 @@ static void make_luces(int width)
     img n;
     assert_int_equal(img_new(&n, 3, 2, 3), OK);
     for (int i = 0; i < 6; i++)
-        memcpy(n.data + 3 * i, (float[]){0.5f, 0.2f, 0.1f}, 3 * sizeof(float)); /* (0, -0.6, -0.8) */
+        memcpy(n.data + 3 * i, (float[]){0.5f, 0.8f, 0.9f}, 3 * sizeof(float)); /* (0, 0.6, 0.8) */
     assert_int_equal(img_write_png(scratch_path("normals.png"), &n, IMG_LINEAR16), OK);
     img_free(&n);
     bytes file;
@@ -277,7 +299,7 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     assert_string_equal(c.name[1], "02.png");
     assert_float_equal(c.light[1].position.z, -6, 0);
     assert_float_equal(c.camera.focal, 900, 0);
-    /* theirs points up and toward the camera; 16-bit codes are 3e-5 apart */
+    /* unlike the lights, up and toward the camera; 16-bit codes are 3e-5 apart */
     assert_float_equal(img_at(&c.normal_true, 1, 1)[1], 0.6, 1e-4);
     assert_float_equal(img_at(&c.normal_true, 1, 1)[2], 0.8, 1e-4);
     assert_float_equal(*img_at(&c.depth_true, 2, 1), 2.5, 0);
@@ -331,6 +353,7 @@ int main(void)
         cmocka_unit_test(headers_that_promise_too_much_are_refused),
         cmocka_unit_test(files_cut_anywhere_are_refused),
         cmocka_unit_test(leds_are_turned_into_this_projects_axes),
+        cmocka_unit_test(leds_may_end_in_a_number_that_means_nothing),
         cmocka_unit_test(damaged_led_files_are_refused),
         in_scratch(a_luces_folder_is_read_with_its_truth),
         in_scratch(a_diligent_folder_is_read_with_its_truth),
