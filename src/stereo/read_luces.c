@@ -135,10 +135,21 @@ static status take_pictures(const char *folder, char **names, size_t count, cons
     return s;
 }
 
+/* An object's folder RAW has all files again, for what the sensor gave: the three colours in one channel. */
+static status refuse_mosaics(const char *folder)
+{
+    char *whole = realpath(folder, NULL);
+    bool raw = whole && strcmp(strrchr(whole, '/'), "/RAW") == 0;
+    free(whole);
+    if (!raw) return OK;
+    return fail(ERROR_INPUT, "%s holds the sensor's mosaics, which are not read; give the folder above it", folder);
+}
+
 status pst_read_luces(const char *folder, pst_capture *c)
 {
     luces_params p;
-    status s = read_params(folder, &p);
+    status s = refuse_mosaics(folder);
+    if (s == OK) s = read_params(folder, &p);
     if (s != OK) return s;
     char **names;
     size_t count;

@@ -313,6 +313,17 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     assert_says("1 numbered pictures, but led_params.txt has 2");
 }
 
+static void raw_mosaics_of_luces_are_refused(void **state)
+{
+    (void)state;
+    pst_capture c;
+    assert_int_equal(file_make_folder(scratch_path("RAW")), OK);
+    write_text("RAW/led_params.txt", "header\n1 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n");
+    write_flat("RAW/01.png", 3, 2, 1, 0.5f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch_path("RAW/"), NULL, &c), ERROR_INPUT);
+    assert_says("mosaics");
+}
+
 static void a_diligent_folder_is_read_with_its_truth(void **state)
 {
     (void)state;
@@ -356,6 +367,7 @@ int main(void)
         cmocka_unit_test(leds_may_end_in_a_number_that_means_nothing),
         cmocka_unit_test(damaged_led_files_are_refused),
         in_scratch(a_luces_folder_is_read_with_its_truth),
+        in_scratch(raw_mosaics_of_luces_are_refused),
         in_scratch(a_diligent_folder_is_read_with_its_truth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
