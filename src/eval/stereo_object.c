@@ -18,12 +18,6 @@ static const float PHOTO_WHITE = 1.568f;
 
 /* ---- which ---- */
 
-static bool is_capture(const char *folder)
-{
-    return file_is_in(folder, "led_params.txt") ||
-           (file_is_in(folder, "light_directions.txt") && file_is_in(folder, "filenames.txt"));
-}
-
 static int by_name(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
@@ -35,7 +29,7 @@ static status add_folders(const char *folder, DIR *open, char **path, size_t *co
         if (entry->d_name[0] == '.') continue;
         char *inner = file_join(folder, entry->d_name);
         if (!inner) return fail(ERROR_MEMORY, "no memory for a file name");
-        if (*count < MOST_OBJECTS && file_is_folder(inner) && is_capture(inner))
+        if (*count < MOST_OBJECTS && file_is_folder(inner) && pst_is_of_data_set(inner))
             path[(*count)++] = inner;
         else
             free(inner);
@@ -72,7 +66,7 @@ static status list_itself(const char *folder, char ***path, size_t *count)
 status stereo_object_list(const char *folder, char ***path, size_t *count)
 {
     static const char *const samples[] = {".exr", NULL};
-    if (is_capture(folder)) return list_itself(folder, path, count);
+    if (pst_is_of_data_set(folder)) return list_itself(folder, path, count);
     status s = file_list(folder, samples, path, count);
     if (s != OK || *count > 0) return s;
     file_list_free(*path, *count);

@@ -68,12 +68,17 @@ status pst_find_file(const char *folder, const char *asked, const char *usual, c
     return first_with_ending(folder, ending, path, found);
 }
 
-static layout recognize(const char *folder, const pst_read_options *options)
+static layout layout_of(const char *folder)
 {
-    if (options->lights) return LAYOUT_PLAIN;
     if (file_is_in(folder, "led_params.txt")) return LAYOUT_LUCES;
-    if (file_is_in(folder, "light_directions.txt") && file_is_in(folder, "filenames.txt")) return LAYOUT_DILIGENT;
+    bool named = file_is_in(folder, "filenames.txt") || !file_is_in(folder, "lights.txt");
+    if (file_is_in(folder, "light_directions.txt") && named) return LAYOUT_DILIGENT;
     return LAYOUT_PLAIN;
+}
+
+bool pst_is_of_data_set(const char *folder)
+{
+    return layout_of(folder) != LAYOUT_PLAIN;
 }
 
 static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
@@ -128,7 +133,7 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
     if (!options) options = &defaults;
     *out = (pst_capture){0};
     if (!file_is_folder(folder)) return fail(ERROR_INPUT, "there is no folder %s with pictures in it", folder);
-    layout kind = recognize(folder, options);
+    layout kind = options->lights ? LAYOUT_PLAIN : layout_of(folder);
     status s = read_layout(kind, folder, options, out);
     if (s == OK) s = pst_read_pictures(folder, options, out);
     if (s == OK) s = pst_read_mask(folder, options, out);

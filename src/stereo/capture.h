@@ -68,6 +68,8 @@ typedef struct pst_read_options {
 } pst_read_options;
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
+/* Whether a folder is laid out as an object of LUCES or DiLiGenT. */
+bool pst_is_of_data_set(const char *folder);
 /* Room for count lights of intensity 1, names and pictures, 1 to 4096 of them; names and pictures are NULL. */
 status pst_capture_reserve(pst_capture *c, size_t count);
 void pst_capture_free(pst_capture *c);

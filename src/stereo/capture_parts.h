@@ -9,9 +9,10 @@ enum { PST_MOST_PICTURES = 4096 };
 
 status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
 
-/* The file names (without folder, sorted) of the pictures that are part of the capture: not masks, ambient, ground
- * truth or what merlin itself wrote there. numbered: only names that are a number. Free with file_list_free. */
-status pst_list_pictures(const char *folder, bool numbered, char ***names, size_t *count);
+/* Room for the pictures of a folder and their names, sorted: not masks, ambient, ground truth or what merlin itself
+ * wrote there. numbered: only names that are a number. There must be as many as the file `lights` has, which may be
+ * NULL. */
+status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c);
 
 /* The folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights. */
 status pst_read_intensities(const char *folder, pst_capture *c);

@@ -41,13 +41,29 @@ static status read_names(const char *path, const char *folder, pst_capture *c)
     return s;
 }
 
-static status read_directions(const char *path, pst_capture *c)
+/* From filenames.txt; where there is none, in the order of their names, as readers of the later sets take them. */
+static status take_pictures(const char *folder, const char *lights, size_t count, pst_capture *c)
+{
+    char *path = file_join(folder, "filenames.txt");
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = OK;
+    if (file_exists(path)) {
+        s = pst_capture_reserve(c, count);
+        if (s == OK) s = read_names(path, folder, c);
+    } else {
+        s = pst_take_pictures(folder, false, lights, count, c);
+    }
+    free(path);
+    return s;
+}
+
+static status read_directions(const char *path, const char *folder, pst_capture *c)
 {
     light_list list;
     status s = light_list_read(path, &list);
     if (s != OK) return s;
     if (list.name) s = fail(ERROR_INPUT, "%s: expected x y z a line, not an .lp file", path);
-    if (s == OK) s = pst_capture_reserve(c, list.count);
+    if (s == OK) s = take_pictures(folder, path, list.count, c);
     for (size_t i = 0; i < list.count && s == OK; i++) {
         c->light[i].direction = vec3_normalize(list.at[i]);
         if (!(vec3_length(c->light[i].direction) > 0.5f))
@@ -59,14 +75,12 @@ static status read_directions(const char *path, pst_capture *c)
 
 status pst_read_diligent(const char *folder, pst_capture *c)
 {
-    char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
-    status s = directions && names ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    char *directions = file_join(folder, "light_directions.txt");
+    if (!directions) return fail(ERROR_MEMORY, "no memory for a file name");
     c->lighting = PST_DISTANT;
-    if (s == OK) s = read_directions(directions, c);
-    if (s == OK) s = read_names(names, folder, c);
+    status s = read_directions(directions, folder, c);
     if (s == OK) s = pst_read_intensities(folder, c);
     free(directions);
-    free(names);
     return s;
 }
 

@@ -28,22 +28,6 @@ static const char *base_name(const char *path)
     return last ? last + 1 : path;
 }
 
-static status names_from_folder(const char *folder, const char *lights, size_t wanted, pst_capture *c)
-{
-    char **names;
-    size_t count;
-    status s = pst_list_pictures(folder, false, &names, &count);
-    if (s != OK) return s;
-    if (lights && count != wanted)
-        s = fail(ERROR_INPUT, "%s has %zu pictures, but %s has %zu lights; each picture needs one", folder, count,
-                 lights, wanted);
-    if (s == OK) s = pst_capture_reserve(c, count);
-    for (size_t i = 0; i < count && s == OK; i++)
-        s = pst_capture_set_name(c, i, names[i]);
-    file_list_free(names, count);
-    return s;
-}
-
 /* A folder and all its files. */
 typedef struct listing {
     const char *folder;
@@ -152,7 +136,7 @@ static status read_listed(const char *folder, const char *lights, bool near, pst
     light_list list;
     status s = light_list_read(lights, &list);
     if (s != OK) return s;
-    s = list.name ? names_from_list(folder, lights, &list, c) : names_from_folder(folder, lights, list.count, c);
+    s = list.name ? names_from_list(folder, lights, &list, c) : pst_take_pictures(folder, false, lights, list.count, c);
     if (s == OK) s = set_lights(lights, &list, near, c);
     light_list_free(&list);
     return s;
@@ -162,7 +146,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
 {
     char *lights = NULL;
     if (options->unknown_lights) {
-        status s = names_from_folder(folder, NULL, 0, c);
+        status s = pst_take_pictures(folder, false, NULL, 0, c);
         return s == OK ? pst_read_intensities(folder, c) : s;
     }
     status s = find_lights(folder, options->lights, &lights);

@@ -124,17 +124,6 @@ static status read_params(const char *folder, luces_params *out)
     return s;
 }
 
-static status take_pictures(const char *folder, char **names, size_t count, const luces_params *p, pst_capture *c)
-{
-    if (count != (size_t)p->count)
-        return fail(ERROR_INPUT, "%s has %zu numbered pictures, but led_params.txt has %d lights", folder, count,
-                    p->count);
-    status s = pst_capture_reserve(c, count);
-    for (size_t i = 0; i < count && s == OK; i++)
-        s = pst_capture_set_name(c, i, names[i]);
-    return s;
-}
-
 /* An object's folder RAW has all files again, for what the sensor gave: the three colours in one channel. */
 static status refuse_mosaics(const char *folder)
 {
@@ -151,15 +140,9 @@ status pst_read_luces(const char *folder, pst_capture *c)
     status s = refuse_mosaics(folder);
     if (s == OK) s = read_params(folder, &p);
     if (s != OK) return s;
-    char **names;
-    size_t count;
-    s = pst_list_pictures(folder, true, &names, &count);
+    s = pst_take_pictures(folder, true, "led_params.txt", (size_t)p.count, c);
     if (s == OK) {
-        s = take_pictures(folder, names, count, &p, c);
-        file_list_free(names, count);
-    }
-    if (s == OK) {
-        memcpy(c->light, p.light, count * sizeof *p.light);
+        memcpy(c->light, p.light, (size_t)p.count * sizeof *p.light);
         c->lighting = PST_NEAR;
         c->intensities_known = true;
         c->camera = p.camera;

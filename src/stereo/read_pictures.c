@@ -35,7 +35,7 @@ static bool is_numbered(const char *name)
     return digits > 0 && name[digits] == '.';
 }
 
-status pst_list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
+static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
 {
     status s = file_list(folder, PICTURES, names, count);
     if (s != OK) return s;
@@ -55,6 +55,22 @@ status pst_list_pictures(const char *folder, bool numbered, char ***names, size_
     *names = NULL;
     return fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF or EXR files", folder,
                 numbered ? "01.png, 02.png and on, " : "");
+}
+
+status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c)
+{
+    char **names;
+    size_t count;
+    status s = list_pictures(folder, numbered, &names, &count);
+    if (s != OK) return s;
+    if (lights && count != wanted)
+        s = fail(ERROR_INPUT, "%s has %zu %spictures, but %s has %zu lights; each picture needs one", folder, count,
+                 numbered ? "numbered " : "", lights, wanted);
+    if (s == OK) s = pst_capture_reserve(c, count);
+    for (size_t i = 0; i < count && s == OK; i++)
+        s = pst_capture_set_name(c, i, names[i]);
+    file_list_free(names, count);
+    return s;
 }
 
 typedef struct reading {

@@ -310,7 +310,7 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     make_luces(3);
     unlink(scratch_path("02.png"));
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
-    assert_says("1 numbered pictures, but led_params.txt has 2");
+    assert_says("1 numbered pictures, but led_params.txt has 2 lights");
 }
 
 static void raw_mosaics_of_luces_are_refused(void **state)
@@ -356,6 +356,31 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     assert_says("names 1 pictures");
 }
 
+static void a_diligent_folder_needs_no_list_of_names(void **state)
+{
+    (void)state;
+    write_flat("9.png", 5, 4, 3, 0.5f, IMG_LINEAR16);
+    write_flat("10.png", 5, 4, 3, 0.25f, IMG_LINEAR16);
+    write_flat("Normal_gt.png", 5, 4, 3, 0.5f, IMG_LINEAR8);
+    write_text("light_directions.txt", "0 0 1\n0.6 0 0.8\n");
+    write_text("light_intensities.txt", "1 2 3\n4 5 6\n");
+    assert_true(pst_is_of_data_set(scratch));
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
+    assert_int_equal(c.count, 2);
+    assert_string_equal(c.name[1], "10.png");
+    assert_float_equal(c.light[1].direction.x, 0.6, 1e-6);
+    assert_float_equal(c.light[1].intensity[1], 5, 0);
+    pst_capture_free(&c);
+    unlink(scratch_path("10.png"));
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_says("1 pictures, but");
+    assert_says("light_directions.txt has 2 lights");
+    /* another list of lights was meant for this program */
+    write_text("lights.txt", "0 0 1\n");
+    assert_false(pst_is_of_data_set(scratch));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -369,6 +394,7 @@ int main(void)
         in_scratch(a_luces_folder_is_read_with_its_truth),
         in_scratch(raw_mosaics_of_luces_are_refused),
         in_scratch(a_diligent_folder_is_read_with_its_truth),
+        in_scratch(a_diligent_folder_needs_no_list_of_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
