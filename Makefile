@@ -24,7 +24,7 @@ demo: build
 	@echo "the light going round:           $(OUT)/orbit/orbit.webp"
 	@echo "overview:                        $(OUT)/overview.png"
 
-# The command, libmerlin.so, its header, the weights and the manual, under PREFIX.
+# The command, libmerlin.so, its headers, the weights and the manual, under PREFIX.
 PREFIX = /usr/local
 install: build
 	cmake --build --preset release --target libmerlin

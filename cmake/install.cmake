@@ -1,8 +1,8 @@
 # libmerlin.so with the functions of include/merlin and nothing else, and what make install puts where.
 include(GNUInstallDirs)
 
-add_library(libmerlin SHARED $<TARGET_OBJECTS:merlin_estimate>)
-target_link_libraries(libmerlin PRIVATE merlin_estimate)
+add_library(libmerlin SHARED $<TARGET_OBJECTS:merlin_estimate> $<TARGET_OBJECTS:merlin_stereo>)
+target_link_libraries(libmerlin PRIVATE merlin_estimate merlin_stereo)
 # before 1.0 what was built with one minor version may not run with another
 set_target_properties(libmerlin PROPERTIES OUTPUT_NAME merlin VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -12,9 +12,11 @@ if(NOT MERLIN_SANITIZE AND NOT MERLIN_FUZZ)
   target_link_options(libmerlin PRIVATE -Wl,--no-undefined)
 endif()
 
-add_executable(relight_photo EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/examples/relight_photo.c)
-target_include_directories(relight_photo PRIVATE ${PROJECT_SOURCE_DIR}/include)
-target_link_libraries(relight_photo PRIVATE libmerlin)
+foreach(name relight_photo photo_to_mesh)
+  add_executable(${name} EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/examples/${name}.c)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_link_libraries(${name} PRIVATE libmerlin m)
+endforeach()
 
 # Both descriptions find their prefix from where they lie, because make install chooses it after this file is read.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig

@@ -12,6 +12,8 @@
  *         merlin_maps_write(model, &maps, "cup.merlin") || merlin_image_write("cup-from-left.png", &relit))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
+ * From pictures under many lights to a surface: stereo.h.
+ *
  * The photograph is best taken with the camera's flash: the model was trained on objects lit by a light beside the
  * lens.
  *

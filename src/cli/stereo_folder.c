@@ -5,9 +5,8 @@
 #include "base/progress.h"
 #include "cli/json_line.h"
 #include "eval/surface_error.h"
-#include "stereo/integrate.h"
 
-static const float RESIDUAL_WHITE = 0.25f, KEEP_DEPTH = 1e-4f;
+static const float RESIDUAL_WHITE = 0.25f;
 
 static int compare(const void *a, const void *b)
 {
@@ -83,7 +82,7 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     return OK;
 }
 
-/* Takes normal and residual over from the surface; a grey albedo becomes three channels. */
+/* Takes normal, depth and residual over from the surface; a grey albedo becomes three channels. */
 static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *r)
 {
     *r = (stereo_result){.error_name = "residual", .error_white = RESIDUAL_WHITE, .camera = c->camera};
@@ -95,24 +94,10 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
         r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
     r->strengths_unsure = s->strengths_unsure;
     r->normal = s->normal;
+    r->depth = s->depth;
     r->error = s->residual;
-    s->normal = s->residual = (img){0};
+    s->normal = s->depth = s->residual = (img){0};
     return OK;
-}
-
-static status find_depth(const stereo_folder *f, const pst_capture *c, pst_surface *s, stereo_result *r)
-{
-    if (s->depth.data && !f->integrate) {
-        r->depth = s->depth;
-        s->depth = (img){0};
-        return OK;
-    }
-    pst_integration how = {.preserve_edges = f->preserve_edges};
-    if (s->depth.data) {
-        how.prior = &s->depth;
-        how.prior_weight = KEEP_DEPTH;
-    }
-    return pst_integrate(&r->normal, &r->mask, &c->camera, &how, &r->depth);
 }
 
 static status solve(const stereo_folder *f, const pst_capture *c, stereo_result *out, cJSON *report)
@@ -122,8 +107,8 @@ static status solve(const stereo_folder *f, const pst_capture *c, stereo_result 
     status s = pst_solve(c, &(pst_options){.method = f->method}, &surface);
     if (s != OK) return s;
     double solved = clock_seconds();
-    s = take_surface(c, &surface, out);
-    if (s == OK) s = find_depth(f, c, &surface, out);
+    s = pst_surface_integrate(c, f->integrate, f->preserve_edges, &surface);
+    if (s == OK) s = take_surface(c, &surface, out);
     if (s == OK) s = put_report(report, c, &surface, out);
     cJSON_AddNumberToObject(report, "seconds_solve", solved - began);
     cJSON_AddNumberToObject(report, "seconds_integrate", clock_seconds() - solved);

@@ -1,4 +1,4 @@
-/* Between the public header's types and the inside's, which are laid out alike. */
+/* What stands behind include/merlin/merlin.h, and what its parts share. */
 #ifndef MERLIN_ESTIMATE_API_H
 #define MERLIN_ESTIMATE_API_H
 
@@ -11,8 +11,7 @@
 #include "estimate/staging.h"
 #include "estimate/surface.h"
 #include "image/exr.h"
-#include "image/image.h"
-#include "merlin/merlin.h"
+#include "image/public.h"
 
 enum { PHOTO_MOST_PIXELS = 64 * 1000 * 1000 };
 
@@ -23,28 +22,6 @@ struct merlin_model {
 struct merlin_environment {
     env_map map;
 };
-
-/* The same pixels under the other name; nothing is copied. */
-static inline img img_of(const merlin_image *m)
-{
-    return (img){m->width, m->height, m->channels, m->data};
-}
-
-static inline merlin_image image_of(const img *m)
-{
-    return (merlin_image){m->width, m->height, m->channels, m->data};
-}
-
-static inline merlin_status result_of(status s)
-{
-    return (merlin_status)s;
-}
-
-/* ERROR_USAGE where a public function got NULL for something that it needs. */
-static inline status api_needs(const char *function, bool all_there)
-{
-    return all_there ? OK : fail(ERROR_USAGE, "%s was called with a null pointer", function);
-}
 
 static inline crop_square crop_of(const merlin_maps *maps)
 {

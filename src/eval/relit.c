@@ -17,7 +17,7 @@ static vec3 light_at(int i)
 
 static status relight_all(merlin_model *model, const stage *st, int (*stop)(void), pst_capture *c)
 {
-    status s = near_capture_new(&st->full.mask, &st->full.depth, FIELD_OF_VIEW, RELIT_LIGHTS, c);
+    status s = near_capture_new(&st->full.mask, &st->full.depth, FIELD_OF_VIEW, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
         if (stop && stop()) return fail(ERROR_STOPPED, "stopped");
         img picture = {0};

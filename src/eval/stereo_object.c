@@ -84,7 +84,7 @@ static void sum_into(const img *a, const img *b, float white, img *out)
 static status take_targets(const sample *from, pst_capture *c)
 {
     img picture = {0};
-    status s = near_capture_new(&from->mask, &from->depth, from->fov, from->target_count, c);
+    status s = near_capture_new(&from->mask, &from->depth, from->fov, c);
     if (s == OK) s = img_new(&picture, from->mask.width, from->mask.height, 3);
     for (int i = 0; i < from->target_count && s == OK; i++) {
         sum_into(&from->targets[i].direct, &from->targets[i].indirect, NEAR_CAPTURE_WHITE, &picture);

@@ -1,6 +1,7 @@
 #include "stereo/capture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +29,43 @@ status pst_capture_set_name(pst_capture *c, size_t i, const char *name)
 {
     c->name[i] = strdup(name);
     return c->name[i] ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+}
+
+static status make_room(pst_capture *c)
+{
+    size_t count = (size_t)c->count + 1;
+    if (count > PST_MOST_PICTURES) return fail(ERROR_USAGE, "a capture has %d pictures at most", PST_MOST_PICTURES);
+    pst_light *light = realloc(c->light, count * sizeof *light);
+    if (light) c->light = light;
+    char **name = realloc(c->name, count * sizeof *name);
+    if (name) c->name = name;
+    uint16_t **picture = realloc(c->picture, count * sizeof *picture);
+    if (picture) c->picture = picture;
+    return light && name && picture ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+}
+
+static uint16_t code_of(float value)
+{
+    return (uint16_t)(fminf(fmaxf(value, 0), 1) * 65535 + 0.5f);
+}
+
+status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light)
+{
+    status s = make_room(c);
+    if (s != OK) return s;
+    size_t values = img_value_count(picture);
+    uint16_t *codes = malloc(values * sizeof *codes);
+    char *name = NULL;
+    if (!codes || asprintf(&name, "light %d", c->count) < 0) {
+        free(codes);
+        return fail(ERROR_MEMORY, "no memory for one more picture");
+    }
+    for (size_t i = 0; i < values; i++)
+        codes[i] = code_of(picture->data[i]);
+    c->picture[c->count] = codes;
+    c->name[c->count] = name;
+    c->light[c->count++] = *light;
+    return OK;
 }
 
 void pst_capture_free(pst_capture *c)

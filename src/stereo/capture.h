@@ -72,6 +72,10 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
 bool pst_is_of_data_set(const char *folder);
 /* Room for count lights of intensity 1, names and pictures, 1 to 4096 of them; names and pictures are NULL. */
 status pst_capture_reserve(pst_capture *c, size_t count);
+/* One more picture, of the capture's size and channels, clipped to [0, 1]. */
+status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light);
+/* The mask: pixels that are not black in any picture. */
+status pst_capture_find_mask(pst_capture *c);
 void pst_capture_free(pst_capture *c);
 
 /* The lights become unknown, but for their intensities, which are measured apart. */

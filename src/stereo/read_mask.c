@@ -12,7 +12,7 @@ status pst_find_mask(const char *folder, const char *asked, char **path)
     return pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
 }
 
-static status mask_from_pictures(pst_capture *c)
+status pst_capture_find_mask(pst_capture *c)
 {
     status s = img_new(&c->mask, c->width, c->height, 1);
     if (s != OK) return s;
@@ -44,7 +44,7 @@ status pst_read_mask(const char *folder, const pst_read_options *options, pst_ca
         s = img_read_mask(path, &c->mask);
         if (s == OK) s = check_mask(path, c);
     } else {
-        s = mask_from_pictures(c);
+        s = pst_capture_find_mask(c);
     }
     free(path);
     return s;

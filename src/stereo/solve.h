@@ -38,6 +38,10 @@ typedef struct pst_surface {
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);
 void pst_surface_free(pst_surface *s);
 
+/* Depth (integrate.h) from the normals, unless the method has found it; integrate: even then, held near what it found.
+ */
+status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, pst_surface *s);
+
 /* The name people type ("ls", "robust", "near", "semi", "uncalibrated", "auto"); -1 if unknown. */
 int pst_method_from_name(const char *name);
 const char *pst_method_name(pst_method m);

@@ -6,7 +6,7 @@ source "$(dirname "$0")/support/check.bash"
 source "$(dirname "$0")/support/pictures.bash"
 export OMP_WAIT_POLICY=passive # other tests may run beside this one
 build=$(dirname "$MERLIN")
-example=$MERLIN_SOURCE_DIR/examples/relight_photo.c
+examples=$MERLIN_SOURCE_DIR/examples
 if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$build/CMakeCache.txt"; then
     echo "a sanitized library wants a sanitized program: not tested"
     exit 0
@@ -26,32 +26,36 @@ version=$(prefix/bin/merlin --version | cut -d ' ' -f 2)
 [[ $version == 0.* ]] && readelf -d prefix/lib*/libmerlin.so | grep -qF "[libmerlin.so.${version%.*}]" ||
     complain "the library's soname is not of $version: $(readelf -d prefix/lib*/libmerlin.so | grep SONAME)"
 
-relit() {
+makes() {
     LD_LIBRARY_PATH=$(dirname prefix/lib*/libmerlin.so) "$1" weights.safetensors disc.hdr "$2" || complain "$1 fails"
     present "$2"
 }
 
-echo "the example is built by pkg-config"
+echo "the examples are built by pkg-config"
 description=$(dirname prefix/lib*/pkgconfig/merlin.pc)
 export PKG_CONFIG_PATH=$scratch/$description
-# shellcheck disable=SC2046
-cc "$example" $(pkg-config --cflags --libs merlin) -o by-pkg-config || complain "pkg-config's answer does not build it"
-relit ./by-pkg-config pkg-config.png
+for name in relight_photo photo_to_mesh; do
+    # shellcheck disable=SC2046
+    cc "$examples/$name.c" $(pkg-config --cflags --libs merlin) -lm -o $name ||
+        complain "pkg-config's answer does not build $name"
+done
+makes ./relight_photo pkg-config.png
+makes ./photo_to_mesh mesh.glb
 present "$(pkg-config --variable=models merlin)/merlin-point.safetensors"
 [[ $(pkg-config --modversion merlin) == "$version" ]] || complain "pkg-config's version is not the command's"
 
-echo "the example is built by CMake's find_package"
+echo "an example is built by CMake's find_package"
 cat >CMakeLists.txt <<CMAKE
 cmake_minimum_required(VERSION 3.13)
 project(other LANGUAGES C)
 find_package(merlin 0.1 REQUIRED)
-add_executable(by-cmake $example)
+add_executable(by-cmake $examples/relight_photo.c)
 target_link_libraries(by-cmake PRIVATE merlin::merlin)
 message("models: \${merlin_MODELS}")
 CMAKE
 cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 || complain "$(cat cmake.log)"
 present "$(sed -n 's/^models: //p' cmake.log)/merlin-point.safetensors"
 cmake --build other >cmake.log 2>&1 || complain "$(cat cmake.log)"
-relit other/by-cmake cmake.png
+makes other/by-cmake cmake.png
 
 finish

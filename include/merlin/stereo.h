@@ -1,0 +1,117 @@
+/* merlin/stereo: the surface of an object from pictures of it under many lights.
+ *
+ *     merlin_capture *capture;
+ *     merlin_surface surface;
+ *
+ *     if (merlin_capture_read("owl", NULL, &capture) || merlin_stereo(capture, NULL, &surface) ||
+ *         merlin_mesh_write("owl.glb", &surface))
+ *         fprintf(stderr, "%s\n", merlin_error());
+ *
+ * One camera, one still object, one light at a time: photographed, or made from a single photograph by a merlin_stage.
+ * Images, space, errors and who frees what are as in merlin.h. */
+#ifndef MERLIN_STEREO_H
+#define MERLIN_STEREO_H
+
+#include <merlin/merlin.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- pictures and lights ---- */
+
+typedef enum merlin_lighting {
+    MERLIN_DISTANT_LIGHTS, /* their directions are known */
+    MERLIN_NEAR_LIGHTS,    /* their positions are known */
+    MERLIN_UNKNOWN_LIGHTS
+} merlin_lighting;
+
+/* A diffuse white surface appears with the value intensity * cos, or near ones' intensity * cos / distance^2. */
+typedef struct merlin_light {
+    float direction[3]; /* distant: from the object to the light. Near: where an LED points; 0, 0, 0: nowhere special */
+    float position[3];  /* near: in the camera's space, any unit */
+    float intensity[3]; /* a channel each, the first alone for grey pictures; 0, 0, 0: 1 */
+    float lobe;         /* near: the exponent of an LED's fall-off with the cosine of the angle to its direction */
+} merlin_light;
+
+typedef struct merlin_capture merlin_capture;
+
+/* Where a folder's files are. All zero is the usual case. */
+typedef struct merlin_capture_files {
+    const char *lights;  /* lights.txt or an .lp file; NULL: the folder's, or its LUCES or DiLiGenT layout */
+    const char *mask;    /* NULL: the folder's mask.png, else what is not black in any picture */
+    const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
+    int near_lights;     /* 1: lights.txt holds positions */
+    int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
+    int linear;          /* 1: 8-bit pictures are linear, not sRGB */
+    float field_of_view; /* horizontal, degrees; 0: not known */
+} merlin_capture_files;
+
+/* PNG, JPEG, TIFF or EXR pictures and the lights they were taken under. files NULL: the usual case. */
+merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
+
+/* What holds for all pictures that are added from memory. */
+typedef struct merlin_capture_params {
+    merlin_lighting lighting;
+    int unknown_intensities; /* 1: how strong the lights are is not known */
+    float field_of_view;     /* horizontal, degrees; 0: the camera is far away (60 degrees with near lights) */
+    float distance;          /* of the object from the camera, in the unit of the lights' positions; 0: not known */
+} merlin_capture_params;
+
+/* Without pictures yet. params NULL: distant lights of known intensities, a camera far away. mask: 1 channel, the
+ * object where it is at least one half; NULL: what is not black in any picture. */
+merlin_status merlin_capture_new(const merlin_capture_params *params, const merlin_image *mask, merlin_capture **out);
+/* 1 or 3 channels of linear light in [0, 1], all pictures alike and of the mask's size; from 0.98 on a value counts as
+ * saturated. light NULL: nothing is known of it. */
+merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light);
+void merlin_capture_free(merlin_capture *capture);
+
+/* ---- the surface ---- */
+
+typedef enum merlin_stereo_method {
+    MERLIN_STEREO_AUTO,         /* by what is known of the lights, and their number */
+    MERLIN_STEREO_LS,           /* distant: Lambertian least squares (Woodham 1980) without shadows and saturation */
+    MERLIN_STEREO_ROBUST,       /* distant: for gloss and cast shadows */
+    MERLIN_STEREO_NEAR,         /* near: depth and normals by turns */
+    MERLIN_STEREO_SEMI,         /* distant: directions known, intensities not */
+    MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near */
+} merlin_stereo_method;
+
+typedef struct merlin_stereo_params {
+    merlin_stereo_method method;
+    int keep_edges; /* 1: depth may jump where the normals say so; else it is the least-squares surface of the normals
+                     */
+} merlin_stereo_params;
+
+/* All of the pictures' size, zero where mask is. */
+typedef struct merlin_surface {
+    merlin_image normal; /* 3, unit, z > 0 toward the camera */
+    merlin_image albedo; /* the pictures' channels; relative unless the intensities are known */
+    merlin_image depth; /* 1, along -z: in the unit of the distance (1 if that is not known), in pixels for a camera far
+                         * away; each separate piece of the mask has its own distance */
+    merlin_image residual; /* 1, root mean square of what the fit leaves, as a share of it */
+    merlin_image mask;     /* 1, 0 or 1 */
+    struct {
+        float focal, x, y; /* focal length and principal point in pixels; 0: far away */
+    } camera;
+    merlin_stereo_method method; /* the one used */
+    merlin_light
+        *lights; /* light_count, one a picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED found them; else NULL */
+    int light_count;
+    int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat to tell how strong lights are: normals may be far
+                             off */
+} merlin_surface;
+
+/* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on. */
+merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
+void merlin_surface_free(merlin_surface *surface);
+
+/* The front as triangles, by the path's ending: .ply with vertex colours, .obj (with .mtl and .png beside it), .glb
+ * with albedo and normals as textures. Albedo is scaled so that its brightest are 0.9. */
+merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
