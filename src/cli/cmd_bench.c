@@ -18,7 +18,7 @@
 static const char help[] =
     "usage: merlin bench [options]\n\n"
     "Measures this machine's peak rate of convolutions, and against it the network's inference and training, then\n"
-    "merlin estimate as a whole, and the renderer.\n\n"
+    "merlin estimate as a whole, what each light costs that an object is shown under, and the renderer.\n\n"
     "      --model W       weights (default: those merlin estimate takes)\n"
     "      --config C.json random weights of this configuration instead\n"
     "      --batch N       pictures in a training step (default 16)\n"

@@ -165,6 +165,11 @@ static status measure_estimate(const bench_options *o, bench_report *out)
     return bench_estimate(o->program, o->weights, o->quick ? 2 : 7, &out->estimate);
 }
 
+static status measure_relight(const bench_options *o, bench_report *out)
+{
+    return bench_relight(o->weights, bench_patience_of(o->quick), &out->relight);
+}
+
 static status read_name(const bench_options *o, bench_report *out)
 {
     model_config config;
@@ -181,8 +186,9 @@ status bench_run(const bench_options *options, bench_report *out)
     static const struct {
         status (*measure)(const bench_options *o, bench_report *out);
         const char *what;
-    } stages[] = {{read_name, "weights"},       {measure_estimate, "estimate"}, {measure_copy, "copying"},
-                  {measure_float32, "float32"}, {measure_bfloat16, "bfloat16"}, {measure_rendering, "rendering"}};
+    } stages[] = {{read_name, "weights"},          {measure_estimate, "estimate"}, {measure_copy, "copying"},
+                  {measure_float32, "float32"},    {measure_bfloat16, "bfloat16"}, {measure_relight, "relighting"},
+                  {measure_rendering, "rendering"}};
     enum { STAGES = sizeof stages / sizeof stages[0] };
     *out = (bench_report){.threads = parallel_threads(), .batch = options->batch ? options->batch : 16};
     progress p;

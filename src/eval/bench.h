@@ -15,6 +15,7 @@
 #include <stdio.h>
 
 #include "eval/bench_estimate.h"
+#include "eval/bench_relight.h"
 #include "nn/nn.h"
 
 enum { BENCH_TYPES = 2, BENCH_INFERENCE_SIZE = 256, BENCH_TRAINING_SIZE = 128 };
@@ -39,6 +40,7 @@ typedef struct bench_report {
     bench_network inference[BENCH_TYPES]; /* one picture of 256×256 */
     bench_network training[BENCH_TYPES];  /* forward, backward and Adam, `batch` pictures of 128×128 */
     bench_estimation estimate;            /* a picture of 256×256 */
+    bench_relighting relight;             /* of that */
     size_t samples;                       /* rendered, 128×128 */
     double render_seconds;
     uint64_t rays;

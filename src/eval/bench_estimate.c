@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
-#include <math.h>
 #include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -16,14 +15,12 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "eval/maps.h"
+#include "eval/bench_ball.h"
 #include "image/write.h"
-#include "model/model.h"
-#include "optics/camera.h"
 
 extern char **environ;
 
-enum { PICTURE = 256, MAX_RUNS = 32 };
+enum { MAX_RUNS = 32 };
 
 void bench_reset_resident(void)
 {
@@ -45,42 +42,12 @@ size_t bench_peak_resident(void)
     return kilobytes * 1024;
 }
 
-/* The maps of a ball of radius 0.4 about (0, 0, -1.2), with rings of two colours. */
-static void draw_ball(eval_maps *maps, img *mask)
-{
-    camera view = {PICTURE, PICTURE, MODEL_FOV};
-    vec3 centre = {0, 0, -1.2f};
-    for (int y = 0; y < PICTURE; y++) {
-        for (int x = 0; x < PICTURE; x++) {
-            vec3 d = camera_ray(&view, (float)x + 0.5f, (float)y + 0.5f);
-            float along = vec3_dot(d, centre), inside = along * along - vec3_dot(centre, centre) + 0.4f * 0.4f;
-            if (inside <= 0) continue;
-            vec3 p = vec3_scale(d, along - sqrtf(inside)), n = vec3_scale(vec3_sub(p, centre), 1 / 0.4f);
-            float ring = sinf(20 * p.y) > 0 ? 0.6f : -0.4f;
-            memcpy(img_at(&maps->albedo, x, y), (float[3]){ring, 0.2f, -ring}, 3 * sizeof(float));
-            memcpy(img_at(&maps->normal, x, y), (float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-            *img_at(&maps->roughness, x, y) = -0.2f;
-            *img_at(&maps->depth, x, y) = -p.z;
-            *img_at(mask, x, y) = 1;
-        }
-    }
-}
-
 static status write_picture(const char *path)
 {
-    eval_maps maps;
-    img mask, picture = {0};
-    status s = eval_maps_new(&maps, PICTURE, PICTURE);
-    if (s != OK) return s;
-    s = img_new(&mask, PICTURE, PICTURE, 1);
-    if (s == OK) {
-        draw_ball(&maps, &mask);
-        s = eval_render(&maps, &mask, MODEL_FOV, MODEL_LIGHT_POWER, &(illumination){{0, 0, 0}, NULL}, &picture);
-        if (s == OK) s = img_write_png(path, &picture, IMG_SRGB8);
-    }
+    img picture = {0};
+    status s = bench_ball(&picture);
+    if (s == OK) s = img_write_png(path, &picture, IMG_SRGB8);
     img_free(&picture);
-    img_free(&mask);
-    eval_maps_free(&maps);
     return s;
 }
 

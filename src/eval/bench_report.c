@@ -8,6 +8,10 @@ static const char *const type_names[BENCH_TYPES] = {[NN_FLOAT32] = "float32", [N
 static const double least_inference_share = 0.55, least_training_share = 0.55, most_estimate_seconds = 0.25;
 static const double most_estimate_megabytes = 150;
 
+/* By merlin_relighting. */
+static const char *const way_names[BENCH_WAYS] = {"brdf", "network", "brdf without shadows"};
+static const char *const way_keys[BENCH_WAYS] = {"brdf", "network", "brdf_unshadowed"};
+
 static double megabytes(size_t bytes)
 {
     return (double)bytes / 1e6;
@@ -49,6 +53,15 @@ static void print_estimate(const bench_estimation *e, FILE *stream)
     fputc('\n', stream);
 }
 
+static void print_relight(const bench_relighting *b, FILE *stream)
+{
+    fprintf(stream, "each light on a stage of 256x256, milliseconds (to make it):");
+    for (int i = 0; i < BENCH_WAYS; i++)
+        fprintf(stream, "%s %s %.1f (%.0f)", i ? "," : "", way_names[i], b->light_seconds[i] * 1e3,
+                b->stage_seconds[i] * 1e3);
+    fputc('\n', stream);
+}
+
 void bench_print_table(const bench_report *r, FILE *stream)
 {
     fprintf(stream, "this machine, %d threads: memory copied at %.1f GB/s\n\n", r->threads, r->copy_rate * 1e-9);
@@ -64,6 +77,7 @@ void bench_print_table(const bench_report *r, FILE *stream)
     }
     print_networks(r, stream);
     print_estimate(&r->estimate, stream);
+    print_relight(&r->relight, stream);
     fprintf(stream, "rendering at 128x128: %.2f samples/s, %.2f million rays/s (%zu samples)\n",
             (double)r->samples / r->render_seconds, (double)r->rays / r->render_seconds * 1e-6, r->samples);
 }
@@ -92,6 +106,16 @@ static void add_type(cJSON *parent, const bench_report *r, int t)
     add_network(o, "training_128", &r->training[t], least_training_share);
 }
 
+static void add_relight(cJSON *parent, const bench_relighting *b)
+{
+    cJSON *relight = cJSON_AddObjectToObject(parent, "relight_256");
+    for (int i = 0; i < BENCH_WAYS; i++) {
+        cJSON *way = cJSON_AddObjectToObject(relight, way_keys[i]);
+        cJSON_AddNumberToObject(way, "stage_seconds", b->stage_seconds[i]);
+        cJSON_AddNumberToObject(way, "light_seconds", b->light_seconds[i]);
+    }
+}
+
 char *bench_report_json(const bench_report *r)
 {
     cJSON *o = cJSON_CreateObject();
@@ -110,6 +134,7 @@ char *bench_report_json(const bench_report *r)
     cJSON_AddNumberToObject(estimate, "resident_bytes", (double)e->bytes);
     cJSON_AddBoolToObject(estimate, "holds",
                           e->seconds <= most_estimate_seconds && megabytes(e->bytes) <= most_estimate_megabytes);
+    add_relight(o, &r->relight);
     cJSON *rendering = cJSON_AddObjectToObject(o, "rendering_128");
     cJSON_AddNumberToObject(rendering, "samples_per_second", (double)r->samples / r->render_seconds);
     cJSON_AddNumberToObject(rendering, "rays_per_second", (double)r->rays / r->render_seconds);

@@ -9,7 +9,7 @@ export OMP_WAIT_POLICY=passive # other tests may run beside this one
 if "$MERLIN" bench --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" --profile "$scratch/profile.txt" \
     >"$scratch/bench.json"; then
     for figure in copy_bytes_per_second peak_forward peak_training inference_256 seconds gflop_per_second planned_bytes \
-        share_of_peak training_128 estimate_256 parts network write resident_bytes samples_per_second rays_per_second; do
+        share_of_peak training_128 estimate_256 parts network write resident_bytes light_seconds stage_seconds samples_per_second rays_per_second; do
         grep -q -E "\"$figure\":[[:space:]]*([{]|[1-9]|0[.]0*[1-9])" "$scratch/bench.json" ||
             complain "the report has no $figure above zero"
     done
