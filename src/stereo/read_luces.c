@@ -153,6 +153,23 @@ status pst_read_luces(const char *folder, pst_capture *c)
     return s;
 }
 
+/* The release has y up and z toward the camera; other copies have the axes of led_params.txt. Which it is shows in the
+ * object's front, which faces the camera. */
+static void decode_normals(pst_capture *c)
+{
+    img *n = &c->normal_true;
+    size_t pixels = (size_t)c->width * (size_t)c->height;
+    double toward = 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (c->mask.data[i] > 0) toward += (double)n->data[3 * i + 2] - 0.5;
+    for (size_t i = 0; i < pixels; i++) {
+        float *v = n->data + 3 * i;
+        double theirs[3] = {2 * v[0] - 1, 2 * v[1] - 1, 2 * v[2] - 1};
+        vec3 ours = toward < 0 ? turn(theirs) : vec3_make((real)theirs[0], (real)theirs[1], (real)theirs[2]);
+        vec3_put(c->mask.data[i] > 0 ? vec3_normalize(ours) : vec3_make(0, 0, 0), v);
+    }
+}
+
 static status read_normals(const char *path, pst_capture *c)
 {
     int bits;
@@ -162,13 +179,7 @@ static status read_normals(const char *path, pst_capture *c)
     if (n->width != c->width || n->height != c->height || n->channels != 3)
         return fail(ERROR_INPUT, "%s is %d x %d with %d channels; expected %d x %d with 3", path, n->width, n->height,
                     n->channels, c->width, c->height);
-    size_t pixels = (size_t)c->width * (size_t)c->height;
-    for (size_t i = 0; i < pixels; i++) {
-        float *v = n->data + 3 * i;
-        vec3 unit = vec3_normalize(vec3_make(2 * v[0] - 1, 2 * v[1] - 1, 2 * v[2] - 1));
-        if (!(c->mask.data[i] > 0)) unit = vec3_make(0, 0, 0);
-        memcpy(v, (float[3]){unit.x, unit.y, unit.z}, 3 * sizeof(float));
-    }
+    decode_normals(c);
     return OK;
 }
 

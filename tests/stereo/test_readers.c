@@ -270,18 +270,24 @@ static void damaged_led_files_are_refused(void **state)
     }
 }
 
+/* (0, 0.6, 0.8), with y and z turned to -1: as lights have them. */
+static void write_luces_normals(float turned)
+{
+    img n;
+    assert_int_equal(img_new(&n, 3, 2, 3), OK);
+    for (int i = 0; i < 6; i++)
+        memcpy(n.data + 3 * i, (float[]){0.5f, 0.5f + turned * 0.3f, 0.5f + turned * 0.4f}, 3 * sizeof(float));
+    assert_int_equal(img_write_png(scratch_path("normals.png"), &n, IMG_LINEAR16), OK);
+    img_free(&n);
+}
+
 static void make_luces(int width)
 {
     write_text("led_params.txt", "header\n2 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n4 5 6 0 0 1 1 1\n");
     write_flat("01.png", width, 2, 3, 0.5f, IMG_LINEAR16);
     write_flat("02.png", width, 2, 3, 0.25f, IMG_LINEAR16);
     write_flat("mask.png", 3, 2, 1, 1, IMG_LINEAR8);
-    img n;
-    assert_int_equal(img_new(&n, 3, 2, 3), OK);
-    for (int i = 0; i < 6; i++)
-        memcpy(n.data + 3 * i, (float[]){0.5f, 0.8f, 0.9f}, 3 * sizeof(float)); /* (0, 0.6, 0.8) */
-    assert_int_equal(img_write_png(scratch_path("normals.png"), &n, IMG_LINEAR16), OK);
-    img_free(&n);
+    write_luces_normals(1);
     bytes file;
     make_npz(true, NPY, &file);
     assert_int_equal(file_write(scratch_path("zgt.npz"), file.at, file.size), OK);
@@ -311,6 +317,18 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     unlink(scratch_path("02.png"));
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
     assert_says("1 numbered pictures, but led_params.txt has 2 lights");
+}
+
+static void luces_normals_face_the_camera_whatever_their_axes(void **state)
+{
+    (void)state;
+    make_luces(3);
+    write_luces_normals(-1);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
+    assert_float_equal(img_at(&c.normal_true, 1, 1)[1], 0.6, 1e-4);
+    assert_float_equal(img_at(&c.normal_true, 1, 1)[2], 0.8, 1e-4);
+    pst_capture_free(&c);
 }
 
 static void raw_mosaics_of_luces_are_refused(void **state)
@@ -392,6 +410,7 @@ int main(void)
         cmocka_unit_test(leds_may_end_in_a_number_that_means_nothing),
         cmocka_unit_test(damaged_led_files_are_refused),
         in_scratch(a_luces_folder_is_read_with_its_truth),
+        in_scratch(luces_normals_face_the_camera_whatever_their_axes),
         in_scratch(raw_mosaics_of_luces_are_refused),
         in_scratch(a_diligent_folder_is_read_with_its_truth),
         in_scratch(a_diligent_folder_needs_no_list_of_names),
