@@ -280,7 +280,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
     if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
     for (struct dirent *e; s == OK && (e = readdir(d));) {
-        if (e->d_name[0] == '.' || strchr(e->d_name, '~')) continue;
+        if (e->d_name[0] == '.') continue; /* temporary files, too */
         char *path = file_join(folder, e->d_name);
         bool below = path && file_is_folder(path);
         if (below && deep) s = list_into(path, endings, false, names, count, room);

@@ -226,11 +226,11 @@ static void folders_are_made_with_those_above(void **state)
 static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **state)
 {
     (void)state;
-    static const char *const made[] = {"b10.png",     "b9.png", "a.PNG",    "c.jpg",
-                                       ".hidden.png", "png",    "0009.png", "0010.png"};
+    static const char *const made[] = {"b10.png",  "b9~2.png", "a.PNG",  "c.jpg",   ".hidden.png", "png",
+                                       "0009.png", "0010.png", "b9.png", "b9.png~", ".7~a.png"};
     static const char *const endings[] = {".png", NULL};
-    static const char *const listed[] = {"/0009.png", "/0010.png", "/a.PNG", "/b9.png", "/b10.png"};
-    for (int i = 0; i < 8; i++) {
+    static const char *const listed[] = {"/0009.png", "/0010.png", "/a.PNG", "/b9.png", "/b9~2.png", "/b10.png"};
+    for (int i = 0; i < 11; i++) {
         char *path = in_folder(made[i]);
         assert_int_equal(file_write(path, "", 0), OK);
         free(path);
@@ -238,12 +238,12 @@ static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **st
     char **names;
     size_t count;
     assert_int_equal(file_list(folder, endings, &names, &count), OK);
-    assert_int_equal(count, 5);
-    for (int i = 0; i < 5; i++)
+    assert_int_equal(count, 6);
+    for (int i = 0; i < 6; i++)
         assert_string_equal(strrchr(names[i], '/'), listed[i]);
     file_list_free(names, count);
     assert_int_equal(file_list("/nowhere", endings, &names, &count), ERROR_INPUT);
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 11; i++) {
         char *path = in_folder(made[i]);
         unlink(path);
         free(path);
