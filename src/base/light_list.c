@@ -1,5 +1,6 @@
 #include "base/light_list.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -80,6 +81,41 @@ static bool word_number(const char *word, float *out)
     return end != word && *end == 0 && isfinite(*out);
 }
 
+/* Where the last of the words that blanks alone part begins; *end moves to its end. */
+static char *last_word_between_blanks(const char *line, char **end)
+{
+    while (*end > line && strchr(" \t", (*end)[-1]))
+        --*end;
+    char *begin = *end;
+    while (begin > line && !strchr(" \t", begin[-1]))
+        begin--;
+    return begin;
+}
+
+/* A number, and in it at most one comma, between digits; *comma is NULL if there is none. */
+static bool may_have_decimal_comma(char *word, const char *end, char **comma)
+{
+    size_t length = (size_t)(end - word);
+    *comma = memchr(word, ',', length);
+    if (!length || strspn(word, "+-0123456789,eE") < length) return false;
+    if (!*comma) return true;
+    return *comma > word && isdigit((unsigned char)(*comma)[-1]) && isdigit((unsigned char)(*comma)[1]) &&
+           !memchr(*comma + 1, ',', (size_t)(end - *comma) - 1);
+}
+
+/* Programs that speak German or French write 0,5 0,25 0,75: six numbers, if every comma parted words. */
+static void replace_decimal_commas(const reader *r, char *line)
+{
+    char *comma[3], *end = line + strlen(line), *word = line;
+    for (int i = 0; i < 3; i++, end = word) {
+        word = last_word_between_blanks(line, &end);
+        if (!may_have_decimal_comma(word, end, &comma[i])) return;
+    }
+    if (r->lp == (word == line)) return; /* a name stands before, or nothing does */
+    for (int i = 0; i < 3; i++)
+        if (comma[i]) *comma[i] = '.';
+}
+
 static bool is_between_words(char c)
 {
     return c && strchr(" \t\r\v\f,", c);
@@ -123,6 +159,7 @@ static status direction_to_position(const reader *r, vec3 *v)
 /* Cuts the numbers off: of an .lp file's line the name is left, which may have blanks in it. */
 static status parse_light(const reader *r, char *line, vec3 *out)
 {
+    replace_decimal_commas(r, line);
     int count = count_words(line);
     if (r->lp ? count < 4 : count != 3)
         return fail(ERROR_INPUT, "%s:%d: expected %s, found %d word%s", r->where, r->line,

@@ -8,8 +8,9 @@
  * An .lp file starts with a line that holds one number, the count; then `name x y z` a line, the name as it stands,
  * blanks and all, and the last three being the direction to a distant light, x right, y up, z toward the camera. Such a
  * direction becomes the position at distance 1 from (0, 0, -1), where the object stands: the frontal hemisphere of
- * docs/conventions.md; light_list_direction takes it back. Empty lines and what follows a # (at the beginning of a line
- * or behind a blank) are skipped. */
+ * docs/conventions.md; light_list_direction takes it back. Blanks or commas part the numbers, which may have a decimal
+ * comma where only blanks do. Empty lines and what follows a # (at the beginning of a line or behind a blank) are
+ * skipped. */
 #ifndef MERLIN_BASE_LIGHT_LIST_H
 #define MERLIN_BASE_LIGHT_LIST_H
 

@@ -67,6 +67,26 @@ static void names_may_have_blanks_and_signs_and_numbers(void **state)
     light_list_free(&lights);
 }
 
+static void numbers_may_have_decimal_commas(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("3\na,b 1.jpg 0,6 0 0,8\r\nb.jpg\t-0,8\t+6e-1\t0\nc.jpg 1,0, 0\n", &lights), OK);
+    assert_int_equal(lights.count, 3);
+    assert_string_equal(lights.name[0], "a,b 1.jpg");
+    assert_float_equal(light_list_direction(&lights, 0).x, 0.6, 1e-6);
+    assert_float_equal(light_list_direction(&lights, 1).x, -0.8, 1e-6);
+    assert_float_equal(light_list_direction(&lights, 2).x, 1, 1e-6);
+    light_list_free(&lights);
+    assert_int_equal(parse("-0,5 0,25 1\n1,0, 3\n", &lights), OK);
+    assert_int_equal(lights.count, 2);
+    assert_float_equal(lights.at[0].x, -0.5, 0);
+    assert_float_equal(lights.at[1].z, 3, 0);
+    light_list_free(&lights);
+    assert_refused("0,5 ,25 1\n", "found 4 words");
+    assert_refused("0,5,5 0 1\n", "found 5 words");
+}
+
 static void a_mark_of_windows_before_the_text_is_skipped(void **state)
 {
     (void)state;
@@ -163,6 +183,7 @@ int main(void)
         cmocka_unit_test(plain_lists_are_positions),
         cmocka_unit_test(lp_directions_become_positions_around_the_object),
         cmocka_unit_test(names_may_have_blanks_and_signs_and_numbers),
+        cmocka_unit_test(numbers_may_have_decimal_commas),
         cmocka_unit_test(a_mark_of_windows_before_the_text_is_skipped),
         cmocka_unit_test(a_list_may_have_one_light),
         cmocka_unit_test(values_that_are_no_finite_numbers_are_refused),
