@@ -118,6 +118,9 @@ static status find_light(const pst_capture *c, int i, const img *constant, pst_c
     s = out->ball == PST_CHROME ? ball_mirror_light(&picture, &view, &out->highlight[i], &out->direction[i])
                                 : ball_shading_light(&picture, &view, &out->residual[i], &out->direction[i]);
     img_free(&picture);
+    if (s == ERROR_INPUT && !out->from_mask)
+        s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
+                    (double)out->circle.x, (double)out->circle.y, (double)out->circle.radius);
     return s == OK ? OK : fail_in(s, "%s", out->name[i]);
 }
 
