@@ -38,7 +38,8 @@ typedef struct merlin_capture merlin_capture;
 
 /* Where a folder's files are. All zero is the usual case. */
 typedef struct merlin_capture_files {
-    const char *lights;  /* lights.txt or an .lp file; NULL: the folder's, or its LUCES or DiLiGenT layout */
+    const char *lights;  /* lights.txt or an .lp file (for the pictures in the order of their names, if it names none
+                            of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
     const char *mask;    /* NULL: the folder's mask.png, else what is not black in any picture */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
     int near_lights;     /* 1: lights.txt holds positions */

@@ -25,8 +25,8 @@ static const char help[] =
     "under 50 lights. MAPS is a folder made by merlin estimate: the photograph is not estimated again. calibrate "
     "finds\n"
     "light directions from pictures of a ball.\n\n"
-    "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp (default:\n"
-    "                       found in DIR)\n"
+    "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
+    "                       where it names none of the pictures, as a dome's (default: found in DIR)\n"
     "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
     "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
     "      --method NAME    ls, robust, near, semi, uncalibrated or auto (default)\n"
@@ -173,6 +173,12 @@ static void announce(const request *r, const char *output, const stereo_result *
     } else if (!r->quiet) {
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
     }
+    if (!r->quiet && result->lights_in_order)
+        fprintf(
+            stderr,
+            "merlin stereo: %s: none of the pictures that the .lp file names is there: its lights were taken in the "
+            "order of the pictures' names\n",
+            r->input);
     if (!r->quiet && result->strengths_unsure)
         fprintf(stderr,
                 "merlin stereo: %s: the object is too flat to tell how strong the lights are, and normals may be many "

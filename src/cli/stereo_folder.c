@@ -76,6 +76,7 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     put_statistics(report, "residual", values, take_errors(r, values));
     if (c->normal_true.data)
         put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
+    if (c->lights_in_order) cJSON_AddTrueToObject(report, "lights_in_order");
     if (s->light) put_lights(report, c, s);
     if (s->method == PST_SEMI) cJSON_AddBoolToObject(report, "strengths_unsure", s->strengths_unsure);
     free(values);
@@ -93,6 +94,7 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
     for (size_t i = 0; i < values; i++)
         r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
     r->strengths_unsure = s->strengths_unsure;
+    r->lights_in_order = c->lights_in_order;
     r->normal = s->normal;
     r->depth = s->depth;
     r->error = s->residual;

@@ -50,6 +50,7 @@ typedef struct pst_capture {
     char **name;                        /* count file names, for reports */
     pst_lighting lighting;
     bool intensities_known;
+    bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
     pst_camera camera;
     img mask;        /* 1 channel; 1 on the object */
     img normal_true; /* 3, or empty: ground truth where the layout has one */

@@ -1,3 +1,4 @@
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -35,39 +36,71 @@ typedef struct listing {
     size_t count;
 } listing;
 
-/* The folder's file of that name in capitals or not, such as a list from Windows may have; NULL if there is not exactly
- * one. */
-static const char *find_in_any_case(const listing *in, const char *name)
+/* The folder's file of that name, in capitals or not, such as a list from Windows may have; NULL if there is not
+ * exactly one. */
+static const char *find_listed(const listing *in, const char *listed)
 {
-    const char *found = NULL;
+    const char *name = base_name(listed), *found = NULL;
+    size_t alike = 0;
     for (size_t i = 0; i < in->count; i++) {
         const char *last = base_name(in->paths[i]);
+        if (strcmp(last, name) == 0) return last;
         if (strcasecmp(last, name) != 0) continue;
-        if (found) return NULL;
         found = last;
+        alike++;
     }
-    return found;
+    return alike == 1 ? found : NULL;
 }
 
-static status set_listed_name(const listing *in, const char *lights, const char *listed, size_t i, pst_capture *c)
+static bool none_is_there(const listing *in, const light_list *list)
 {
-    const char *name = base_name(listed);
-    char *path = file_join(in->folder, name);
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    const char *found = file_exists(path) ? name : find_in_any_case(in, name);
-    status s = found ? pst_capture_set_name(c, i, found)
-                     : fail(ERROR_INPUT, "%s names %s, but there is no %s", lights, listed, path);
-    free(path);
+    for (size_t i = 0; i < list->count; i++)
+        if (find_listed(in, list->name[i])) return false;
+    return true;
+}
+
+/* And not with numbers behind it, of columns that are not known here. */
+static bool ends_as_a_file(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && isalpha((unsigned char)dot[1]) && !strpbrk(dot, " \t,");
+}
+
+static bool are_files_in_order(const light_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (!ends_as_a_file(list->name[i]) ||
+            (i && strverscmp(base_name(list->name[i - 1]), base_name(list->name[i])) >= 0))
+            return false;
+    return true;
+}
+
+static status names_from_listing(const listing *in, const char *lights, const light_list *list, pst_capture *c)
+{
+    status s = pst_capture_reserve(c, list->count);
+    for (size_t i = 0; i < list->count && s == OK; i++) {
+        const char *found = find_listed(in, list->name[i]);
+        s = found ? pst_capture_set_name(c, i, found)
+                  : fail(ERROR_INPUT, "%s names %s, but there is no %s/%s", lights, list->name[i], in->folder,
+                         base_name(list->name[i]));
+    }
     return s;
 }
 
+/* A dome's list is made once, with the names of the pictures of then, and is used for every object: where none of its
+ * names is there, its lights are the folder's pictures' in their order. */
 static status names_from_list(const char *folder, const char *lights, const light_list *list, pst_capture *c)
 {
     listing in = {.folder = folder};
     status s = file_list(folder, NULL, &in.paths, &in.count);
-    if (s == OK) s = pst_capture_reserve(c, list->count);
-    for (size_t i = 0; i < list->count && s == OK; i++)
-        s = set_listed_name(&in, lights, list->name[i], i, c);
+    if (s != OK) return s;
+    c->lights_in_order = none_is_there(&in, list) && are_files_in_order(list);
+    if (c->lights_in_order) {
+        s = pst_take_pictures(folder, false, lights, list->count, c);
+        if (s != OK) s = fail_in(s, "%s names pictures of another folder", lights);
+    } else {
+        s = names_from_listing(&in, lights, list, c);
+    }
     file_list_free(in.paths, in.count);
     return s;
 }

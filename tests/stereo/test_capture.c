@@ -123,6 +123,29 @@ static void an_lp_file_says_which_picture_has_which_light(void **state)
     assert_refused(&PLAIN, "2 .lp files");
 }
 
+static void a_dome_s_lights_go_to_other_pictures_in_their_order(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    unlink(scratch_path("lights.txt"));
+    write_text("dome.lp", "3\nball 9.jpg 0 0 1\nball 10.jpg 0 3 4\nD:\\dome\\ball 11.jpg 1 0 0\n");
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_true(c.lights_in_order);
+    assert_string_equal(c.name[1], "b.png");
+    assert_float_equal(c.light[1].direction.y, 0.6, 1e-6);
+    pst_capture_free(&c);
+    write_text("dome.lp", "2\nball 1.jpg 0 0 1\nball 2.jpg 0 3 4\n");
+    assert_refused(&PLAIN, "3 pictures");
+    write_text("dome.lp", "3\nball 1.jpg 0 0 1\nball 10.jpg 0 3 4\nball 2.jpg 1 0 0\n");
+    assert_refused(&PLAIN, "names ball 1.jpg"); /* in which order were they taken? */
+    write_text("dome.lp", "3\nb1.jpg 0 0 1 0.5\nb2.jpg 0 3 4 0.5\nb3.jpg 1 0 0 0.5\n");
+    assert_refused(&PLAIN, "names b1.jpg 0"); /* what is the fourth number? */
+    write_text("dome.lp", "3\na.png 0 0 1\nball 10.jpg 0 3 4\nball 11.jpg 1 0 0\n");
+    assert_refused(&PLAIN, "names ball 10.jpg");
+}
+
 static void near_lights_have_positions_and_a_camera(void **state)
 {
     (void)state;
@@ -241,6 +264,7 @@ int main(void)
         in_scratch(ambient_light_is_subtracted_and_clipping_stays),
         in_scratch(floats_share_one_scale_below_saturation),
         in_scratch(an_lp_file_says_which_picture_has_which_light),
+        in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),
         in_scratch(a_field_of_view_makes_a_camera_without_lights),
         in_scratch(unknown_lights_need_no_list),
