@@ -128,9 +128,9 @@ status eval_run(const eval_options *options, eval_report *out)
     size_t used = options->count && options->count < count ? options->count : count;
     s = begin(&e, names[0]);
     if (s == OK) s = evaluate_files(&e, names, used);
-    if (s == OK && e.scorer.sheet) s = eval_sheet_write(e.scorer.sheet, options->figure);
+    if (s == OK && e.scorer.sheet) s = sheet_rows_write(e.scorer.sheet, options->figure);
     out->seconds = clock_seconds() - started;
-    eval_sheet_free(e.scorer.sheet);
+    sheet_rows_free(e.scorer.sheet);
     eval_prediction_free(&e.scorer.prediction);
     eval_means_free(&e.scorer.means);
     eval_model_close(e.scorer.model);

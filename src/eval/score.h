@@ -12,7 +12,7 @@ typedef struct eval_scorer {
     eval_model *model;
     eval_means means;
     eval_prediction prediction;
-    eval_sheet *sheet;   /* NULL: no picture wanted */
+    sheet_rows *sheet;   /* NULL: no picture wanted */
     float white;         /* radiance at which the photograph saturates */
     size_t environments; /* samples that are still to be relit by environments */
 } eval_scorer;

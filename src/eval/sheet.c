@@ -1,40 +1,16 @@
 #include "eval/sheet.h"
 
-#include <stdlib.h>
-
 #include "image/figure.h"
 
-enum { COLUMNS = 13, TILE = 128 };
+enum { COLUMNS = 13 };
 
 static const char *const labels[COLUMNS] = {
     "input",           "albedo, true", "albedo",         "normal, true", "normal",           "depth, true",  "depth",
     "roughness, true", "roughness",    "reconstruction", "relit, true",  "relit by network", "relit by BRDF"};
 
-struct eval_sheet {
-    int rows, used;
-    img *images; /* rows × COLUMNS */
-};
-
-status eval_sheet_new(int rows, eval_sheet **out)
+status eval_sheet_new(int rows, sheet_rows **out)
 {
-    *out = NULL;
-    eval_sheet *sheet = malloc(sizeof *sheet);
-    if (sheet) *sheet = (eval_sheet){rows, 0, calloc((size_t)rows * COLUMNS, sizeof(img))};
-    if (!sheet || !sheet->images) {
-        free(sheet);
-        return fail(ERROR_MEMORY, "no memory for a sheet of %d rows", rows);
-    }
-    *out = sheet;
-    return OK;
-}
-
-void eval_sheet_free(eval_sheet *sheet)
-{
-    if (!sheet) return;
-    for (int i = 0; i < sheet->rows * COLUMNS; i++)
-        img_free(&sheet->images[i]);
-    free(sheet->images);
-    free(sheet);
+    return sheet_rows_new((size_t)rows, COLUMNS, labels, out);
 }
 
 /* From [-1, 1] to [0, 1], black outside the mask. */
@@ -57,11 +33,11 @@ static status show_maps(const eval_maps *maps, const img *mask, img *row, int fi
     return s;
 }
 
-status eval_sheet_add(eval_sheet *sheet, const img *image, const img *mask, const eval_maps *truth,
+status eval_sheet_add(sheet_rows *sheet, const img *image, const img *mask, const eval_maps *truth,
                       const eval_prediction *p, const img *relit_true)
 {
-    if (sheet->used == sheet->rows) return OK;
-    img *row = sheet->images + sheet->used * COLUMNS;
+    img *row = sheet_rows_begin(sheet);
+    if (!row) return OK;
     status s = img_copy(&row[0], image);
     if (s == OK) s = show_maps(truth, mask, row, 1);
     if (s == OK) s = show_maps(&p->maps, mask, row, 2);
@@ -69,18 +45,6 @@ status eval_sheet_add(eval_sheet *sheet, const img *image, const img *mask, cons
     if (s == OK) s = img_copy(&row[10], relit_true);
     if (s == OK) s = img_copy(&row[11], &p->by_network[0]);
     if (s == OK) s = img_copy(&row[12], &p->by_brdf[0]);
-    if (s == OK) sheet->used++;
-    return s;
-}
-
-status eval_sheet_write(const eval_sheet *sheet, const char *path)
-{
-    int count = sheet->used * COLUMNS;
-    figure_tile *tiles = malloc((size_t)(count ? count : 1) * sizeof *tiles);
-    if (!tiles) return fail(ERROR_MEMORY, "no memory for a sheet of %d rows", sheet->used);
-    for (int i = 0; i < count; i++)
-        tiles[i] = (figure_tile){labels[i % COLUMNS], &sheet->images[i]};
-    status s = figure_sheet(path, tiles, count, COLUMNS, TILE);
-    free(tiles);
+    if (s == OK) sheet_rows_keep(sheet);
     return s;
 }

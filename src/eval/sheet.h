@@ -3,15 +3,12 @@
 #define MERLIN_EVAL_SHEET_H
 
 #include "eval/predict.h"
-
-typedef struct eval_sheet eval_sheet;
+#include "eval/sheet_rows.h"
 
 /* For at most `rows` samples; later ones are ignored. */
-status eval_sheet_new(int rows, eval_sheet **out);
-void eval_sheet_free(eval_sheet *sheet);
+status eval_sheet_new(int rows, sheet_rows **out);
 /* relit_true: the target under the prediction's first light. Everything is copied. */
-status eval_sheet_add(eval_sheet *sheet, const img *image, const img *mask, const eval_maps *truth,
+status eval_sheet_add(sheet_rows *sheet, const img *image, const img *mask, const eval_maps *truth,
                       const eval_prediction *p, const img *relit_true);
-status eval_sheet_write(const eval_sheet *sheet, const char *path);
 
 #endif

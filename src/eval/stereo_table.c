@@ -16,7 +16,7 @@
 typedef struct evaluation {
     const stereo_options *options;
     merlin_model *model;
-    stereo_sheet *sheet; /* or NULL */
+    sheet_rows *sheet; /* or NULL */
     progress bar;
     size_t solved;
 } evaluation;
@@ -140,8 +140,8 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
-    if (s == OK && e.sheet) s = stereo_sheet_write(e.sheet, options->figure);
-    stereo_sheet_free(e.sheet);
+    if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);
+    sheet_rows_free(e.sheet);
     merlin_model_close(e.model);
     return s;
 }
