@@ -27,13 +27,20 @@ struct merlin_capture {
 
 /* ---- pictures and lights ---- */
 
+static status check_field_of_view(float degrees)
+{
+    if (degrees >= 0 && degrees <= 170) return OK;
+    return fail(ERROR_USAGE, "a capture's field of view is 0 (not known) to 170 degrees, not %g", (double)degrees);
+}
+
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out)
 {
     static const merlin_capture_files usual = {0};
     if (out) *out = NULL;
     status s = api_needs(__func__, folder && out);
-    if (s != OK) return result_of(s);
     if (!files) files = &usual;
+    if (s == OK) s = check_field_of_view(files->field_of_view);
+    if (s != OK) return result_of(s);
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return result_of(fail(ERROR_MEMORY, "no memory for a capture"));
     const pst_read_options options = {.lights = files->lights,
@@ -55,12 +62,9 @@ static status check_params(const merlin_capture_params *p)
 {
     if (p->lighting < MERLIN_DISTANT_LIGHTS || p->lighting > MERLIN_UNKNOWN_LIGHTS)
         return fail(ERROR_USAGE, "no lighting has the number %d", (int)p->lighting);
-    if (!(p->field_of_view >= 0 && p->field_of_view <= 170))
-        return fail(ERROR_USAGE, "a capture's field of view is 0 (not known) to 170 degrees, not %g",
-                    (double)p->field_of_view);
     if (!(p->distance >= 0 && isfinite(p->distance)))
         return fail(ERROR_USAGE, "a capture's distance is 0 (not known) or above, not %g", (double)p->distance);
-    return OK;
+    return check_field_of_view(p->field_of_view);
 }
 
 static status take_mask(const merlin_image *mask, pst_capture *c)
@@ -110,6 +114,9 @@ static status check_picture(const pst_capture *c, const merlin_image *p)
                     c->width, c->height);
     if (c->count && p->channels != c->channels)
         return fail(ERROR_USAGE, "a picture of %d channels does not fit a capture of %d", p->channels, c->channels);
+    img taken = img_of(p);
+    for (size_t i = 0; i < img_value_count(&taken); i++)
+        if (!isfinite(p->data[i])) return fail(ERROR_INPUT, "the picture has values that are not finite");
     return OK;
 }
 

@@ -27,6 +27,7 @@ status pst_mesh_write(const char *path, const pst_mesh_source *from)
 {
     surface_mesh m;
     status s = pst_mesh_check_name(path);
+    if (s == OK) s = file_check_writable(path);
     if (s == OK) s = surface_mesh_new(from, &m);
     if (s != OK) return s;
     s = format_of(path)->write(path, &m, from);

@@ -219,10 +219,17 @@ static void folder_becomes_a_mesh(void **state)
     }
     assert_int_equal(merlin_mesh_write(scratch_path("ball.stl"), &surface), MERLIN_WRONG_USE);
     assert_says(".stl");
+    assert_int_equal(merlin_mesh_write(scratch_path("nowhere/ball.glb"), &surface), MERLIN_CANNOT_WRITE);
+    assert_says("nowhere/ball.glb: No such"); /* not a temporary file's name */
     merlin_surface_free(&surface);
     assert_int_equal(merlin_mesh_write(scratch_path("none.ply"), &surface), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("none.ply")));
     assert_int_equal(merlin_capture_read(scratch_path("nowhere"), NULL, &capture), MERLIN_BAD_INPUT);
+    assert_null(capture);
+    static const float no_view[] = {NAN, -20, 200};
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(merlin_capture_read(scratch, &(merlin_capture_files){.field_of_view = no_view[i]}, &capture),
+                         MERLIN_WRONG_USE);
     assert_null(capture);
 }
 
@@ -255,6 +262,9 @@ static void wrong_use_is_named(void **state)
     assert_int_equal(merlin_capture_add(capture, &small, &light), MERLIN_WRONG_USE);
     assert_says("8 x 8");
     assert_int_equal(merlin_capture_add(capture, &grey, &light), MERLIN_WRONG_USE);
+    picture.data[5] = NAN;
+    assert_int_equal(merlin_capture_add(capture, &picture, &light), MERLIN_BAD_INPUT);
+    assert_says("not finite");
     assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_BAD_INPUT);
     assert_says("3 or more lights");
     assert_int_equal(merlin_stereo(capture, &(merlin_stereo_params){.method = (merlin_stereo_method)9}, &surface),
