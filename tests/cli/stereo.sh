@@ -22,6 +22,12 @@ succeeds '"pictures": *6' stereo dome --method ls --json
 present "${files[@]/#/dome/stereo/}" dome/stereo/mesh.{ply,obj,mtl,png,glb}
 LC_ALL=C grep -qaP 'depth\.Z\x00\x02\x00\x00\x00' dome/stereo/maps.exr || complain "maps.exr has no depth of 32 bits"
 
+echo "a dome's list lights other pictures, and that is said"
+mkdir other
+for i in {0..5}; do cp "dome/dome_00$i.png" "other/bust$i.png"; done
+succeeds '"lights_in_order":true' stereo other --lights dome/dome.lp --method ls --json
+grep -q "in the order of the pictures' names" stderr || complain "stderr: $(cat stderr)"
+
 echo "meshes by name, depth that may jump"
 echo "a surface can be relit"
 succeeds surface-relit "$MERLIN" relight dome/stereo --light 0.7,0.2,-0.4 --light -0.7,0.2,-0.4 --light 0,0,-9 -o surface-relit
