@@ -15,9 +15,8 @@ enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192 };
  * distant ones do. Measured on rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.93 to 1.2
  * where they were distant. */
 static const double clearly = 0.8;
-/* Of a sample's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
- * twentieth do, by noise; where they were not, half. Times the cost of such an answer. */
-static const double most_away = 0.25, absurd = 1e3;
+/* Times the cost of an answer of which more than PST_MOST_AWAY faces away. */
+static const double absurd = 1e3;
 /* Of the camera that stands for none, in widths of the picture. */
 static const float far_away = 30;
 /* What holds the depth where normals leave it free, beside them. */
@@ -64,7 +63,7 @@ static status judge(const pst_problem *p, hypothesis *h)
     f.pixel = pixel;
     f.b = calloc(f.count, sizeof *f.b);
     s = f.b ? pst_field_fit(&f, &h->cost) : fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", f.count);
-    if (s == OK && share_away(&f) > most_away) h->cost *= absurd;
+    if (s == OK && share_away(&f) > PST_MOST_AWAY) h->cost *= absurd;
     free(f.b);
     free(pixel);
     return s;

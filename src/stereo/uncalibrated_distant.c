@@ -6,15 +6,17 @@
  * 2. Prior: most lights are equally strong or, where that cannot be, most of the surface has one albedo. It leaves a
  *    rotation or reflection (unit_quadric.h).
  * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
- * integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
- * camera's side, but for a sign, convex or concave; the object is taken to be convex: near its outline it faces
- * outward.
+ *    integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
+ *    camera's side, but for a sign, convex or concave. Noise bends it: on photographs it is 20 to 40 degrees off. So
+ *    the worse the best rotation is, the more counts a second prior: the object is like a balloon of its outline. That
+ *    tells the sign, too: near its outline it faces outward.
  * 4. With the lights found, their strengths among them, the robust solver does the rest. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "stereo/field_fit.h"
+#include "stereo/inflate.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"
@@ -26,6 +28,8 @@ enum { SAMPLE = 1500, REFITS = 30, PASSES = 5, GRID = 24, FEWEST = 100 };
 static const double uneven = 0.07;
 /* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
 #define FRONTAL 0.8
+/* What a surface costs that is nothing like the balloon, in costs of the most integrable one. */
+static const double balloon_weight = 20;
 
 typedef struct lights3 {
     int count;
@@ -188,17 +192,33 @@ static double form_at(const double form[36], const double a[9])
     return sum;
 }
 
-/* Downhill from a by turns about the axes that are halved when none helps. */
-static void descend(const double form[36], double reach, double a[9])
+/* What rotations cost. */
+typedef struct rotation_cost {
+    double form[36];   /* integrability's */
+    double balloon[9]; /* mean of the balloon's unit normals times the surface's, transposed */
+    double pull;       /* of the balloon */
+} rotation_cost;
+
+/* Whichever of its four mirror images is most like the balloon. */
+static double cost_at(const rotation_cost *c, const double a[9])
 {
-    double best = form_at(form, a), trial[9];
+    double aside = 0, toward = 0;
+    for (int j = 0; j < 9; j++)
+        *(j < 6 ? &aside : &toward) += a[j] * c->balloon[j];
+    return form_at(c->form, a) + c->pull * (1 - fabs(aside) - fabs(toward));
+}
+
+/* Downhill from a by turns about the axes that are halved when none helps. */
+static void descend(const rotation_cost *c, double reach, double a[9])
+{
+    double best = cost_at(c, a), trial[9];
     while (reach > 1e-4) {
         bool better = false;
         for (int k = 0; k < 6; k++) {
             double turn[3] = {0};
             turn[k / 2] = k % 2 ? reach : -reach;
             turned(turn, a, trial);
-            double value = form_at(form, trial);
+            double value = cost_at(c, trial);
             if (!(value < best)) continue;
             best = value;
             better = true;
@@ -216,14 +236,37 @@ static vec3 mean_light(const lights3 *l)
     return vec3_normalize(sum);
 }
 
-/* Of the rotations that leave the lights' mean on the camera's side, the one that makes the surface most integrable. */
-static status rotate(const pseudo *f, const lights3 *l, double a[9])
+static status compare_with_balloon(const pseudo *f, double products[9])
 {
-    vec3 mean = mean_light(l);
+    const pst_problem *p = f->problem;
+    img normal, height;
+    status s = pst_inflate(&p->capture->mask, &normal, &height);
+    if (s != OK) return s;
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        vec3 b = f->b[i];
+        double length = (double)vec3_length(b);
+        if (!(length > 0) || !isfinite(length)) continue;
+        const float *n = normal.data + 3 * (size_t)p->pixel[i];
+        const double unit[3] = {b.x / length, b.y / length, b.z / length};
+        for (int j = 0; j < 9; j++)
+            products[j] += (double)n[j / 3] * unit[j % 3] / (double)p->pixel_count;
+    }
+    img_free(&normal);
+    img_free(&height);
+    return OK;
+}
+
+static status too_few_tell(void)
+{
+    return fail(ERROR_INPUT, "the pictures do not tell where the lights are");
+}
+
+/* The best of a grid of those that leave the lights' mean on the camera's side. */
+static status search(const rotation_cost *c, vec3 mean, double a[9])
+{
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    double form[36], minor[6] = {0}, scale = HUGE_VAL, best = HUGE_VAL;
-    status s = integrability_form(f, minor, &scale, form);
-    for (int k = 0; s == OK && k < GRID * GRID * GRID; k++) {
+    double best = HUGE_VAL;
+    for (int k = 0; k < GRID * GRID * GRID; k++) {
         const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
         double trial[9], tilted[9], step = 6.283185307 / GRID;
         double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
@@ -231,18 +274,62 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9])
         turned(about_z, identity, trial);
         turned(about_x, trial, tilted);
         turned(last, tilted, trial);
-        double value = form_at(form, trial);
+        double value = cost_at(c, trial);
         if (!(value < best) || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
         best = value;
         memcpy(a, trial, sizeof trial);
     }
-    if (s == OK && !(best < HUGE_VAL)) s = fail(ERROR_INPUT, "the pictures do not tell where the lights are");
+    return best < HUGE_VAL ? OK : too_few_tell();
+}
+
+static double trace(const double form[36])
+{
+    double sum = 0;
+    for (int j = 0; j < 6; j++)
+        sum += form[7 * j];
+    return sum;
+}
+
+/* The best rotation; share: the pull, in traces of the form. */
+static status rotate_by(const pseudo *f, vec3 mean, double share, rotation_cost *c, double a[9])
+{
+    double minor[6] = {0}, scale = HUGE_VAL;
+    status s = integrability_form(f, minor, &scale, c->form);
+    c->pull = share * trace(c->form);
+    if (s == OK) s = search(c, mean, a);
     for (int pass = 0; s == OK && pass < PASSES; pass++) {
-        descend(form, pass == 0 ? 0.3 : 0.05, a);
+        descend(c, pass == 0 ? 0.3 : 0.05, a);
         minors_of(a, minor);
-        s = integrability_form(f, minor, &scale, form);
+        s = integrability_form(f, minor, &scale, c->form);
+        c->pull = share * trace(c->form);
     }
     return s;
+}
+
+/* The share of the surface that faces the other way than the whole. */
+static double share_away(const pseudo *f, const double a[9])
+{
+    size_t count = f->problem->pixel_count, away = 0;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double z = (double)transform(a, f->b[i]).z;
+        sum += z / fmax((double)vec3_length(f->b[i]), 1e-12);
+        away += z < 0;
+    }
+    return (double)(sum < 0 ? count - away : away) / (double)count;
+}
+
+/* By integrability alone, which says how far it can be trusted; then with the balloon, unless that would only hide that
+ * these are no distant lights. */
+static status rotate(const pseudo *f, const lights3 *l, double a[9])
+{
+    rotation_cost c = {.pull = 0};
+    vec3 mean = mean_light(l);
+    status s = rotate_by(f, mean, 0, &c, a);
+    if (s != OK || share_away(f, a) > PST_MOST_AWAY) return s;
+    double least = form_at(c.form, a) / fmax(trace(c.form), 1e-300);
+    s = compare_with_balloon(f, c.balloon);
+    return s == OK ? rotate_by(f, mean, balloon_weight * least, &c, a) : s;
 }
 
 static void transform_lights(const double m[9], lights3 *l)

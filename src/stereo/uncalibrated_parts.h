@@ -4,6 +4,10 @@
 
 #include "stereo/solve_parts.h"
 
+/* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
+ * twentieth do, by noise; where they were not, half. */
+#define PST_MOST_AWAY 0.25
+
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's. */
 status pst_find_distant_lights(const pst_problem *p, pst_light *light);
 

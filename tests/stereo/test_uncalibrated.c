@@ -8,11 +8,13 @@
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
+#include "base/rng.h"
 #include "eval/rendered_capture.h"
 #include "eval/surface_error.h"
 #include "relief.h"
 #include "scene/material.h"
 #include "stereo/inflate.h"
+#include "stereo/uncalibrated_parts.h"
 
 static void an_inflated_disc_is_a_hemisphere(void **state)
 {
@@ -139,6 +141,32 @@ static void half_a_surface_that_faces_away_is_no_answer(void **state)
     }
 }
 
+/* Noise of a fiftieth of full scale turns the most integrable ball by 32 degrees; its outline turns it back. */
+static void outline_holds_a_noisy_ball(void **state)
+{
+    (void)state;
+    const relief ball = {.size = 48, .lights = 12, .channels = 1, .exposure = 1.8f};
+    pst_capture c;
+    rng r = rng_at(3, 0, 0);
+    relief_capture(&ball, &c);
+    for (int k = 0; k < c.count; k++) {
+        for (int i = 0; i < c.width * c.height * c.channels; i++) {
+            float noisy = (float)c.picture[k][i] + 0.02f * 65535 * rng_range(&r, -1, 1);
+            if (c.mask.data[i / c.channels] > 0) c.picture[k][i] = (uint16_t)fminf(fmaxf(noisy, 0), 65535);
+        }
+    }
+    pst_light some[12], found[12];
+    for (int k = 0; k < 12; k++)
+        some[k] = (pst_light){.intensity = {1, 1, 1}};
+    pst_problem p = {.capture = &c, .light = some, .saturation = PST_SATURATED};
+    assert_int_equal(pst_list_pixels(&c, &p), OK);
+    assert_int_equal(pst_find_distant_lights(&p, found), OK);
+    for (int k = 0; k < 12; k++)
+        assert_true(normal_angle(c.light[k].direction, found[k].direction) < 2); /* 0.3 on average */
+    free(p.pixel);
+    capture_drop(&c);
+}
+
 static void a_speck_under_unknown_lights_is_refused(void **state)
 {
     (void)state;
@@ -162,6 +190,7 @@ int main(void)
         cmocka_unit_test(near_lights_of_unknown_position_are_found),
         cmocka_unit_test(near_lights_are_found_without_a_camera),
         cmocka_unit_test(half_a_surface_that_faces_away_is_no_answer),
+        cmocka_unit_test(outline_holds_a_noisy_ball),
         cmocka_unit_test(a_speck_under_unknown_lights_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
