@@ -20,13 +20,12 @@ static status take_light(const float *light, vec3 *place)
     return fail(ERROR_USAGE, "the light's position is not finite");
 }
 
-/* Into the photograph's frame; takes the square over. */
-static status put_back(const merlin_maps *maps, const stage *st, img *square, merlin_image *out)
+/* Into the photograph's frame. */
+static status put_back(const merlin_maps *maps, const img *square, const img *mask, merlin_image *out)
 {
     img whole = {0};
     status s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
-    if (s == OK) crop_put(square, crop_of(maps), &st->full.mask, &whole);
-    img_free(square);
+    if (s == OK) crop_put(square, crop_of(maps), mask, &whole);
     *out = image_of(&whole);
     return s;
 }
@@ -44,8 +43,12 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const f
     if (s != OK) return s;
     s = stage_surround(&st, environment);
     if (s == OK) s = stage_relight(model->network, &st, light ? &place : NULL, &square);
-    if (s == OK) s = put_back(maps, &st, &square, out);
-    stage_free(&st);
+    img mask = st.full.mask;
+    st.full.mask = (img){0};
+    stage_free(&st); /* before a large photograph's frame is made */
+    if (s == OK) s = put_back(maps, &square, &mask, out);
+    img_free(&mask);
+    img_free(&square);
     return s;
 }
 

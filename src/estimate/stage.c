@@ -139,23 +139,27 @@ static status caster_of(const surface *low, shadow_caster *out)
     return s;
 }
 
+static status take_full(const merlin_maps *maps, const img *mask, int side, surface *out)
+{
+    bool as_photographed = side == 0 || side == maps->crop.side;
+    return as_photographed ? crop_surface(maps, out) : take_surface(maps, mask, side, false, out);
+}
+
 status stage_resize(stage *s, const merlin_maps *maps, int side)
 {
+    img mask = {0};
     surface_free(&s->full);
     status result = maps_check(maps);
-    if (result != OK) return result;
-    if (side == 0 || side == maps->crop.side) return crop_surface(maps, &s->full);
-    img mask = {0};
-    result = take_mask(maps, &mask);
-    if (result == OK) result = take_surface(maps, &mask, side, false, &s->full);
+    if (result == OK) result = take_mask(maps, &mask);
+    if (result == OK) result = take_full(maps, &mask, side, &s->full);
     img_free(&mask);
     return result;
 }
 
 /* What the network saw, and what every light wants of it. */
-static status take_low(network *n, const merlin_maps *maps, stage *s)
+static status take_low(network *n, const merlin_maps *maps, const img *mask, stage *s)
 {
-    status result = maps_surface(maps, maps->size, &s->low);
+    status result = take_surface(maps, mask, maps->size, true, &s->low);
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
     if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
     if (result == OK && s->how == MERLIN_BY_NETWORK)
@@ -167,8 +171,12 @@ static status take_low(network *n, const merlin_maps *maps, stage *s)
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how, .white = maps->gain};
-    status s = take_low(n, maps, out);
-    if (s == OK) s = stage_resize(out, maps, side);
+    img mask = {0};
+    status s = maps_check(maps);
+    if (s == OK) s = take_mask(maps, &mask);
+    if (s == OK) s = take_low(n, maps, &mask, out);
+    if (s == OK) s = take_full(maps, &mask, side, &out->full);
+    img_free(&mask);
     if (s != OK) stage_free(out);
     return s;
 }

@@ -18,8 +18,6 @@ static_assert((int)MERLIN_STEREO_AUTO == (int)PST_AUTO && (int)MERLIN_STEREO_LS 
                   (int)MERLIN_STEREO_SEMI == (int)PST_SEMI && (int)MERLIN_STEREO_UNCALIBRATED == (int)PST_UNCALIBRATED,
               "the public methods are the inside's");
 
-static const float NEAR_FIELD_OF_VIEW = 60;
-
 struct merlin_capture {
     pst_capture inside;
     float field_of_view;
@@ -91,8 +89,7 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
     if (s != OK) return result_of(s);
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return result_of(fail(ERROR_MEMORY, "no memory for a capture"));
-    bool near = params->lighting == MERLIN_NEAR_LIGHTS;
-    c->field_of_view = near && params->field_of_view == 0 ? NEAR_FIELD_OF_VIEW : params->field_of_view;
+    c->field_of_view = params->field_of_view;
     c->inside = (pst_capture){.lighting = (pst_lighting)params->lighting,
                               .intensities_known = !params->unknown_intensities,
                               .camera.mean_distance = params->distance};
@@ -148,12 +145,10 @@ static status take_light(pst_lighting lighting, const merlin_light *from, pst_li
 static void take_size(merlin_capture *capture, const merlin_image *picture)
 {
     pst_capture *c = &capture->inside;
-    float distance = c->camera.mean_distance;
     c->width = picture->width;
     c->height = picture->height;
     c->channels = picture->channels;
-    if (capture->field_of_view > 0) c->camera = pst_camera_of(c->width, c->height, capture->field_of_view);
-    c->camera.mean_distance = distance;
+    pst_capture_see(c, capture->field_of_view, c->camera.mean_distance);
 }
 
 merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light)

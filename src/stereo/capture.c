@@ -151,18 +151,23 @@ pst_camera pst_camera_of(int width, int height, float field_of_view)
                         .center_y = 0.5f * (float)height};
 }
 
-/* What the user says of the camera wins; a near capture that says nothing has the project's 60 degrees. */
-static void settle_camera(const pst_read_options *options, pst_capture *c)
+void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
 {
     static const float NEAR_FIELD_OF_VIEW = 60;
     bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
-    float field_of_view = options->field_of_view > 0 ? options->field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
-    if (options->camera.focal > 0) {
+    float degrees = field_of_view > 0 ? field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
+    if (!(degrees > 0)) return;
+    c->camera = pst_camera_of(c->width, c->height, degrees);
+    c->camera.mean_distance = mean_distance;
+}
+
+/* What the user says of the camera wins. */
+static void settle_camera(const pst_read_options *options, pst_capture *c)
+{
+    if (options->camera.focal > 0)
         c->camera = options->camera;
-    } else if (field_of_view > 0) {
-        c->camera = pst_camera_of(c->width, c->height, field_of_view);
-        c->camera.mean_distance = options->camera.mean_distance;
-    }
+    else
+        pst_capture_see(c, options->field_of_view, options->camera.mean_distance);
 }
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)

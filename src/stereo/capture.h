@@ -79,6 +79,9 @@ status pst_capture_add(pst_capture *c, const img *picture, const pst_light *ligh
 status pst_capture_find_mask(pst_capture *c);
 void pst_capture_free(pst_capture *c);
 
+/* Seen by a camera of this horizontal field of view in degrees, from this mean distance. 0: not known, and the camera
+ * stays what it is, but with near lights it has the project's 60 degrees if there is none. */
+void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance);
 /* The lights become unknown, but for their intensities, which are measured apart. */
 void pst_capture_forget_lights(pst_capture *c);
 

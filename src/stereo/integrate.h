@@ -7,6 +7,9 @@
 
 #include "stereo/capture.h"
 
+/* A prior's weight that holds depth where normals leave it free, and nowhere bends it. */
+#define PST_KEEP_DEPTH 1e-4f
+
 typedef struct pst_integration {
     bool preserve_edges; /* discontinuity-preserving variant instead of least squares: keeps steps that the normals
                           * betray, but may also cut where the normals have errors of their own */

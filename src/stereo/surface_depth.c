@@ -1,15 +1,13 @@
 #include "stereo/integrate.h"
 #include "stereo/solve.h"
 
-static const float KEEP_DEPTH = 1e-4f;
-
 status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, pst_surface *s)
 {
     if (s->depth.data && !integrate) return OK;
     pst_integration how = {.preserve_edges = preserve_edges};
     if (s->depth.data) {
         how.prior = &s->depth;
-        how.prior_weight = KEEP_DEPTH;
+        how.prior_weight = PST_KEEP_DEPTH;
     }
     img depth = {0};
     status result = pst_integrate(&s->normal, &c->mask, &c->camera, &how, &depth);

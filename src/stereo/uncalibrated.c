@@ -19,8 +19,6 @@ static const double clearly = 0.8;
 static const double absurd = 1e3;
 /* Of the camera that stands for none, in widths of the picture. */
 static const float far_away = 30;
-/* What holds the depth where normals leave it free, beside them. */
-#define KEEP_DEPTH 1e-4f
 
 /* Lights of one kind, and how well they explain the pictures. */
 typedef struct hypothesis {
@@ -87,7 +85,7 @@ static status admit_lobe(pst_field *f, pst_lobe *lobe)
  * fits the lights that were found with it, errors and all. */
 static status solve_near(const pst_problem *p, const img *depth, pst_surface *out)
 {
-    const pst_integration how = {.prior = depth, .prior_weight = KEEP_DEPTH};
+    const pst_integration how = {.prior = depth, .prior_weight = PST_KEEP_DEPTH};
     pst_lobe lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST};
     pst_field f = {.problem = p, .depth = depth, .scale = 1, .lobe = &lobe};
     double cost;

@@ -203,8 +203,10 @@ typedef struct rotation_cost {
 static double cost_at(const rotation_cost *c, const double a[9])
 {
     double aside = 0, toward = 0;
-    for (int j = 0; j < 9; j++)
-        *(j < 6 ? &aside : &toward) += a[j] * c->balloon[j];
+    for (int j = 0; j < 6; j++)
+        aside += a[j] * c->balloon[j];
+    for (int j = 6; j < 9; j++)
+        toward += a[j] * c->balloon[j];
     return form_at(c->form, a) + c->pull * (1 - fabs(aside) - fabs(toward));
 }
 
@@ -256,11 +258,6 @@ static status compare_with_balloon(const pseudo *f, double products[9])
     return OK;
 }
 
-static status too_few_tell(void)
-{
-    return fail(ERROR_INPUT, "the pictures do not tell where the lights are");
-}
-
 /* The best of a grid of those that leave the lights' mean on the camera's side. */
 static status search(const rotation_cost *c, vec3 mean, double a[9])
 {
@@ -279,7 +276,7 @@ static status search(const rotation_cost *c, vec3 mean, double a[9])
         best = value;
         memcpy(a, trial, sizeof trial);
     }
-    return best < HUGE_VAL ? OK : too_few_tell();
+    return best < HUGE_VAL ? OK : fail(ERROR_INPUT, "the pictures do not tell where the lights are");
 }
 
 static double trace(const double form[36])
@@ -290,18 +287,24 @@ static double trace(const double form[36])
     return sum;
 }
 
-/* The best rotation; share: the pull, in traces of the form. */
+/* Of the rotations near one of these minors; share: the pull, in traces of the form. */
+static status weigh(const pseudo *f, const double minor[6], double share, double *scale, rotation_cost *c)
+{
+    status s = integrability_form(f, minor, scale, c->form);
+    c->pull = share * trace(c->form);
+    return s;
+}
+
+/* The best rotation. */
 static status rotate_by(const pseudo *f, vec3 mean, double share, rotation_cost *c, double a[9])
 {
     double minor[6] = {0}, scale = HUGE_VAL;
-    status s = integrability_form(f, minor, &scale, c->form);
-    c->pull = share * trace(c->form);
+    status s = weigh(f, minor, share, &scale, c);
     if (s == OK) s = search(c, mean, a);
     for (int pass = 0; s == OK && pass < PASSES; pass++) {
         descend(c, pass == 0 ? 0.3 : 0.05, a);
         minors_of(a, minor);
-        s = integrability_form(f, minor, &scale, c->form);
-        c->pull = share * trace(c->form);
+        s = weigh(f, minor, share, &scale, c);
     }
     return s;
 }
