@@ -322,14 +322,14 @@ static double share_away(const pseudo *f, const double a[9])
     return (double)(sum < 0 ? count - away : away) / (double)count;
 }
 
-/* By integrability alone, which says how far it can be trusted; then with the balloon, unless that would only hide that
- * these are no distant lights. */
-static status rotate(const pseudo *f, const lights3 *l, double a[9])
+/* By integrability alone, which says how far it can be trusted; then with the balloon. */
+static status rotate(const pseudo *f, const lights3 *l, double a[9], bool *by_outline)
 {
     rotation_cost c = {.pull = 0};
     vec3 mean = mean_light(l);
     status s = rotate_by(f, mean, 0, &c, a);
-    if (s != OK || share_away(f, a) > PST_MOST_AWAY) return s;
+    if (s != OK) return s;
+    *by_outline = share_away(f, a) > PST_MOST_AWAY;
     double least = form_at(c.form, a) / fmax(trace(c.form), 1e-300);
     s = compare_with_balloon(f, c.balloon);
     return s == OK ? rotate_by(f, mean, balloon_weight * least, &c, a) : s;
@@ -390,12 +390,12 @@ static status straighten(pseudo *f, lights3 *l)
 }
 
 /* The pseudo lights become directions. */
-static status resolve(pseudo *f, lights3 *l)
+static status resolve(pseudo *f, lights3 *l, bool *by_outline)
 {
     double a[9], toward;
     status s = straighten(f, l);
     if (s != OK) return s;
-    s = rotate(f, l, a);
+    s = rotate(f, l, a, by_outline);
     if (s != OK) return s;
     double outward = outwardness(f, a, &toward);
     for (int j = 0; j < 6; j++)
@@ -445,7 +445,7 @@ static status name_lights(const pst_problem *p, const lights3 *l, pst_light *lig
     return pst_check_directions(light, l->count);
 }
 
-status pst_find_distant_lights(const pst_problem *p, pst_light *light)
+status pst_find_distant_lights(const pst_problem *p, pst_light *light, bool *by_outline)
 {
     if (p->pixel_count < FEWEST) return too_thin();
     int count = p->capture->count;
@@ -457,7 +457,7 @@ status pst_find_distant_lights(const pst_problem *p, pst_light *light)
     l.z = l.y + padded;
     status s = factor(p, &l);
     if (s == OK) s = pseudo_surface(p, &l, &f);
-    if (s == OK) s = resolve(&f, &l);
+    if (s == OK) s = resolve(&f, &l, by_outline);
     if (s == OK) s = name_lights(p, &l, light);
     free(l.x);
     free(f.b);
