@@ -68,8 +68,8 @@ typedef struct lap_times {
     double write, total;
 } lap_times;
 
-static void print_json(const photo_job *job, const merlin_maps *maps, const staged_files *written,
-                       const lap_times *laps)
+static status print_json(const photo_job *job, const merlin_maps *maps, const staged_files *written,
+                         const lap_times *laps)
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
@@ -80,22 +80,25 @@ static void print_json(const photo_job *job, const merlin_maps *maps, const stag
     cJSON_AddNumberToObject(seconds, "read", laps->read);
     cJSON_AddNumberToObject(seconds, "write", laps->write);
     cJSON_AddNumberToObject(report, "seconds_total", laps->total);
-    json_line_print(report);
+    status s = json_line_print(report);
     cJSON_Delete(report);
     free(text);
+    return s;
 }
 
-static void announce(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
-                     const lap_times *laps)
+static status announce(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
+                       const lap_times *laps)
 {
+    status s = OK;
     if (r->json)
-        print_json(job, maps, written, laps);
+        s = print_json(job, maps, written, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
     if (!r->quiet && maps->mask_confidence < 0.6f)
         fprintf(stderr,
                 "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
                 job->photo, (double)maps->mask_confidence, job->output);
+    return s;
 }
 
 /* Seconds since *clock, which moves on to now. */
@@ -125,7 +128,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     if (s == OK) s = maps_write(r->model, &maps, &to);
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
-    if (s == OK) announce(r, job, &maps, &written, laps);
+    if (s == OK) s = announce(r, job, &maps, &written, laps);
     staged_files_free(&written);
     merlin_maps_free(&maps);
     return s;

@@ -160,7 +160,7 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
 
-static void print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)
+static status print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)
 {
     cJSON *report = cJSON_CreateObject();
     json_line_text(report, "input", r->input);
@@ -171,16 +171,16 @@ static void print_json(const request *r, const relight_job *job, const staged_fi
     cJSON_AddStringToObject(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
     cJSON_AddStringToObject(report, "model", merlin_model_name(job->model));
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
-    json_line_print(report);
+    status s = json_line_print(report);
     cJSON_Delete(report);
+    return s;
 }
 
-static void announce(const request *r, const relight_job *job, const staged_files *written, double seconds)
+static status announce(const request *r, const relight_job *job, const staged_files *written, double seconds)
 {
-    if (r->json)
-        print_json(r, job, written, seconds);
-    else if (!r->quiet)
-        printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
+    if (r->json) return print_json(r, job, written, seconds);
+    if (!r->quiet) printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
+    return OK;
 }
 
 /* Where there is something to wait for. */
@@ -219,7 +219,7 @@ static status relight(const request *r, const char *weights, const char *output)
     if (s == OK) s = get_maps(r, job.model, &maps);
     job.maps = &maps;
     if (s == OK) s = write_all(r, &job, &written);
-    if (s == OK) announce(r, &job, &written, clock_seconds() - began);
+    if (s == OK) s = announce(r, &job, &written, clock_seconds() - began);
     staged_files_free(&written);
     merlin_maps_free(&maps);
     merlin_model_close(job.model);

@@ -91,7 +91,7 @@ static status parse(int argc, char **argv, request *r)
     return OK;
 }
 
-static void print_json(const request *r, const render_stats *stats, double samples, double rays)
+static status print_json(const request *r, const render_stats *stats, double samples, double rays)
 {
     cJSON *report = cJSON_CreateObject();
     json_line_text(report, "output", r->options.folder);
@@ -101,19 +101,20 @@ static void print_json(const request *r, const render_stats *stats, double sampl
     cJSON_AddNumberToObject(report, "samples_per_second", samples);
     cJSON_AddNumberToObject(report, "rays", (double)stats->rays);
     cJSON_AddNumberToObject(report, "rays_per_second", rays);
-    json_line_print(report);
+    status s = json_line_print(report);
     cJSON_Delete(report);
+    return s;
 }
 
-static void report(const request *r, const render_stats *stats)
+static status report(const request *r, const render_stats *stats)
 {
     double seconds = stats->seconds > 0 ? stats->seconds : 1e-9;
     double samples = (double)stats->rendered / seconds, rays = (double)stats->rays / seconds;
-    if (r->json)
-        print_json(r, stats, samples, rays);
-    else if (!r->options.quiet)
+    if (r->json) return print_json(r, stats, samples, rays);
+    if (!r->options.quiet)
         printf("%zu rendered, %zu kept, %.1f s: %.2f samples/s, %.2f million rays/s\n", stats->rendered, stats->kept,
                stats->seconds, samples, rays / 1e6);
+    return OK;
 }
 
 int cmd_render(int argc, char **argv)
@@ -127,7 +128,6 @@ int cmd_render(int argc, char **argv)
     cli_catch_interrupts();
     render_stats stats;
     status s = render_samples(&r.options, &stats);
-    if (s != OK) return cli_fail("render", s);
-    report(&r, &stats);
-    return 0;
+    if (s == OK) s = report(&r, &stats);
+    return s == OK ? 0 : cli_fail("render", s);
 }

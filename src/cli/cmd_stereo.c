@@ -165,14 +165,14 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
     return s;
 }
 
-static void announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
-                     double seconds)
+static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
+                       double seconds)
 {
-    if (r->json) {
-        json_line_print(report);
-    } else if (!r->quiet) {
+    status s = OK;
+    if (r->json)
+        s = json_line_print(report);
+    else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
-    }
     if (!r->quiet && result->lights_in_order)
         fprintf(
             stderr,
@@ -184,6 +184,7 @@ static void announce(const request *r, const char *output, const stereo_result *
                 "merlin stereo: %s: the object is too flat to tell how strong the lights are, and normals may be many "
                 "degrees off: state the strengths in light_intensities.txt\n",
                 r->input);
+    return s;
 }
 
 static status work(request *r, const char *output, cJSON *report)
@@ -209,7 +210,7 @@ static status work(request *r, const char *output, cJSON *report)
         s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
         json_line_files(report, output, written.at, written.count);
     }
-    if (s == OK) announce(r, output, &result, report, clock_seconds() - began);
+    if (s == OK) s = announce(r, output, &result, report, clock_seconds() - began);
     staged_files_free(&written);
     stereo_result_free(&result);
     return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;

@@ -68,7 +68,7 @@ static status parse(int *argc, char ***argv, request *r)
     return OK;
 }
 
-static void print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
+static status print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
 {
     cJSON *report = cJSON_CreateObject();
     json_line_text(report, "input", r->input);
@@ -85,18 +85,19 @@ static void print_json(const request *r, const pst_calibration *c, const staged_
                              cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
     }
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
-    json_line_print(report);
+    status s = json_line_print(report);
     cJSON_Delete(report);
+    return s;
 }
 
-static void announce(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
+static status announce(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
 {
-    if (r->json)
-        print_json(r, c, written, seconds);
-    else if (!r->quiet)
+    if (r->json) return print_json(r, c, written, seconds);
+    if (!r->quiet)
         printf("%s: %d lights in %s/lights.txt; the ball %s at %.1f, %.1f with radius %.1f (%.2f s)\n", r->input,
                c->count, r->output, c->from_mask ? "of the mask is" : "was found", (double)c->circle.x,
                (double)c->circle.y, (double)c->circle.radius, seconds);
+    return OK;
 }
 
 static status write_files(const request *r, const pst_calibration *c, staged_files *written)
@@ -120,7 +121,7 @@ static status run(const request *r)
     if (s != OK) return s;
     cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
     s = write_files(r, &c, &written);
-    if (s == OK) announce(r, &c, &written, clock_seconds() - began);
+    if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);
     staged_files_free(&written);
     pst_calibration_free(&c);
     return s;

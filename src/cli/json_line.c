@@ -51,17 +51,15 @@ void json_line_files(cJSON *object, const char *folder, char *const *files, size
         cJSON_AddItemToArray(list, string_of(files[i]));
 }
 
-void json_line_print(const cJSON *report)
-{
-    char *line = cJSON_PrintUnformatted(report);
-    if (line) puts(line);
-    cJSON_free(line);
-}
-
 status json_report_print(char *text)
 {
     if (!text) return fail(ERROR_MEMORY, "no memory for the report");
     puts(text);
     free(text);
     return OK;
+}
+
+status json_line_print(const cJSON *report)
+{
+    return json_report_print(cJSON_PrintUnformatted(report));
 }

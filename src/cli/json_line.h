@@ -22,6 +22,6 @@ status json_report_print(char *text);
 void json_line_text(cJSON *object, const char *key, const char *text);
 /* Adds "output" and "files". */
 void json_line_files(cJSON *object, const char *folder, char *const *files, size_t count);
-void json_line_print(const cJSON *report);
+status json_line_print(const cJSON *report);
 
 #endif

@@ -9,6 +9,9 @@ enum { PST_MOST_PICTURES = 4096 };
 
 status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
 
+/* Refuses a folder without pictures, and says which of the folders in it has some. */
+status pst_check_pictures(const char *folder);
+
 /* Room for the pictures of a folder and their names, sorted: not masks, ambient, ground truth or what merlin itself
  * wrote there. numbered: only names that are a number. There must be as many as the file `lights` has, which may be
  * NULL. */

@@ -183,6 +183,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
         return s == OK ? pst_read_intensities(folder, c) : s;
     }
     status s = find_lights(folder, options->lights, &lights);
+    if (s == OK && !lights) s = pst_check_pictures(folder);
     if (s == OK && !lights)
         return fail(ERROR_INPUT,
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); give them "

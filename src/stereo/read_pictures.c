@@ -35,6 +35,29 @@ static bool is_numbered(const char *name)
     return digits > 0 && name[digits] == '.';
 }
 
+/* Where to look instead: in the first folder below with pictures, if there is one. */
+static status refuse_empty(const char *folder, bool numbered)
+{
+    char **names;
+    size_t count;
+    status s = file_list_deep(folder, PICTURES, &names, &count);
+    if (s != OK) return s;
+    char *below = NULL, *slash = NULL;
+    for (size_t i = 0; i < count && !slash; i++) {
+        below = names[i] + strlen(folder);
+        below += strspn(below, "/");
+        slash = strchr(below, '/');
+    }
+    if (slash && !numbered)
+        s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
+                 (int)(slash - below), below);
+    else
+        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF or EXR files", folder,
+                 numbered ? "01.png, 02.png and on, " : "");
+    file_list_free(names, count);
+    return s;
+}
+
 static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
 {
     status s = file_list(folder, PICTURES, names, count);
@@ -53,8 +76,16 @@ static status list_pictures(const char *folder, bool numbered, char ***names, si
     if (kept) return OK;
     file_list_free(*names, 0);
     *names = NULL;
-    return fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF or EXR files", folder,
-                numbered ? "01.png, 02.png and on, " : "");
+    return refuse_empty(folder, numbered);
+}
+
+status pst_check_pictures(const char *folder)
+{
+    char **names;
+    size_t count;
+    status s = list_pictures(folder, false, &names, &count);
+    if (s == OK) file_list_free(names, count);
+    return s;
 }
 
 status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c)

@@ -64,11 +64,10 @@ static status read_configuration(run *r)
     return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
 }
 
-static status open_output(run *r)
+/* The folder itself is made once there is something to train on. */
+static status name_output(run *r)
 {
     const char *folder = r->options->output;
-    status s = file_make_folder(folder);
-    if (s != OK) return s;
     r->paths = (paths){file_join(folder, "checkpoint.safetensors"), file_join(folder, "curves.csv"),
                        file_join(folder, "validation.csv"),         file_join(folder, "curves.png"),
                        file_join(folder, "weights.safetensors"),    file_join(folder, "seconds.txt")};
@@ -185,8 +184,9 @@ static status begin(run *r)
 {
     r->state.best = INFINITY;
     status s = read_configuration(r);
-    if (s == OK) s = open_output(r);
+    if (s == OK) s = name_output(r);
     if (s == OK) s = open_data(r);
+    if (s == OK) s = file_make_folder(r->options->output);
     if (s == OK) s = build(r);
     if (s != OK) return s;
     r->resumed_at = r->saved_at = clock_seconds();

@@ -241,6 +241,11 @@ static void what_does_not_fit_is_refused_in_one_line(void **state)
     assert_says("/nowhere");
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
     assert_refused(&PLAIN, "no pictures in");
+    assert_int_equal(file_make_folder(scratch_path("owl")), OK);
+    write_flat("owl/a.png", 6, 4, 3, 0.5f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "such as owl");
+    unlink(scratch_path("lights.txt"));
+    assert_refused(&PLAIN, "such as owl");
     three_pictures(IMG_LINEAR16);
     write_text("lights.txt", "0 0 1\n0 1 1\n");
     assert_refused(&PLAIN, "3 pictures, but");

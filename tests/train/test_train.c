@@ -332,6 +332,9 @@ static void more_held_back_than_there_are_is_refused(void **state)
     write_config(f, 4, 2, SAMPLES, jitter);
     assert_int_equal(train(f, "a", false, 0), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "validation_count"));
+    char *output = file_join(f->root, "a");
+    assert_false(file_exists(output)); /* nor is a folder left behind */
+    free(output);
 }
 
 static void exported_weights_load_as_a_model(void **state)
