@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "optics/camera.h"
 
 /* ℓ and σ in pixels; σ a slope: depth steps of three pixels' size against the normals begin to count as jumps. */
@@ -13,6 +14,8 @@ static const float LEAST_COSINE = 0.1f;
 static const int ITERATIONS = 4;
 static const double RESIDUAL = 1e-6;
 
+enum { ARRAYS = 8, STRIPS = 8 };
+
 /* The linear system, one value a pixel, rows from the top. Behind and before each array lies a row of zeros, so that
  * every pixel has four neighbours. */
 typedef struct fusion {
@@ -21,9 +24,9 @@ typedef struct fusion {
     float *right, *down;           /* w of the pair with the pixel to the right, below */
     float *step_right, *step_down; /* what the normals say of that pair */
     float *u, *residual, *direction, *product;
+    float length, turn; /* of a step of the conjugate gradients */
+    double sum[STRIPS];
 } fusion;
-
-enum { ARRAYS = 8 };
 
 static status fusion_new(const img *mask, fusion *f)
 {
@@ -65,33 +68,98 @@ static void join(fusion *f, const img *normal, size_t i, size_t j, vec3 r_i, vec
     }
 }
 
-static void join_all(fusion *f, const img *normal, const img *mask, const camera *view)
+typedef struct joining {
+    fusion *f;
+    const img *normal, *mask;
+    const camera *view;
+} joining;
+
+static void join_rows(void *context, size_t begin, size_t end)
 {
-    float jump = JUMP * camera_pixel_size(view);
-    for (int y = 0; y < mask->height; y++) {
-        for (int x = 0; x < mask->width; x++) {
-            size_t i = (size_t)y * f->width + (size_t)x;
+    const joining *j = context;
+    const img *mask = j->mask;
+    fusion *f = j->f;
+    float jump = JUMP * camera_pixel_size(j->view);
+    for (size_t y = begin; y < end; y++) {
+        for (size_t x = 0; x < f->width; x++) {
+            size_t i = y * f->width + x;
+            float column = (float)x, row = (float)y;
             if (mask->data[i] < 0.5f) continue;
-            vec3 ray = camera_point(view, (float)x + 0.5f, (float)y + 0.5f, 1);
-            if (x + 1 < mask->width && mask->data[i + 1] >= 0.5f)
-                join(f, normal, i, i + 1, ray, camera_point(view, (float)x + 1.5f, (float)y + 0.5f, 1), jump);
-            if (y + 1 < mask->height && mask->data[i + f->width] >= 0.5f)
-                join(f, normal, i, i + f->width, ray, camera_point(view, (float)x + 0.5f, (float)y + 1.5f, 1), jump);
+            vec3 ray = camera_point(j->view, column + 0.5f, row + 0.5f, 1);
+            if (x + 1 < f->width && mask->data[i + 1] >= 0.5f)
+                join(f, j->normal, i, i + 1, ray, camera_point(j->view, column + 1.5f, row + 0.5f, 1), jump);
+            if (i + f->width < f->count && mask->data[i + f->width] >= 0.5f)
+                join(f, j->normal, i, i + f->width, ray, camera_point(j->view, column + 0.5f, row + 1.5f, 1), jump);
         }
     }
 }
 
-/* product = A direction. A pixel's pairs with the left and above are kept by those neighbours. */
-static void multiply(const fusion *f, float lambda)
+/* ---- a strip of pixels at a time, whichever thread it is: sums do not depend on the number of threads ---- */
+
+typedef struct strip {
+    size_t begin, end;
+} strip;
+
+static strip strip_at(const fusion *f, size_t i)
 {
+    return (strip){f->count * i / STRIPS, f->count * (i + 1) / STRIPS};
+}
+
+static double sum_up(const fusion *f)
+{
+    double sum = 0;
+    for (int i = 0; i < STRIPS; i++)
+        sum += f->sum[i];
+    return sum;
+}
+
+/* product = A direction, and what they make of each other. A pixel's pairs with the left and above are kept by those
+ * neighbours. */
+static void multiply(void *context, size_t i)
+{
+    fusion *f = context;
+    strip at = strip_at(f, i);
+    const float lambda = 1 / (REACH * REACH);
     size_t w = f->width;
     const float *d = f->direction, *before = d - 1, *above = d - w, *after = d + 1, *below = d + w;
     const float *right = f->right, *down = f->down, *left = right - 1, *up = down - w;
     float *out = f->product;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t k = at.begin; k < at.end; k++) {
+        out[k] = lambda * d[k] + right[k] * (d[k] - after[k]) + down[k] * (d[k] - below[k]) +
+                 left[k] * (d[k] - before[k]) + up[k] * (d[k] - above[k]);
+        sum += (double)d[k] * (double)out[k];
+    }
+    f->sum[i] = sum;
+}
+
+/* A step's length along the direction, and what is left. */
+static void step(void *context, size_t i)
+{
+    fusion *f = context;
+    strip at = strip_at(f, i);
+    const float *direction = f->direction, *product = f->product;
+    float *u = f->u, *residual = f->residual, length = f->length;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t k = at.begin; k < at.end; k++) {
+        u[k] += length * direction[k];
+        residual[k] -= length * product[k];
+        sum += (double)residual[k] * (double)residual[k];
+    }
+    f->sum[i] = sum;
+}
+
+static void turn(void *context, size_t i)
+{
+    fusion *f = context;
+    strip at = strip_at(f, i);
+    const float *residual = f->residual;
+    float *direction = f->direction, share = f->turn;
 #pragma omp simd
-    for (size_t i = 0; i < f->count; i++)
-        out[i] = lambda * d[i] + right[i] * (d[i] - after[i]) + down[i] * (d[i] - below[i]) +
-                 left[i] * (d[i] - before[i]) + up[i] * (d[i] - above[i]);
+    for (size_t k = at.begin; k < at.end; k++)
+        direction[k] = residual[k] + share * direction[k];
 }
 
 /* Minus the gradient at u = ln z, where the first sum has none. */
@@ -109,32 +177,21 @@ static void start(fusion *f)
     memcpy(f->direction, f->residual, f->count * sizeof *f->direction);
 }
 
-static double dot(const float *a, const float *b, size_t count)
-{
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < count; i++)
-        sum += (double)a[i] * (double)b[i];
-    return sum;
-}
-
 /* Conjugate gradients. */
 static void solve(fusion *f)
 {
-    size_t n = f->count;
-    double error = dot(f->residual, f->residual, n), enough = RESIDUAL * error;
+    double error = 0;
+    for (size_t k = 0; k < f->count; k++)
+        error += (double)f->residual[k] * (double)f->residual[k];
+    double enough = RESIDUAL * error;
     for (int i = 0; i < ITERATIONS * (int)REACH && error > enough; i++) {
-        multiply(f, 1 / (REACH * REACH));
-        float length = (float)(error / dot(f->direction, f->product, n));
-        for (size_t k = 0; k < n; k++) {
-            f->u[k] += length * f->direction[k];
-            f->residual[k] -= length * f->product[k];
-        }
         double before = error;
-        error = dot(f->residual, f->residual, n);
-        float turn = (float)(error / before);
-        for (size_t k = 0; k < n; k++)
-            f->direction[k] = f->residual[k] + turn * f->direction[k];
+        parallel_for(STRIPS, multiply, f);
+        f->length = (float)(error / sum_up(f));
+        parallel_for(STRIPS, step, f);
+        error = sum_up(f);
+        f->turn = (float)(error / before);
+        parallel_for(STRIPS, turn, f);
     }
 }
 
@@ -146,7 +203,8 @@ status fuse_depth(const img *normal, const img *mask, float fov, img *depth)
     camera view = {mask->width, mask->height, fov};
     for (size_t i = 0; i < f.count; i++)
         f.u[i] = mask->data[i] >= 0.5f ? logf(depth->data[i]) : 0;
-    join_all(&f, normal, mask, &view);
+    joining all = {&f, normal, mask, &view};
+    parallel_blocks((size_t)mask->height, join_rows, &all);
     start(&f);
     solve(&f);
     for (size_t i = 0; i < f.count; i++)

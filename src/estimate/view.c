@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "optics/orientation.h"
 
 const char *const view_outputs[] = {"albedo", "normal", "roughness", "depth", "environment_code", NULL};
@@ -84,25 +85,47 @@ void view_features_free(view_features *f)
     *f = (view_features){0};
 }
 
+/* A picture that is turned back while it is added. */
+typedef struct addition {
+    img *mean;
+    const img *turned;
+    int view;
+    float weight;
+} addition;
+
+static void add_values(void *context, size_t begin, size_t end)
+{
+    const addition *a = context;
+    size_t channels = (size_t)a->mean->channels;
+    for (size_t i = begin; i < end; i++) {
+        const float *from = a->turned->data + channels * orientation_place(a->view, a->mean->width, i);
+        float *to = a->mean->data + channels * i;
+        for (size_t c = 0; c < channels; c++)
+            to[c] += a->weight * from[c];
+    }
+}
+
+static void add_normals(void *context, size_t begin, size_t end)
+{
+    const addition *a = context;
+    int back = orientation_inverse(a->view);
+    for (size_t i = begin; i < end; i++) {
+        float normal[3], *to = a->mean->data + 3 * i;
+        memcpy(normal, a->turned->data + 3 * orientation_place(a->view, a->mean->width, i), sizeof normal);
+        orientation_turn(back, normal);
+        for (size_t c = 0; c < 3; c++)
+            to[c] += a->weight * normal[c];
+    }
+}
+
 void view_add(img *mean, const img *turned, int view, float weight)
 {
-    size_t channels = (size_t)mean->channels;
-    for (size_t i = 0, n = pixel_count(mean); i < n; i++) {
-        const float *from = turned->data + channels * orientation_place(view, mean->width, i);
-        for (size_t c = 0; c < channels; c++)
-            mean->data[channels * i + c] += weight * from[c];
-    }
+    parallel_blocks(pixel_count(mean), add_values, &(addition){mean, turned, view, weight});
 }
 
 void view_add_normals(img *mean, const img *turned, int view, float weight)
 {
-    for (size_t i = 0, n = pixel_count(mean); i < n; i++) {
-        float normal[3];
-        memcpy(normal, turned->data + 3 * orientation_place(view, mean->width, i), sizeof normal);
-        orientation_turn(orientation_inverse(view), normal);
-        for (size_t c = 0; c < 3; c++)
-            mean->data[3 * i + c] += weight * normal[c];
-    }
+    parallel_blocks(pixel_count(mean), add_normals, &(addition){mean, turned, view, weight});
 }
 
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight)

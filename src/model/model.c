@@ -33,10 +33,13 @@ typedef struct network {
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
 
+/* fminf and fmaxf promise something about NaN, which costs calls. */
 void model_encode_image(const float *linear, float *encoded, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        encoded[i] = sqrtf(fminf(fmaxf(linear[i], 0.0f), MODEL_BRIGHTEST));
+    for (size_t i = 0; i < n; i++) {
+        float v = linear[i] > 0 ? linear[i] : 0;
+        encoded[i] = sqrtf(v < MODEL_BRIGHTEST ? v : MODEL_BRIGHTEST);
+    }
 }
 
 /* What becomes of radiance in band 0, 1 and 2 on its way to a diffuse white surface, over the root of the sphere's

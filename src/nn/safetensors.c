@@ -12,7 +12,7 @@
 #include "base/half.h"
 #include "nn/safetensors_format.h"
 
-enum { FILE_LIMIT = 1 << 30 };
+enum { FILE_LIMIT = 1 << 30, WORTH_SHARING = 1 << 16 };
 
 struct st_file {
     file_view view; /* the bytes, if st_open looked at them */
@@ -295,6 +295,7 @@ status st_to_float(const st_tensor *t, float *out)
         return OK;
     }
     const unsigned char *from = t->data;
+#pragma omp parallel for simd schedule(static) if (t->count > WORTH_SHARING)
     for (size_t i = 0; i < t->count; i++) {
         uint16_t h;
         memcpy(&h, from + 2 * i, sizeof h);

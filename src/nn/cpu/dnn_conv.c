@@ -259,15 +259,14 @@ static void fold(const nn_step *step)
     const conv *state = step->state;
     float *folded = step->forward_space;
     int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
+#pragma omp parallel for
     for (int o = 0; o < out; o++) {
         float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
         float bias = step->params.bias ? step->params.bias->value[o] : 0;
         state->folded_bias[o] = step->folded.bias->value[o] + (bias - step->folded.running_mean->value[o]) * factor;
-        for (int i = 0; i < in; i++) {
-            size_t at = (size_t)(o * in + i) * (size_t)taps;
-            for (int t = 0; t < taps; t++)
-                folded[at + (size_t)t] = step->params.weight->value[at + (size_t)t] * factor;
-        }
+        size_t row = (size_t)in * (size_t)taps, at = (size_t)o * row;
+        for (size_t i = at; i < at + row; i++)
+            folded[i] = step->params.weight->value[i] * factor;
     }
 }
 
