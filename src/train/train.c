@@ -64,7 +64,7 @@ static status read_configuration(run *r)
     return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
 }
 
-/* The folder itself is made once there is something to train on. */
+/* The folder itself is made once data and model are accepted. */
 static status name_output(run *r)
 {
     const char *folder = r->options->output;
@@ -186,8 +186,8 @@ static status begin(run *r)
     status s = read_configuration(r);
     if (s == OK) s = name_output(r);
     if (s == OK) s = open_data(r);
-    if (s == OK) s = file_make_folder(r->options->output);
     if (s == OK) s = build(r);
+    if (s == OK) s = file_make_folder(r->options->output);
     if (s != OK) return s;
     r->resumed_at = r->saved_at = clock_seconds();
     if (r->options->resume) return resume(r);
