@@ -141,7 +141,7 @@ static status find_near(const pst_problem *p, const img *balloon, hypothesis *h,
 
 static status find_distant(const pst_problem *p, const img *balloon, hypothesis *h)
 {
-    status s = pst_find_distant_lights(p, h->light, &h->by_outline);
+    status s = pst_find_distant_lights(p, balloon, h->light, &h->by_outline);
     return s == OK ? judge(p, balloon, h) : s;
 }
 

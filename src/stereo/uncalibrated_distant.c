@@ -16,7 +16,6 @@
 #include <string.h>
 
 #include "stereo/field_fit.h"
-#include "stereo/inflate.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"
@@ -39,6 +38,7 @@ typedef struct lights3 {
 /* A surface up to a 3×3 matrix, and where its pixels are. */
 typedef struct pseudo {
     const pst_problem *problem;
+    const img *balloon;
     vec3 *b;       /* a pixel of the problem */
     int32_t *slot; /* picture position to that, -1 outside the mask */
 } pseudo;
@@ -238,24 +238,18 @@ static vec3 mean_light(const lights3 *l)
     return vec3_normalize(sum);
 }
 
-static status compare_with_balloon(const pseudo *f, double products[9])
+static void compare_with_balloon(const pseudo *f, double products[9])
 {
     const pst_problem *p = f->problem;
-    img normal, height;
-    status s = pst_inflate(&p->capture->mask, &normal, &height);
-    if (s != OK) return s;
     for (size_t i = 0; i < p->pixel_count; i++) {
         vec3 b = f->b[i];
         double length = (double)vec3_length(b);
         if (!(length > 0) || !isfinite(length)) continue;
-        const float *n = normal.data + 3 * (size_t)p->pixel[i];
+        const float *n = f->balloon->data + 3 * (size_t)p->pixel[i];
         const double unit[3] = {b.x / length, b.y / length, b.z / length};
         for (int j = 0; j < 9; j++)
             products[j] += (double)n[j / 3] * unit[j % 3] / (double)p->pixel_count;
     }
-    img_free(&normal);
-    img_free(&height);
-    return OK;
 }
 
 /* The best of a grid of those that leave the lights' mean on the camera's side. */
@@ -331,8 +325,8 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9], bool *by_ou
     if (s != OK) return s;
     *by_outline = share_away(f, a) > PST_MOST_AWAY;
     double least = form_at(c.form, a) / fmax(trace(c.form), 1e-300);
-    s = compare_with_balloon(f, c.balloon);
-    return s == OK ? rotate_by(f, mean, balloon_weight * least, &c, a) : s;
+    compare_with_balloon(f, c.balloon);
+    return rotate_by(f, mean, balloon_weight * least, &c, a);
 }
 
 static void transform_lights(const double m[9], lights3 *l)
@@ -445,12 +439,12 @@ static status name_lights(const pst_problem *p, const lights3 *l, pst_light *lig
     return pst_check_directions(light, l->count);
 }
 
-status pst_find_distant_lights(const pst_problem *p, pst_light *light, bool *by_outline)
+status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, bool *by_outline)
 {
     if (p->pixel_count < FEWEST) return too_thin();
     int count = p->capture->count;
     size_t padded = (size_t)pst_padded(count);
-    pseudo f = {0};
+    pseudo f = {.balloon = balloon};
     lights3 l = {.count = count, .x = calloc(3 * padded, sizeof(float))};
     if (!l.x) return fail(ERROR_MEMORY, "no memory for %d lights", count);
     l.y = l.x + padded;
