@@ -12,7 +12,7 @@
 #include "base/half.h"
 #include "nn/safetensors_format.h"
 
-enum { FILE_LIMIT = 1 << 30, WORTH_SHARING = 1 << 16 };
+enum { FILE_LIMIT = 1 << 30, WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken */ };
 
 struct st_file {
     file_view view; /* the bytes, if st_open looked at them */

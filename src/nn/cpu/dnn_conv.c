@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "nn/cpu/chunk.h"
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/norm.h"
@@ -259,7 +260,7 @@ static void fold(const nn_step *step)
     const conv *state = step->state;
     float *folded = step->forward_space;
     int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
-#pragma omp parallel for
+#pragma omp parallel for schedule(static) if (step->params.weight->count > CPU_PARALLEL_MIN)
     for (int o = 0; o < out; o++) {
         float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
         float bias = step->params.bias ? step->params.bias->value[o] : 0;
