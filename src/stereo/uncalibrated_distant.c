@@ -9,7 +9,7 @@
  *    integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
  *    camera's side, but for a sign, convex or concave. Noise bends it: on photographs it is 20 to 40 degrees off. So
  *    the worse the best rotation is, the more counts a second prior: the object is like a balloon of its outline. That
- *    tells the sign, too: near its outline it faces outward.
+ *    tells the sign, too.
  * 4. With the lights found, their strengths among them, the robust solver does the rest. */
 #include <math.h>
 #include <stdlib.h>
@@ -199,15 +199,31 @@ typedef struct rotation_cost {
     double pull;       /* of the balloon */
 } rotation_cost;
 
+/* How much a is like the balloon to the side and toward the camera; below 0: its mirror image is. */
+static void liken(const rotation_cost *c, const double a[9], double *aside, double *toward)
+{
+    *aside = *toward = 0;
+    for (int j = 0; j < 6; j++)
+        *aside += a[j] * c->balloon[j];
+    for (int j = 6; j < 9; j++)
+        *toward += a[j] * c->balloon[j];
+}
+
 /* Whichever of its four mirror images is most like the balloon. */
 static double cost_at(const rotation_cost *c, const double a[9])
 {
-    double aside = 0, toward = 0;
-    for (int j = 0; j < 6; j++)
-        aside += a[j] * c->balloon[j];
-    for (int j = 6; j < 9; j++)
-        toward += a[j] * c->balloon[j];
+    double aside, toward;
+    liken(c, a, &aside, &toward);
     return form_at(c->form, a) + c->pull * (1 - fabs(aside) - fabs(toward));
+}
+
+/* To that image. */
+static void mirror(const rotation_cost *c, double a[9])
+{
+    double aside, toward;
+    liken(c, a, &aside, &toward);
+    for (int j = 0; j < 9; j++)
+        a[j] *= (j < 6 ? aside : toward) < 0 ? -1 : 1;
 }
 
 /* Downhill from a by turns about the axes that are halved when none helps. */
@@ -326,7 +342,9 @@ static status rotate(const pseudo *f, const lights3 *l, double a[9], bool *by_ou
     *by_outline = share_away(f, a) > PST_MOST_AWAY;
     double least = form_at(c.form, a) / fmax(trace(c.form), 1e-300);
     compare_with_balloon(f, c.balloon);
-    return rotate_by(f, mean, balloon_weight * least, &c, a);
+    s = rotate_by(f, mean, balloon_weight * least, &c, a);
+    if (s == OK) mirror(&c, a);
+    return s;
 }
 
 static void transform_lights(const double m[9], lights3 *l)
@@ -337,27 +355,6 @@ static void transform_lights(const double m[9], lights3 *l)
         l->y[k] = v.y;
         l->z[k] = v.z;
     }
-}
-
-/* Positive if the surface faces outward on the whole, seen from the mask's middle. */
-static double outwardness(const pseudo *f, const double surface[9], double *toward)
-{
-    const pst_problem *p = f->problem;
-    size_t width = (size_t)p->capture->width;
-    double cx = 0, cy = 0, sum = 0;
-    for (size_t i = 0; i < p->pixel_count; i++) {
-        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
-        cx += (double)column / (double)p->pixel_count;
-        cy += (double)row / (double)p->pixel_count;
-    }
-    *toward = 0;
-    for (size_t i = 0; i < p->pixel_count; i++) {
-        vec3 n = vec3_normalize(transform(surface, f->b[i]));
-        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
-        sum += n.x * ((double)column - cx) - n.y * ((double)row - cy);
-        *toward += n.z;
-    }
-    return sum;
 }
 
 /* Lights become equally strong or, if they cannot, the surface becomes one of equal albedo; up to a rotation. */
@@ -386,18 +383,11 @@ static status straighten(pseudo *f, lights3 *l)
 /* The pseudo lights become directions. */
 static status resolve(pseudo *f, lights3 *l, bool *by_outline)
 {
-    double a[9], toward;
+    double a[9];
     status s = straighten(f, l);
-    if (s != OK) return s;
-    s = rotate(f, l, a, by_outline);
-    if (s != OK) return s;
-    double outward = outwardness(f, a, &toward);
-    for (int j = 0; j < 6; j++)
-        a[j] *= outward < 0 ? -1 : 1;
-    for (int j = 6; j < 9; j++)
-        a[j] *= toward < 0 ? -1 : 1;
-    transform_lights(a, l);
-    return OK;
+    if (s == OK) s = rotate(f, l, a, by_outline);
+    if (s == OK) transform_lights(a, l);
+    return s;
 }
 
 /* The surface under the pseudo lights, at every pixel. */
