@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/plain_locale.h"
+
 bool file_exists(const char *path)
 {
     struct stat s;
@@ -188,12 +190,16 @@ status file_print(const char *path, file_printer *print, const void *context)
     status s = file_temporary(path, &temporary);
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
-    bool written = f != NULL;
-    if (f) {
-        print(f, context);
-        written = !ferror(f);
-        written &= fclose(f) == 0;
+    if (!f) {
+        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        free(temporary);
+        return s;
     }
+    locale_t before = uselocale(plain_locale());
+    print(f, context);
+    uselocale(before);
+    bool written = !ferror(f);
+    written &= fclose(f) == 0;
     if (written) return file_commit(temporary, path);
     file_discard(temporary);
     return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);

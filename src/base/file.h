@@ -31,7 +31,8 @@ void file_unmap(file_view *view);
 status file_write(const char *path, const void *data, size_t size);
 status file_write_durable(const char *path, const void *data, size_t size);
 
-/* The same for what is too large to be put together in memory first: print is given the open file. */
+/* The same for what is too large to be put together in memory first: print is given the open file, and prints numbers
+ * with a decimal point in every locale. */
 typedef void file_printer(FILE *f, const void *context);
 status file_print(const char *path, file_printer *print, const void *context);
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/plain_locale.h"
 
 enum { LINE_MAX_LENGTH = 1024, FILE_MAX_SIZE = 1 << 22 };
 static const float LARGEST = 1000.0f;
@@ -77,7 +78,7 @@ static bool word_number(const char *word, float *out)
 {
     char *end;
     errno = 0;
-    *out = strtof(word, &end);
+    *out = strtof_l(word, &end, plain_locale());
     return end != word && *end == 0 && isfinite(*out);
 }
 

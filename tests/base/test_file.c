@@ -14,6 +14,9 @@
 
 #include <cmocka.h>
 
+#include "comma.h"
+#include "scratch.h"
+
 static char folder[] = "/tmp/merlin-file-XXXXXX";
 
 static int make_folder(void **state)
@@ -163,6 +166,43 @@ static void an_interrupted_write_leaves_the_old_file(void **state)
     free(path);
 }
 
+static void print_a_number(FILE *f, const void *context)
+{
+    const double *number = context;
+    fprintf(f, "%g", *number);
+}
+
+static void printed_numbers_have_points_in_every_locale(void **state)
+{
+    (void)state;
+    char *path = in_folder("number"), *data, *made = scratch_new(), outside[8] = "";
+    size_t size;
+    const double half = 0.5;
+    bool comma = comma_begin(made);
+    status s = file_print(path, print_a_number, &half);
+    snprintf(outside, sizeof outside, "%g", half);
+    comma_end();
+    scratch_remove(made);
+    assert_int_equal(s, OK);
+    assert_int_equal(file_read(path, 10, &data, &size), OK);
+    assert_string_equal(data, "0.5");
+    assert_string_equal(outside, comma ? "0,5" : "0.5"); /* the program's own stays */
+    unlink(path);
+    free(data);
+    free(path);
+}
+
+static void a_print_that_fails_says_why(void **state)
+{
+    (void)state;
+    char *nowhere = in_folder("no/such");
+    const double half = 0.5;
+    assert_int_equal(file_print(nowhere, print_a_number, &half), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), nowhere));
+    assert_non_null(strstr(status_message(), "No such file"));
+    free(nowhere);
+}
+
 static void whether_a_file_can_be_written_is_known_before_it_is(void **state)
 {
     (void)state;
@@ -258,6 +298,8 @@ int main(void)
         cmocka_unit_test(a_write_that_fails_leaves_the_old_file_and_no_other),
         cmocka_unit_test(threads_may_write_one_file),
         cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
+        cmocka_unit_test(printed_numbers_have_points_in_every_locale),
+        cmocka_unit_test(a_print_that_fails_says_why),
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(folders_are_made_with_those_above),

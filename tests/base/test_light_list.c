@@ -10,6 +10,9 @@
 
 #include <cmocka.h>
 
+#include "comma.h"
+#include "scratch.h"
+
 static status parse(const char *text, light_list *out)
 {
     return light_list_parse(text, strlen(text), "lights.txt", out);
@@ -85,6 +88,19 @@ static void numbers_may_have_decimal_commas(void **state)
     light_list_free(&lights);
     assert_refused("0,5 ,25 1\n", "found 4 words");
     assert_refused("0,5,5 0 1\n", "found 5 words");
+}
+
+static void programs_with_decimal_commas_read_the_same(void **state)
+{
+    (void)state;
+    light_list lights;
+    if (!comma_begin(scratch)) return;
+    status s = parse("1\na.jpg 0.6 0 8e-1\n", &lights);
+    comma_end();
+    if (s != OK) fail_msg("%s", status_message());
+    assert_float_equal(light_list_direction(&lights, 0).x, 0.6, 1e-6);
+    assert_float_equal(light_list_direction(&lights, 0).z, 0.8, 1e-6);
+    light_list_free(&lights);
 }
 
 static void a_mark_of_windows_before_the_text_is_skipped(void **state)
@@ -184,6 +200,7 @@ int main(void)
         cmocka_unit_test(lp_directions_become_positions_around_the_object),
         cmocka_unit_test(names_may_have_blanks_and_signs_and_numbers),
         cmocka_unit_test(numbers_may_have_decimal_commas),
+        in_scratch(programs_with_decimal_commas_read_the_same),
         cmocka_unit_test(a_mark_of_windows_before_the_text_is_skipped),
         cmocka_unit_test(a_list_may_have_one_light),
         cmocka_unit_test(values_that_are_no_finite_numbers_are_refused),
