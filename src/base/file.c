@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,12 +111,34 @@ void file_unmap(file_view *view)
     *view = (file_view){0};
 }
 
+/* A rename would put a file in the place of a device or a pipe: root, writing to /dev/null, would have it no more. */
+static status check_replaceable(const char *path)
+{
+    struct stat s;
+    if (stat(path, &s) != 0 || S_ISREG(s.st_mode)) return OK;
+    return fail(ERROR_OUTPUT, "cannot write %s: it is %s", path, S_ISDIR(s.st_mode) ? "a folder" : "not a plain file");
+}
+
+/* The end of a name that leaves room for what is put in front of it: its ending says which format it has. */
+static const char *end_of_long_name(const char *name)
+{
+    enum { ROOM = 24, MOST = NAME_MAX - ROOM };
+    size_t length = strlen(name);
+    if (length <= MOST) return name;
+    name += length - MOST;
+    while ((*name & 0xc0) == 0x80) /* no half of a letter of UTF-8 */
+        name++;
+    return name;
+}
+
 status file_temporary(const char *path, char **temporary)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     char *out = NULL;
+    status s = check_replaceable(path);
+    if (s != OK) return s;
     /* the thread's number, which no other thread of any process has: several may write one file */
-    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)gettid(), name) < 0)
+    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)gettid(), end_of_long_name(name)) < 0)
         return fail(ERROR_MEMORY, "no memory for a file name");
     *temporary = out;
     return OK;
@@ -164,7 +187,6 @@ static status write_through_temporary(const char *path, const void *data, size_t
 status file_check_writable(const char *path)
 {
     char *temporary;
-    if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
     status s = file_temporary(path, &temporary);
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");

@@ -38,7 +38,7 @@ status file_print(const char *path, file_printer *print, const void *context);
 
 /* For libraries that write by name: a temporary name beside path, with path's own ending so that the library picks the
  * right format (malloc'ed); then file_commit renames it to path and frees the name, or file_discard removes and frees
- * it. */
+ * it. Folders, devices and pipes are refused. */
 status file_temporary(const char *path, char **temporary);
 status file_commit(char *temporary, const char *path);
 void file_discard(char *temporary);

@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include <limits.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -203,6 +204,43 @@ static void a_print_that_fails_says_why(void **state)
     free(nowhere);
 }
 
+static void what_is_no_plain_file_is_not_replaced(void **state)
+{
+    (void)state;
+    char *pipe = in_folder("pipe");
+    struct stat about;
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    assert_int_equal(file_write(pipe, "new", 3), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), pipe));
+    assert_int_equal(file_check_writable(pipe), ERROR_OUTPUT);
+    assert_int_equal(stat(pipe, &about), 0);
+    assert_true(S_ISFIFO(about.st_mode));
+    unlink(pipe);
+    assert_int_equal(entries(), 0);
+    free(pipe);
+}
+
+/* Of as many bytes as a name may have, in letters of three bytes. */
+static void the_longest_names_can_be_written(void **state)
+{
+    (void)state;
+    char name[NAME_MAX + 1] = "", *temporary, *data;
+    size_t size;
+    while (strlen(name) < NAME_MAX - 6)
+        strcat(name, "\u6587");
+    strcat(name, ".png");
+    char *path = in_folder(name);
+    assert_int_equal(file_write(path, "new", 3), OK);
+    assert_int_equal(file_read(path, 10, &data, &size), OK);
+    assert_int_equal(file_temporary(path, &temporary), OK);
+    assert_string_equal(strrchr(temporary, '.'), ".png");
+    assert_int_equal(strncmp(strchr(temporary, '~') + 1, "\u6587", 3), 0);
+    file_discard(temporary);
+    unlink(path);
+    free(data);
+    free(path);
+}
+
 static void whether_a_file_can_be_written_is_known_before_it_is(void **state)
 {
     (void)state;
@@ -300,6 +338,8 @@ int main(void)
         cmocka_unit_test(an_interrupted_write_leaves_the_old_file),
         cmocka_unit_test(printed_numbers_have_points_in_every_locale),
         cmocka_unit_test(a_print_that_fails_says_why),
+        cmocka_unit_test(what_is_no_plain_file_is_not_replaced),
+        cmocka_unit_test(the_longest_names_can_be_written),
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(folders_are_made_with_those_above),

@@ -111,7 +111,7 @@ static void failed_writes_leave_nothing_and_say_where(void **state)
     assert_null(strchr(status_message(), '~'));
     assert_int_equal(img_write_animation(scratch_path("no/such/place.gif"), &image, 1, 80), ERROR_OUTPUT);
     assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), ERROR_OUTPUT);
-    /* a folder in the file's place: all is written, and the last step, the renaming, fails */
+    /* a folder in the file's place */
     assert_int_equal(file_make_folder(scratch_path("taken.png")), OK);
     assert_int_equal(img_write_png(scratch_path("taken.png"), &image, IMG_SRGB8), ERROR_OUTPUT);
     limit_file_size(32);
