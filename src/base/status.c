@@ -37,10 +37,9 @@ status fail_in(status s, const char *format, ...)
     va_start(args, format);
     int used = vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    if (used < 0 || used >= MESSAGE_SIZE - 3) return s;
     /* a message too long for the place loses its end */
     int room = MESSAGE_SIZE - 3 - used;
-    snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
+    if (used >= 0 && room > 0) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
     keep_one_line();
     return s;
 }
