@@ -41,6 +41,16 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     return 0;
 }
 
+/* The channel that says where there is anything, but for that of the colour itself; NULL if none. mask.A is that of
+ * maps and samples. */
+static const char *find_alpha(const exr_file *f, const char *colour)
+{
+    static const char *const known[] = {"A", "mask.A"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (exr_has_channel(f, known[i]) && strcmp(colour, known[i]) != 0) return known[i];
+    return NULL;
+}
+
 static status read_open(exr_file *f, const char *path, img *color, img *alpha)
 {
     channel_name names[3];
@@ -48,13 +58,13 @@ static status read_open(exr_file *f, const char *path, img *color, img *alpha)
     if (!channels)
         return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
     status s = img_new(color, exr_width(f), exr_height(f), channels);
-    if (s == OK && alpha && exr_has_channel(f, "A") && strcmp(names[0], "A") != 0)
-        s = img_new(alpha, exr_width(f), exr_height(f), 1);
+    const char *opacity = find_alpha(f, names[0]);
+    if (s == OK && alpha && opacity) s = img_new(alpha, exr_width(f), exr_height(f), 1);
     if (s != OK) return s;
     exr_target targets[4];
     for (int c = 0; c < channels; c++)
         targets[c] = (exr_target){names[c], color->data + c, channels};
-    if (alpha && alpha->data) targets[channels++] = (exr_target){"A", alpha->data, 1};
+    if (alpha && alpha->data) targets[channels++] = (exr_target){opacity, alpha->data, 1};
     return exr_read(f, targets, (size_t)channels);
 }
 

@@ -310,6 +310,28 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     img_free(&picture);
 }
 
+/* As merlin estimate writes them. */
+static void the_mask_of_maps_is_their_alpha(void **state)
+{
+    (void)state;
+    float albedo[9] = {0.5f, 0.25f, 0.125f, 0.5f, 0.25f, 0.125f}, cover[3] = {1, 0.25f, 0};
+    const exr_channel maps[] = {{"albedo.R", albedo, 3, false},
+                                {"albedo.G", albedo + 1, 3, false},
+                                {"albedo.B", albedo + 2, 3, false},
+                                {"mask.A", cover, 1, false}};
+    img color = {0}, alpha = {0}, mask = {0};
+    assert_int_equal(exr_write(scratch_path("maps.exr"), 3, 1, maps, 4, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("maps.exr"), &color, &alpha), OK);
+    assert_memory_equal(color.data, albedo, sizeof albedo);
+    assert_int_equal(img_read_mask(scratch_path("maps.exr"), &mask), OK);
+    assert_memory_equal(mask.data, cover, sizeof cover);
+    assert_non_null(alpha.data);
+    assert_memory_equal(alpha.data, cover, sizeof cover);
+    img_free(&color);
+    img_free(&alpha);
+    img_free(&mask);
+}
+
 static void one_pixel_is_a_picture(void **state)
 {
     (void)state;
@@ -469,6 +491,7 @@ int main(void)
         cmocka_unit_test(embedded_profile_is_honoured),
         cmocka_unit_test(radiance_files_are_linear),
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
+        cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
         cmocka_unit_test(truncated_pictures_are_refused),
