@@ -121,6 +121,10 @@ static status find_masks(photo_list *list, const char *folder)
         char *mask = companion(folder, job->photo, ".mask.png", &memory);
         if (!mask && memory) mask = companion(folder, job->photo, ".png", &memory);
         if (!memory) return no_memory();
+        if (mask && file_is_same(mask, job->photo)) { /* photographs and masks in one folder: this one lacks its own */
+            free(mask);
+            mask = NULL;
+        }
         if (!mask) return fail(ERROR_INPUT, "no mask for %s in %s", job->photo, folder);
         free(job->mask);
         job->mask = mask;

@@ -54,6 +54,11 @@ refuses 1 'missing.png' estimate disc.hdr --mask missing.png "${small[@]}"
 openexr black.exr '\0\0\0\0'
 radiance round.hdr 16 6
 refuses 1 'black.exr: the object is black' estimate black.exr --mask round.hdr "${small[@]}"
+mkdir beside
+cp disc.merlin/albedo.png beside/a.png
+cp disc.merlin/albedo.png beside/b.png
+cp disc.merlin/mask.png beside/a.mask.png
+refuses 1 'no mask for beside/b.png in beside' estimate beside/a.png beside/b.png --mask beside "${small[@]}"
 absent out.merlin
 
 echo "wrong use"
