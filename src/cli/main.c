@@ -91,7 +91,8 @@ int main(int argc, char **argv)
     }
     const cli_command *command = find_command(argv[1]);
     if (!command) {
-        fprintf(stderr, "merlin: no command \"%s\" (try merlin --help)\n", argv[1]);
+        (void)fail(ERROR_USAGE, "no command \"%s\"", argv[1]); /* on one line, whatever is in it */
+        fprintf(stderr, "merlin: %s (try merlin --help)\n", status_message());
         return 2;
     }
     return finish(command->run(argc - 1, argv + 1));

@@ -6,6 +6,7 @@ source "$(dirname "$0")/support/check.bash"
 succeeds "commands:" "$MERLIN" --help
 succeeds "^merlin [0-9]" "$MERLIN" --version
 refuses 2 'no command "estimat"' "$MERLIN" estimat photo.png
+refuses 2 'no command "photo?.png"' "$MERLIN" $'photo\n.png'
 for command in estimate relight render train eval bench info; do
     succeeds "$command" "$MERLIN" --help
     succeeds "[Uu]sage: merlin $command" "$MERLIN" "$command" --help
