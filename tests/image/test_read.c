@@ -377,6 +377,31 @@ static void what_is_no_picture_is_refused(void **state)
     assert_refused(scratch_path("drawing.svg"), "not a picture");
 }
 
+static void put_radiance(const char *format, const char *size)
+{
+    char file[256];
+    int length = snprintf(file, sizeof file, "#?RADIANCE\nFORMAT=32-bit_rle_%s\n\n%s\n", format, size);
+    memset(file + length, 0x80, 8);
+    put("turned.hdr", file, (size_t)length + 8);
+}
+
+static void radiance_files_of_other_colours_and_directions_are_refused(void **state)
+{
+    (void)state;
+    img color = {0};
+    put_radiance("rgbe", "-Y 1 +X 2");
+    assert_int_equal(img_read(scratch_path("turned.hdr"), &color, NULL), OK);
+    assert_true(color.width == 2 && color.height == 1);
+    img_free(&color);
+    put_radiance("xyze", "-Y 1 +X 2");
+    assert_refused(scratch_path("turned.hdr"), "XYZ");
+    static const char *const turned[] = {"+Y 1 +X 2", "-Y 1 -X 2", "+Y 1 -X 2", "+X 2 -Y 1", "-X 2 +Y 1"};
+    for (size_t i = 0; i < sizeof turned / sizeof *turned; i++) {
+        put_radiance("rgbe", turned[i]);
+        assert_refused(scratch_path("turned.hdr"), turned[i]);
+    }
+}
+
 static void truncated_pictures_are_refused(void **state)
 {
     (void)state;
@@ -494,6 +519,7 @@ int main(void)
         cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(radiance_files_of_other_colours_and_directions_are_refused),
         cmocka_unit_test(truncated_pictures_are_refused),
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
         cmocka_unit_test(what_is_not_finite_is_refused),
