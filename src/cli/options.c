@@ -67,7 +67,8 @@ static status take_number(const cli_option *o, const char *value)
 /* Whoever asks for one file would find a folder of that name. */
 static status take_folder(const cli_option *o, const char *value)
 {
-    static const char *const pictures[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".webp", ".hdr", NULL};
+    static const char *const pictures[] = {".png",  ".jpg",  ".jpeg", ".exr", ".tif",
+                                           ".tiff", ".webp", ".gif",  ".hdr", NULL};
     if (file_ends_in_any(value, pictures))
         return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name, value);
     *o->folder = value;

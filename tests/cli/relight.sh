@@ -79,6 +79,7 @@ succeeds around relight disc.merlin --env room.hdr --orbit 3 -o around
 present around/relit_000.png around/frame_00{0..2}.png around/orbit.webp
 cmp -s around/frame_000.png around/frame_001.png && complain "the surroundings do not go round"
 refuses 2 'ends like a picture' relight disc.merlin --light 0,0,0 -o lit.PNG
+refuses 2 'ends like a picture' relight disc.merlin --orbit 3 -o orbit.gif
 refuses 2 'want an --env' relight disc.merlin --light 0,0,0 --rotate 90
 refuses 2 'without --env' relight disc.merlin --env room.hdr --dome 5
 refuses 2 '--rotate' relight disc.merlin --env room.hdr --rotate left
