@@ -1,3 +1,4 @@
+#include <pthread.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -159,14 +160,22 @@ static status decode_open(VipsImage **image, VipsImage **opacity, const char *pa
     return s;
 }
 
-status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+/* What is asked of a picture: its pixels, or its head alone. */
+typedef struct request {
+    const char *path;
+    picture_kind kind;
+    picture_colour how;
+    img *color, *alpha;
+    picture_head *head;
+} request;
+
+static status decode(const request *r)
 {
     VipsImage *opened = NULL, *image = NULL, *opacity = NULL;
-    status s = vips_begin();
-    if (s == OK) s = open_picture(path, kind, &opened);
+    status s = open_picture(r->path, r->kind, &opened);
     if (s != OK) return s;
     image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
-    s = decode_open(&image, &opacity, path, how, color, alpha);
+    s = decode_open(&image, &opacity, r->path, r->how, r->color, r->alpha);
     vips()->g_object_unref(image);
     if (opacity) vips()->g_object_unref(opacity);
     /* last: with it goes the colour profile of a HEIF, which no copy keeps alive */
@@ -174,18 +183,47 @@ status picture_decode(const char *path, picture_kind kind, picture_colour how, i
     return s;
 }
 
-status picture_look(const char *path, picture_kind kind, picture_head *head)
+static status look(const request *r)
 {
     VipsImage *image = NULL;
-    status s = vips_begin();
-    if (s == OK) s = open_picture(path, kind, &image);
+    status s = open_picture(r->path, r->kind, &image);
     if (s != OK) return s;
     VipsBandFormat format = vips()->image_get_format(image);
-    *head = (picture_head){.width = vips()->image_get_width(image),
-                           .height = vips()->image_get_height(image),
-                           .bits = format == VIPS_FORMAT_UCHAR    ? 8
-                                   : format == VIPS_FORMAT_USHORT ? 16
-                                                                  : 32};
+    *r->head = (picture_head){.width = vips()->image_get_width(image),
+                              .height = vips()->image_get_height(image),
+                              .bits = format == VIPS_FORMAT_UCHAR    ? 8
+                                      : format == VIPS_FORMAT_USHORT ? 16
+                                                                     : 32};
     vips()->g_object_unref(image);
     return OK;
+}
+
+/* libvips keeps its words for all threads in one place. Pictures are read side by side all the same; one that is
+ * refused is read again while no other is, so that the words are about it. */
+static status read_side_by_side(status (*work)(const request *r), const request *r)
+{
+    static pthread_rwlock_t reading = PTHREAD_RWLOCK_INITIALIZER;
+    status s = vips_begin();
+    if (s != OK) return s;
+    pthread_rwlock_rdlock(&reading);
+    s = work(r);
+    pthread_rwlock_unlock(&reading);
+    if (s == OK) return OK;
+    img_free(r->color);
+    img_free(r->alpha);
+    pthread_rwlock_wrlock(&reading);
+    vips()->error_clear();
+    s = work(r);
+    pthread_rwlock_unlock(&reading);
+    return s;
+}
+
+status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+{
+    return read_side_by_side(decode, &(request){path, kind, how, color, alpha, NULL});
+}
+
+status picture_look(const char *path, picture_kind kind, picture_head *head)
+{
+    return read_side_by_side(look, &(request){.path = path, .kind = kind, .head = head});
 }

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <pthread.h>
 #include <vips/vips.h>
 
 #include "image/exr.h"
@@ -424,6 +425,52 @@ static void truncated_pictures_are_refused(void **state)
     }
 }
 
+enum { DAMAGED = 3 };
+static struct {
+    char path[256], words[256];
+} damaged[DAMAGED];
+
+static void *read_damaged_often(void *context)
+{
+    uintptr_t wrong = 0;
+    (void)context;
+    for (int i = 0; i < 900; i++) {
+        img color = {0};
+        wrong += img_read(damaged[i % DAMAGED].path, &color, NULL) != ERROR_INPUT ||
+                 strcmp(status_message(), damaged[i % DAMAGED].words) != 0;
+        img_free(&color);
+    }
+    return (void *)wrong;
+}
+
+/* libvips keeps one for all. */
+static void every_thread_has_the_message_of_its_own_picture(void **state)
+{
+    (void)state;
+    static const char *const names[DAMAGED] = {"own.jpg", "own.webp", "own.tif"};
+    pthread_t others[3];
+    for (int k = 0; k < DAMAGED; k++) {
+        char *data = NULL;
+        size_t size = 0;
+        img color = {0};
+        assert_int_equal(file_read(save(quarters(), names[k]), 1u << 20, &data, &size), OK);
+        put(names[k], data, size / 3);
+        free(data);
+        snprintf(damaged[k].path, sizeof damaged[k].path, "%s", scratch_path(names[k]));
+        assert_int_equal(img_read(damaged[k].path, &color, NULL), ERROR_INPUT);
+        snprintf(damaged[k].words, sizeof damaged[k].words, "%s", status_message());
+    }
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(pthread_create(&others[i], NULL, read_damaged_often, NULL), 0);
+    uintptr_t wrong = (uintptr_t)read_damaged_often(NULL);
+    for (int i = 0; i < 3; i++) {
+        void *more;
+        assert_int_equal(pthread_join(others[i], &more), 0);
+        wrong += (uintptr_t)more;
+    }
+    assert_int_equal(wrong, 0);
+}
+
 static uint32_t crc32_of(const uint8_t *data, size_t size)
 {
     uint32_t crc = 0xffffffffu;
@@ -521,6 +568,7 @@ int main(void)
         cmocka_unit_test(what_is_no_picture_is_refused),
         cmocka_unit_test(radiance_files_of_other_colours_and_directions_are_refused),
         cmocka_unit_test(truncated_pictures_are_refused),
+        cmocka_unit_test(every_thread_has_the_message_of_its_own_picture),
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
         cmocka_unit_test(what_is_not_finite_is_refused),
         cmocka_unit_test(masks_in_ink_are_refused),
