@@ -48,7 +48,9 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out)
     if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
     status s = kind == PICTURE_HDR ? picture_check_hdr(path) : OK;
     if (s != OK) return s;
-    if (load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL)) return vips_refusal(ERROR_INPUT, "read", path);
+    /* what is read in sequence is not kept for the next time, when the file may be another */
+    if (load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, NULL))
+        return vips_refusal(ERROR_INPUT, "read", path);
     int width = vips()->image_get_width(image), height = vips()->image_get_height(image);
     s = picture_check_size(path, width, height);
     if (s == OK)

@@ -61,6 +61,7 @@
     USE(markup_escape_text)                                                                                            \
     USE(object_ref)                                                                                                    \
     USE(object_unref)                                                                                                  \
+    USE(type_from_name)                                                                                                \
     USE(utf8_make_valid)
 
 #define VIPS_MEMBER(name) __typeof__(vips_##name) *name;
