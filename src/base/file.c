@@ -229,6 +229,7 @@ status file_print(const char *path, file_printer *print, const void *context)
 
 status file_make_folder(const char *path)
 {
+    if (!*path) return fail(ERROR_OUTPUT, "cannot make a folder that has no name");
     char *copy = strdup(path);
     if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
     status s = OK;

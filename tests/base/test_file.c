@@ -282,6 +282,13 @@ static void committing_replaces_the_file(void **state)
     free(path);
 }
 
+static void a_folder_without_a_name_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(file_make_folder(""), ERROR_OUTPUT);
+    assert_non_null(strstr(status_message(), "no name"));
+}
+
 static void folders_are_made_with_those_above(void **state)
 {
     (void)state;
@@ -342,6 +349,7 @@ int main(void)
         cmocka_unit_test(the_longest_names_can_be_written),
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),
+        cmocka_unit_test(a_folder_without_a_name_is_refused),
         cmocka_unit_test(folders_are_made_with_those_above),
         cmocka_unit_test(lists_are_sorted_as_people_count_and_of_the_wanted_endings),
     };
