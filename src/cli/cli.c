@@ -76,6 +76,11 @@ void cli_catch_interrupts(void)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    /* a terminal that is closed, of which shell and system may both tell; but nohup has said to go on */
+    struct sigaction hangup;
+    sigaction(SIGHUP, NULL, &hangup);
+    action.sa_flags = 0;
+    if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
     /* a file that may not grow is then a failed write, which says what happened */
     signal(SIGXFSZ, SIG_IGN);
 }

@@ -30,7 +30,7 @@ int cli_usage(const char *command, const char *format, ...) __attribute__((forma
 status cli_int(const char *option, const char *text, long low, long high, long *out);
 status cli_float(const char *option, const char *text, double low, double high, double *out);
 status cli_vec3(const char *option, const char *text, float out[3]); /* "x,y,z" */
-/* Set by SIGINT and SIGTERM once cli_catch_interrupts was called; long work polls it and stops tidily. */
+/* Set by SIGINT, SIGTERM and SIGHUP once cli_catch_interrupts was called; long work polls it and stops tidily. */
 void cli_catch_interrupts(void);
 int cli_interrupted(void);
 

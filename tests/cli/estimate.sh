@@ -162,4 +162,28 @@ grep -q interrupted err || complain "after an interrupt: $(cat err)"
 for folder in interrupted/*; do
     [ "$(ls -A "$folder" | sort | tr '\n' ' ')" = "$names " ] || complain "$folder has $(ls -A "$folder")"
 done
+
+if [ -z "$(trap -p HUP)" ]; then # else this was started by nohup
+    echo "one whose terminal is closed does, too"
+    "$MERLIN" estimate many --size 64 -o closed >out 2>err &
+    pid=$!
+    for _ in {1..600}; do
+        [ -e closed/100/report.json ] && break
+        sleep 0.1
+    done
+    kill -HUP $pid
+    wait $pid
+    code=$?
+    [ $code -eq 1 ] && grep -q interrupted err || complain "exit code $code when a terminal is closed: $(cat err)"
+    [ -z "$(find closed -name '.*')" ] || complain "a closed terminal leaves $(find closed -name '.*')"
+    (trap '' HUP && exec "$MERLIN" estimate many/10?.hdr --size 64 -o on --quiet) &
+    pid=$!
+    for _ in {1..600}; do
+        [ -e on/100/report.json ] && break
+        sleep 0.1
+    done
+    kill -HUP $pid
+    wait $pid || complain "nohup does not keep it"
+    present on/109/report.json
+fi
 finish
