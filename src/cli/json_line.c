@@ -55,6 +55,7 @@ status json_report_print(char *text)
 {
     if (!text) return fail(ERROR_MEMORY, "no memory for the report");
     puts(text);
+    fflush(stdout); /* whoever reads a batch's lines has each when its work is done */
     free(text);
     return OK;
 }

@@ -147,12 +147,13 @@ grep -q '"given"' results/c/report.json || complain "NAME.mask.png was not used 
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
-"$MERLIN" estimate many --size 64 -o interrupted >out 2>err &
+"$MERLIN" estimate many --size 64 -o interrupted --json >out 2>err &
 pid=$!
 for _ in {1..600}; do
-    [ -e interrupted/100/report.json ] && break
+    [ -e interrupted/101/report.json ] && break
     sleep 0.1
 done
+grep -q '"input":"many/100.hdr".*}$' out || complain "the first report of a batch waits for others: $(cat out)"
 kill -INT $pid
 wait $pid
 code=$?
