@@ -83,6 +83,10 @@ void mesh_smooth_normals(const scn_mesh *mesh, vec3 *normal);
 /* Six times the enclosed volume, positive when triangles wind counter-clockwise from outside. */
 double mesh_signed_volume(const scn_mesh *mesh);
 
+/* For meshes from files: drops vertices that no triangle uses and, where normals are not known, makes those of exactly
+ * one place one, whatever else (texture coordinates, materials) told them apart in the file. */
+void mesh_weld(scn_mesh *mesh);
+
 /* Drops triangles without area and unused vertices; gives vertices normals (unless they have them), splitting those at
  * edges where faces meet at more than the angle whose cosine is given. ERROR_MEMORY; ERROR_INPUT when no triangle is
  * left. */

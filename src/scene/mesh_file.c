@@ -62,22 +62,28 @@ static status add_mesh(scn_mesh *mesh, const struct aiMesh *from, vec3 *normal, 
     return mesh->failed ? fail(ERROR_MEMORY, "no memory for the mesh") : OK;
 }
 
-/* Turns all triangles when the surface winds inward: against the file's normals, or around a negative volume. */
+/* Above 0 where a triangle faces the way of its vertices' normals, below where it faces the other way. */
+static float agreement(const scn_mesh *mesh, const uint32_t t[3])
+{
+    if (!mesh->normal) return 0;
+    vec3 a = mesh->position[t[0]];
+    vec3 n = vec3_cross(vec3_sub(mesh->position[t[1]], a), vec3_sub(mesh->position[t[2]], a));
+    return vec3_dot(n, vec3_add(vec3_add(mesh->normal[t[0]], mesh->normal[t[1]]), mesh->normal[t[2]]));
+}
+
+/* Turns the triangles that wind against the file's normals, each on its own, for a mirrored part's do beside others
+ * that do not; where there are none to tell, all when the surface winds around a negative volume. */
 static void wind_outward(scn_mesh *mesh)
 {
-    double outward = 0;
     mesh_normalize(mesh); /* centred, so that an open surface's volume has a sensible sign */
-    for (uint32_t i = 0; mesh->normal && i < mesh->triangle_count; i++) {
-        const uint32_t *t = mesh->triangle[i];
-        vec3 a = mesh->position[t[0]];
-        vec3 n = vec3_cross(vec3_sub(mesh->position[t[1]], a), vec3_sub(mesh->position[t[2]], a));
-        outward += (double)vec3_dot(n, vec3_add(vec3_add(mesh->normal[t[0]], mesh->normal[t[1]]), mesh->normal[t[2]]));
-    }
-    if (outward == 0) outward = mesh_signed_volume(mesh);
-    for (uint32_t i = 0; outward < 0 && i < mesh->triangle_count; i++) {
+    bool inward = mesh_signed_volume(mesh) < 0;
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         uint32_t *t = mesh->triangle[i], swap = t[1];
-        t[1] = t[2];
-        t[2] = swap;
+        float outward = agreement(mesh, t);
+        if (outward < 0 || (outward == 0 && inward)) {
+            t[1] = t[2];
+            t[2] = swap;
+        }
     }
 }
 
@@ -133,6 +139,8 @@ status mesh_read(const char *path, scn_mesh *mesh, int *parts)
     if (mesh->triangle_count == 0) return fail(ERROR_INPUT, "no triangles in it");
     if (mesh->triangle_count > TRIANGLE_LIMIT)
         return fail(ERROR_INPUT, "%u triangles; at most %d", mesh->triangle_count, TRIANGLE_LIMIT);
+    mesh_weld(mesh);
+    if (mesh->failed) return fail(ERROR_MEMORY, "no memory for the mesh");
     wind_outward(mesh);
     return OK;
 }

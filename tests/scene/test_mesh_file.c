@@ -92,6 +92,68 @@ static void ascii_ply_is_read(void **state)
     scn_object_free(&o);
 }
 
+/* The tetrahedron of ascii_ply_is_read among more vertices, in the given type, moved and scaled. */
+static status load_tetrahedron(const char *type, double x, double size, const char *stray, scn_object *out)
+{
+    char text[800];
+    int length = snprintf(text, sizeof text,
+                          "ply\nformat ascii 1.0\nelement vertex %d\nproperty %s x\nproperty %s y\nproperty %s z\n"
+                          "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+                          "%.9f 0 0\n%.9f 0 0\n%.9f %.9f 0\n%.9f 0 %.9f\n%s3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+                          *stray ? 5 : 4, type, type, type, x, x + size, x, size, x, size, stray);
+    return load("t.ply", text, (size_t)length, out);
+}
+
+static void vertices_of_no_face_do_not_count_for_the_frame(void **state)
+{
+    (void)state;
+    scn_object without, with;
+    assert_int_equal(load_tetrahedron("float", 0, 1, "", &without), OK);
+    assert_int_equal(load_tetrahedron("float", 0, 1, "100 0 0\n", &with), OK);
+    assert_int_equal(with.vertex_count, without.vertex_count);
+    assert_memory_equal(with.position, without.position, with.vertex_count * sizeof *with.position);
+    scn_object_free(&with);
+    scn_object_free(&without);
+}
+
+/* A square whose triangles share no corner in the file. */
+static void corners_that_only_texture_or_material_tells_apart_are_one_vertex(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0\nvt 0.5 1\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"};
+    for (int i = 0; i < 2; i++) {
+        scn_object o;
+        assert_int_equal(load("square.obj", TEXTS[i], strlen(TEXTS[i]), &o), OK);
+        assert_int_equal(o.vertex_count, 4);
+        assert_int_equal(o.triangle_count, 2);
+        assert_int_equal(o.part[1], i);
+        scn_object_free(&o);
+    }
+}
+
+/* As the mirrored half of a figure does. */
+static void triangles_that_wind_against_their_normals_are_turned(void **state)
+{
+    (void)state;
+    static const char TEXT[] = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n"
+                               "vn 1 0 0\nvn 0 1 0\nvn 0 0 1\nvn -1 0 0\nvn 0 -1 0\nvn 0 0 -1\n"
+                               "f 1//1 2//2 3//3\nf 2//2 4//4 3//3\nf 4//4 5//5 3//3\nf 5//5 1//1 3//3\n"
+                               "f 1//1 2//2 6//6\nf 2//2 4//4 6//6\nf 4//4 5//5 6//6\n";
+    scn_object o;
+    assert_int_equal(load("mirrored.obj", TEXT, sizeof TEXT - 1, &o), OK);
+    assert_int_equal(o.triangle_count, 7);
+    for (uint32_t t = 0; t < o.triangle_count; t++) {
+        scn_surface s;
+        scn_surfaces_eval(&o, &(scn_place){t, 0.333f, 0.333f}, 1, &s);
+        for (int k = 0; k < 3; k++)
+            assert_true(vec3_dot(o.normal[o.triangle[t][k]], s.geometric_normal) > 0);
+    }
+    scn_object_free(&o);
+}
+
 static void binary_ply_is_read(void **state)
 {
     (void)state;
@@ -195,6 +257,9 @@ int main(void)
         cmocka_unit_test(polygons_without_normals_are_triangulated_and_creased),
         cmocka_unit_test(inward_surfaces_are_turned_outward),
         cmocka_unit_test(ascii_ply_is_read),
+        cmocka_unit_test(vertices_of_no_face_do_not_count_for_the_frame),
+        cmocka_unit_test(corners_that_only_texture_or_material_tells_apart_are_one_vertex),
+        cmocka_unit_test(triangles_that_wind_against_their_normals_are_turned),
         cmocka_unit_test(binary_ply_is_read),
         cmocka_unit_test(gltf_is_read),
         cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
