@@ -28,6 +28,7 @@ typedef struct ply {
     element element[ELEMENTS];
     const char *at, *end; /* what is left of the file; *end is zero */
     scn_mesh *mesh;
+    double origin[3]; /* the first vertex */
     vec3 *normal;
     size_t normals;
 } ply;
@@ -160,7 +161,10 @@ static status read_vertex(ply *p, const element *e)
     if ((found & 7) != 7) return damaged("vertices without x, y, z");
     if (found == 63)
         p->normal[p->normals++] = vec3_normalize(vec3_make((real)value[3], (real)value[4], (real)value[5]));
-    mesh_add_vertex(p->mesh, vec3_make((real)value[0], (real)value[1], (real)value[2]));
+    /* from the first one: scans lie in their country's coordinates, of which floats hold no more than half metres */
+    if (p->mesh->vertex_count == 0) memcpy(p->origin, value, sizeof p->origin);
+    const double *o = p->origin;
+    mesh_add_vertex(p->mesh, vec3_make((real)(value[0] - o[0]), (real)(value[1] - o[1]), (real)(value[2] - o[2])));
     return OK;
 }
 

@@ -116,6 +116,19 @@ static void vertices_of_no_face_do_not_count_for_the_frame(void **state)
     scn_object_free(&without);
 }
 
+static void ply_far_from_its_origin_keeps_its_digits(void **state)
+{
+    (void)state;
+    scn_object here, far;
+    assert_int_equal(load_tetrahedron("double", 0, 0.7, "", &here), OK);
+    assert_int_equal(load_tetrahedron("double", 5.1e6, 0.7, "", &far), OK); /* floats lie 0.5 apart there */
+    assert_int_equal(far.vertex_count, here.vertex_count);
+    for (uint32_t v = 0; v < far.vertex_count; v++) /* float rounding of lengths near 1 */
+        assert_true(vec3_length(vec3_sub(far.position[v], here.position[v])) < 1e-5f);
+    scn_object_free(&far);
+    scn_object_free(&here);
+}
+
 /* A square whose triangles share no corner in the file. */
 static void corners_that_only_texture_or_material_tells_apart_are_one_vertex(void **state)
 {
@@ -258,6 +271,7 @@ int main(void)
         cmocka_unit_test(inward_surfaces_are_turned_outward),
         cmocka_unit_test(ascii_ply_is_read),
         cmocka_unit_test(vertices_of_no_face_do_not_count_for_the_frame),
+        cmocka_unit_test(ply_far_from_its_origin_keeps_its_digits),
         cmocka_unit_test(corners_that_only_texture_or_material_tells_apart_are_one_vertex),
         cmocka_unit_test(triangles_that_wind_against_their_normals_are_turned),
         cmocka_unit_test(binary_ply_is_read),
