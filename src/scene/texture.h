@@ -36,9 +36,10 @@ typedef struct texture_place {
 
 /* The materials of a folder and of the folders in it. Files that share a name up to a word make one material, as the
  * usual libraries name them: brick_albedo.png (basecolor, color, diffuse), brick_roughness.png (rough),
- * brick_normal.png (nor_gl, normalgl: green is up; nor_dx, normaldx: down). A picture without such a word is an albedo
- * alone; other maps (height, metalness, ...) are passed over. Tiles are shrunk to at most 512 pixels a side.
- * ERROR_INPUT if there is no albedo at all. */
+ * brick_normal.png (nor_gl, normalgl: green is up; nor_dx, normaldx: down). Files called by such a word alone, as in
+ * brick/albedo.png, are one material a folder. A picture without such a word is an albedo alone; other maps (height,
+ * metalness, ...) are passed over. Tiles are shrunk to at most 512 pixels a side. ERROR_INPUT if there is no albedo at
+ * all. */
 status scn_textures_read(const char *folder, scn_textures *out);
 void scn_textures_free(scn_textures *textures);
 

@@ -68,19 +68,28 @@ static size_t trimmed(const char *name, size_t start, size_t end)
 {
     while (end > start && separates(name[end - 1]))
         end--;
-    if (end >= start + 5 && separates(name[end - 5]) && strncasecmp(name + end - 4, "base", 4) == 0) end -= 5;
-    return end;
+    if (end >= start + 5 && separates(name[end - 5]) && strncasecmp(name + end - 4, "base", 4) == 0) return end - 5;
+    return end == start + 4 && word_is(name + start, 4, "base") ? start : end;
 }
 
-/* The last word that names a map decides: a material may be called "metal". */
+/* Whether a name says which map it is and nothing else, its material being the folder: normal.png, nor_gl.png. But a
+ * picture of metal is called metal.png. */
+static bool is_bare(const char *name, size_t length)
+{
+    size_t first = strcspn(name, "_- ."), rest = first < length ? first + 1 : length;
+    bool form = word_is(name + rest, length - rest, "gl") || word_is(name + rest, length - rest, "dx");
+    return (rest == length || form) && !word_is(name, first, "metal");
+}
+
+/* The last word that names a map decides, and not the first of several: a material may be called "metal". */
 static source classify(const char *path)
 {
     const char *slash = strrchr(path, '/');
     size_t start = slash ? (size_t)(slash + 1 - path) : 0, end = (size_t)(strrchr(path, '.') - path);
     source s = {.path = path, .kind = MAP_ALBEDO, .stem = end};
-    for (size_t at = start; at < end;) {
+    for (size_t at = is_bare(path + start, end - start) ? start : start + strcspn(path + start, "_- ."); at < end;) {
         size_t length = strcspn(path + at, "_- .");
-        for (size_t k = 0; at > start && k < sizeof words / sizeof *words; k++) {
+        for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
             if (!word_is(path + at, length, words[k].word)) continue;
             s.kind = words[k].kind;
             s.stem = trimmed(path, start, at);

@@ -71,6 +71,31 @@ static void files_of_one_name_make_one_material(void **state)
     scn_textures_free(&t);
 }
 
+static void files_called_by_their_map_alone_are_their_folder_s_material(void **state)
+{
+    (void)state;
+    put("brick/base_color.png", 1, 0, 0);
+    put("brick/nor_gl.png", 0.5f, 0.5f, 1);
+    put("brick/roughness.png", 0.25f, 0.25f, 0.25f);
+    put("brick/height.png", 0.5f, 0.5f, 0.5f);
+    put("wood/Albedo.png", 0, 1, 0);
+    put("wood/Normal.png", 0.5f, 0.5f, 1);
+    put("metal.png", 0, 0, 1); /* a picture of metal */
+    scn_textures t;
+    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    assert_int_equal(t.count, 3);
+    vec3 up = {0, 0, 1}, at = {0.3f, 0.2f, 0};
+    texture_place brick = plainly(&t.texture[0]), metal = plainly(&t.texture[1]), wood = plainly(&t.texture[2]);
+    assert_float_equal(texture_albedo(&brick, at, up).x, 1, 1e-3);
+    assert_float_equal(texture_roughness(&brick, at, up), 0.25f, 1e-3); /* 16 bits, no sRGB decoding */
+    assert_non_null(brick.texture->slope.data);
+    assert_float_equal(texture_albedo(&metal, at, up).z, 1, 1e-3);
+    assert_float_equal(texture_albedo(&wood, at, up).y, 1, 1e-3);
+    assert_null(wood.texture->roughness.data);
+    assert_non_null(wood.texture->slope.data);
+    scn_textures_free(&t);
+}
+
 /* A plane that rises to the right by 1/2 and upwards by 1/4 has the normal (-2, -1, 4)/√21. */
 static void normal_maps_become_slopes(void **state)
 {
@@ -146,6 +171,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         in_scratch(files_of_one_name_make_one_material),
+        in_scratch(files_called_by_their_map_alone_are_their_folder_s_material),
         in_scratch(normal_maps_become_slopes),
         in_scratch(folder_without_materials_is_refused),
         in_scratch(objects_wear_the_folder),
