@@ -29,9 +29,10 @@ static int wrapped(int i, int n)
     return i < 0 ? i + n : i;
 }
 
-/* Adds weight × the bilinear value at (u, v), in tiles. */
+/* Adds weight × the bilinear value at (u, v), in tiles' widths. */
 static void add_tile(const img *tile, float u, float v, float weight, float out[MAX_CHANNELS])
 {
+    v *= (float)tile->width / (float)tile->height; /* pixels are square */
     float x = (u - floorf(u)) * (float)tile->width - 0.5f, y = (ceilf(v) - v) * (float)tile->height - 0.5f;
     int x0 = (int)floorf(x), y0 = (int)floorf(y);
     float fx = x - (float)x0, fy = y - (float)y0;

@@ -13,7 +13,7 @@
 #include "scene/mesh.h"
 #include "scene/scene.h"
 
-/* Each image is one tile, repeated without end; u runs right and v up. */
+/* Each image is one tile, repeated without end; u runs right and v up, both in the tile's widths. */
 typedef struct scn_texture {
     img albedo;    /* 3 channels, linear */
     img roughness; /* 1 channel; empty: the paint's own */
@@ -30,8 +30,8 @@ typedef struct scn_textures {
 typedef struct texture_place {
     const scn_texture *texture; /* NULL: none */
     mat3 turn;
-    float scale; /* tiles per unit length */
-    vec3 offset; /* tiles */
+    float scale; /* tiles' widths per unit length */
+    vec3 offset; /* tiles' widths */
 } texture_place;
 
 /* The materials of a folder and of the folders in it. Files that share a name up to a word make one material, as the

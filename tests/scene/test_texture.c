@@ -96,6 +96,22 @@ static void files_called_by_their_map_alone_are_their_folder_s_material(void **s
     scn_textures_free(&t);
 }
 
+static void tiles_that_are_not_square_keep_their_shape(void **state)
+{
+    (void)state;
+    img tile;
+    assert_int_equal(img_new(&tile, 8, 4, 3), OK);
+    for (int i = 0; i < 16 * 3; i++) /* the upper half of the rows */
+        tile.data[i] = 1;
+    scn_texture texture = {.albedo = tile};
+    texture_place place = plainly(&texture);
+    for (int i = 0; i < 8; i++) {
+        vec3 at = {0.3f, 0.125f + 0.25f * (float)i, 0};
+        assert_float_equal(texture_albedo(&place, at, (vec3){0, 0, 1}).x, (float)(i % 2), 1e-6);
+    }
+    img_free(&tile);
+}
+
 /* A plane that rises to the right by 1/2 and upwards by 1/4 has the normal (-2, -1, 4)/√21. */
 static void normal_maps_become_slopes(void **state)
 {
@@ -172,6 +188,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         in_scratch(files_of_one_name_make_one_material),
         in_scratch(files_called_by_their_map_alone_are_their_folder_s_material),
+        cmocka_unit_test(tiles_that_are_not_square_keep_their_shape),
         in_scratch(normal_maps_become_slopes),
         in_scratch(folder_without_materials_is_refused),
         in_scratch(objects_wear_the_folder),
