@@ -44,6 +44,8 @@ void mesh_free(scn_mesh *mesh);
 uint32_t mesh_add_vertex(scn_mesh *mesh, vec3 position); /* its reference is its position */
 void mesh_add_triangle(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8_t part);
 void mesh_add_quad(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint8_t part);
+/* Any polygon, concave ones too. corner is used up. */
+void mesh_add_polygon(scn_mesh *mesh, uint32_t *corner, int count, uint8_t part);
 
 /* The cube [-1, 1]^3 with n x n squares a face, each vertex put where map sends it; map keeps the orientation. */
 void mesh_add_cube_grid(scn_mesh *mesh, int n, uint8_t part, vec3 (*map)(const void *context, vec3 cube),

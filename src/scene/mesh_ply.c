@@ -186,8 +186,7 @@ static status read_face(ply *p, const element *e, bool is_face)
                 return damaged("a face of vertices that are not there");
             corner[k] = (uint32_t)number;
         }
-        for (int k = 2; polygon && k < (int)count; k++)
-            mesh_add_triangle(p->mesh, corner[0], corner[k - 1], corner[k], 0);
+        if (polygon) mesh_add_polygon(p->mesh, corner, (int)count, 0);
     }
     return OK;
 }

@@ -116,6 +116,30 @@ static void vertices_of_no_face_do_not_count_for_the_frame(void **state)
     scn_object_free(&without);
 }
 
+/* A square with a notch, from each of its corners on. */
+static void concave_polygons_of_a_ply_do_not_fold_over(void **state)
+{
+    (void)state;
+    for (int first = 0; first < 5; first++) {
+        char text[400];
+        int length = snprintf(text, sizeof text,
+                              "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                              "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                              "0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n5 %d %d %d %d %d\n",
+                              first, (first + 1) % 5, (first + 2) % 5, (first + 3) % 5, (first + 4) % 5);
+        scn_object o;
+        scn_surface one, other;
+        assert_int_equal(load("notch.ply", text, (size_t)length, &o), OK);
+        assert_int_equal(o.triangle_count, 3);
+        scn_surfaces_eval(&o, &(scn_place){0, 0.3f, 0.3f}, 1, &one);
+        for (uint32_t t = 1; t < 3; t++) {
+            scn_surfaces_eval(&o, &(scn_place){t, 0.3f, 0.3f}, 1, &other);
+            assert_true(vec3_dot(one.geometric_normal, other.geometric_normal) > 0.999f); /* one plane */
+        }
+        scn_object_free(&o);
+    }
+}
+
 static void ply_far_from_its_origin_keeps_its_digits(void **state)
 {
     (void)state;
@@ -271,6 +295,7 @@ int main(void)
         cmocka_unit_test(inward_surfaces_are_turned_outward),
         cmocka_unit_test(ascii_ply_is_read),
         cmocka_unit_test(vertices_of_no_face_do_not_count_for_the_frame),
+        cmocka_unit_test(concave_polygons_of_a_ply_do_not_fold_over),
         cmocka_unit_test(ply_far_from_its_origin_keeps_its_digits),
         cmocka_unit_test(corners_that_only_texture_or_material_tells_apart_are_one_vertex),
         cmocka_unit_test(triangles_that_wind_against_their_normals_are_turned),
