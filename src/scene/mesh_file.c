@@ -4,6 +4,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/library.h"
@@ -130,7 +131,9 @@ status mesh_read(const char *path, scn_mesh *mesh, int *parts)
 {
     static const char *const by_assimp[] = {".obj", ".gltf", ".glb", NULL};
     bool is_ply = file_ends_in(path, ".ply");
-    if (!file_exists(path)) return fail(ERROR_INPUT, "no such file");
+    struct stat file;
+    if (stat(path, &file) != 0) return fail(ERROR_INPUT, "no such file");
+    if (!S_ISREG(file.st_mode)) return fail(ERROR_INPUT, "not a plain file"); /* assimp would wait for a pipe */
     if (!is_ply && !file_ends_in_any(path, by_assimp))
         return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
     *parts = 1;

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -263,6 +264,21 @@ static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **sta
     assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
 }
 
+static void folders_and_pipes_are_refused_without_waiting(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"folder.obj", "pipe.obj"};
+    scn_object o;
+    assert_int_equal(file_make_folder(scratch_path(NAMES[0])), OK);
+    assert_int_equal(mkfifo(scratch_path(NAMES[1]), 0600), 0);
+    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(scn_object_from_mesh(scratch_path(NAMES[i]), 1, 1, 60, &o), ERROR_INPUT);
+        assert_non_null(strstr(status_message(), "not a plain file"));
+    }
+    alarm(0);
+}
+
 /* Meshes with normals and thousands of faces, where a folder of them is at hand. */
 static void meshes_of_the_world_are_posed_before_the_camera(void **state)
 {
@@ -302,6 +318,7 @@ int main(void)
         cmocka_unit_test(binary_ply_is_read),
         cmocka_unit_test(gltf_is_read),
         cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
+        cmocka_unit_test(folders_and_pipes_are_refused_without_waiting),
         cmocka_unit_test(meshes_of_the_world_are_posed_before_the_camera),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
