@@ -124,6 +124,7 @@ status environment_from_map(const img *map, rng *r, environment *out)
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++)
             memcpy(img_at(&out->map, (x + turn) % map->width, y), img_at(map, x, y), 3 * sizeof(float));
+    out->tents = true; /* a photographed sun is one texel, most of whose light interpolation puts into its neighbours */
     return finish(out, random_exposure(r));
 }
 
@@ -160,8 +161,30 @@ static float texel_pdf(const environment *env, int x, int y)
     return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]) / texel_solid_angle(env, y);
 }
 
+/* Probability of a texel. */
+static float share_of(const environment *env, int x, int y)
+{
+    return texel_pdf(env, x, y) * texel_solid_angle(env, y);
+}
+
+/* The same interpolated as radiance is, per solid angle: what drawing within tents leads to. */
+static float tents_pdf(const environment *env, float x, float y)
+{
+    int w = env->map.width, h = env->map.height;
+    float pixel = 2 * pi * pi / ((float)w * (float)h) * fmaxf(1e-6f, sinf(pi * y / (float)h));
+    x -= 0.5f;
+    y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
+    int x0 = (int)floorf(x), y0 = (int)y, y1 = y0 + 1 < h ? y0 + 1 : y0;
+    float fx = x - (float)x0, fy = y - (float)y0;
+    int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w, right = left + 1 < w ? left + 1 : 0;
+    float above = (1 - fx) * share_of(env, left, y0) + fx * share_of(env, right, y0);
+    float below = (1 - fx) * share_of(env, left, y1) + fx * share_of(env, right, y1);
+    return ((1 - fy) * above + fy * below) / pixel;
+}
+
 static float pdf_at(const environment *env, float x, float y)
 {
+    if (env->tents) return tents_pdf(env, x, y);
     int i = (int)x, j = (int)y;
     if (i >= env->map.width) i = env->map.width - 1;
     if (j >= env->map.height) j = env->map.height - 1;
@@ -205,6 +228,28 @@ static void find_intervals(const float *cumulative, const int first[LANES], int 
     }
 }
 
+/* [0, 1) to (-1, 1), most often near 0. */
+static float tent(float u)
+{
+    return u < 0.5f ? sqrtf(2 * u) - 1 : 1 - sqrtf(2 - 2 * u);
+}
+
+/* In the texels that were drawn and around them. A tent that reaches beyond a pole is folded back. */
+static void place_in_tents(const environment *env, const falls *across, const falls *down, int count,
+                           environment_rays *out)
+{
+    float w = (float)env->map.width, h = (float)env->map.height;
+    for (int i = 0; i < count; i++) {
+        float x = (float)across->interval[i] + 0.5f + tent(across->within[i]);
+        float y = fabsf((float)down->interval[i] + 0.5f + tent(down->within[i]));
+        x = x < 0 ? x + w : x < w ? x : x - w;
+        y = y < h ? y : 2 * h - y;
+        lanes_put(&out->direction, i, latlong_direction(x / w, y / h));
+        lanes_put(&out->radiance, i, radiance_at(env, x, y));
+        out->pdf[i] = tents_pdf(env, x, y);
+    }
+}
+
 void environment_sample(const environment *env, const float u1[LANES], const float u2[LANES], int count,
                         environment_rays *out)
 {
@@ -215,6 +260,10 @@ void environment_sample(const environment *env, const float u1[LANES], const flo
     for (int i = 0; i < LANES; i++)
         row[i] = down.interval[i] * (w + 1);
     find_intervals(env->columns, row, w, u2, &across);
+    if (env->tents) {
+        place_in_tents(env, &across, &down, count, out);
+        return;
+    }
 #pragma omp simd
     for (int i = 0; i < LANES; i++) {
         float top = env->cosines[down.interval[i]], bottom = env->cosines[down.interval[i] + 1], c, s;

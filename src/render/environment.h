@@ -22,6 +22,7 @@ typedef struct environment {
     float *cosines; /* height + 1: of the polar angle at the rows' borders */
     float *columns; /* height × (width + 1): cumulative probability within a row */
     float sh[9][3]; /* radiance coefficients */
+    bool tents;     /* a texel is drawn as wide as interpolation spreads it; else evenly within its borders */
 } environment;
 
 /* A sky, a room or a studio at random, its mean radiance that of ordinary exposures. */

@@ -112,6 +112,38 @@ static void density_at_a_drawn_direction_is_the_one_it_was_drawn_with(void **sta
     environment_free(&env);
 }
 
+/* A sun of one texel in a dim sky, as photographs of the sky have it. */
+static void every_draw_from_a_small_sun_brings_about_the_same(void **state)
+{
+    (void)state;
+    enum { DRAWS = 20000, WIDTH = 64, HEIGHT = 32 };
+    rng r = rng_at(5, 0, 0);
+    for (int y = 1; y < HEIGHT - 1; y += 5) {
+        img map;
+        environment env;
+        assert_int_equal(img_new(&map, WIDTH, HEIGHT, 3), OK);
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            map.data[i] = 0.1f;
+        for (int c = 0; c < 3; c++)
+            img_at(&map, 20, y)[c] = 5000;
+        assert_int_equal(environment_from_map(&map, &r, &env), OK);
+        double all = env.sh[0][1] / 0.28209479, sum = 0;
+        for (int i = 0; i < DRAWS; i++) {
+            environment_rays drawn = draw_one(&env, &r);
+            double brought = drawn.radiance.y[0] / drawn.pdf[0];
+            real pdf;
+            environment_look(&env, lanes_at(&drawn.direction, 0), &pdf);
+            assert_true(fabsf(pdf - drawn.pdf[0]) < 1e-2f * pdf);
+            assert_true(brought < 2 * all); /* 1.7 near the poles, where rows differ in solid angle */
+            sum += brought;
+        }
+        /* a draw in twenty is even over the sphere and brings next to nothing: 0.2 / sqrt(20000), six times that */
+        assert_true(fabs(sum / DRAWS / all - 1) < 0.01);
+        img_free(&map);
+        environment_free(&env);
+    }
+}
+
 static void middle_of_the_map_is_straight_ahead_and_its_top_is_up(void **state)
 {
     (void)state;
@@ -125,6 +157,7 @@ int main(void)
         cmocka_unit_test(uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo),
         cmocka_unit_test(sampling_a_map_integrates_what_looking_it_up_does),
         cmocka_unit_test(density_at_a_drawn_direction_is_the_one_it_was_drawn_with),
+        cmocka_unit_test(every_draw_from_a_small_sun_brings_about_the_same),
         cmocka_unit_test(middle_of_the_map_is_straight_ahead_and_its_top_is_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
