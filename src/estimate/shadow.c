@@ -131,11 +131,12 @@ static float hidden(const shadow_caster *c, const march *m)
     float most = 0;
     for (float k = m->first; k < m->count && most < 1; k += 1) {
         float x = m->x + k * m->step_x, y = m->y + k * m->step_y;
-        if (!(x >= 0 && y >= 0 && x <= (float)(width - 1) && y <= (float)(height - 1))) break;
+        if (!(x >= -0.5f && y >= -0.5f && x < (float)width - 0.5f && y < (float)height - 0.5f)) break;
         float depth = 1 / (m->inverse + k * m->step_inverse), way = k * m->way * depth;
         float margin = MARGIN * m->pixel, border = BORDER * m->pixel + BORDER_BY_WAY * way;
         int column = m->across ? (int)(x + 0.5f) : (int)x, row = m->across ? (int)y : (int)(y + 0.5f);
-        float between = m->across ? y - (float)row : x - (float)column;
+        /* a finer grid's rays may run in the outer half of the frame's own pixels: the edge goes on there */
+        float between = fmaxf(m->across ? y - (float)row : x - (float)column, 0);
         size_t at = (size_t)row * (size_t)width + (size_t)column;
         size_t next = m->across ? at + (size_t)(row + 1 < height ? width : 0) : at + (column + 1 < width ? 1 : 0);
         float a = stops(c, at, depth, margin, border), b = stops(c, next, depth, margin, border);

@@ -252,6 +252,36 @@ static void a_finer_grid_of_rays_sees_the_same(void **state)
     scene_free(&s);
 }
 
+/* Rays that start in the outer half of the outermost pixels, as a finer grid's do, and run along the edge. */
+static void a_shadow_reaches_the_edge_of_the_frame(void **state)
+{
+    (void)state;
+    enum { FINE = 2 * SIDE };
+    const vec3 lights[] = {{0, 0.9f, -0.6f}, {0, -0.9f, -0.6f}, {0.9f, 0, -0.6f}, {-0.9f, 0, -0.6f}};
+    const float far = 0.55f; /* the ball's middle is beyond the frame's edge */
+    const vec3 balls[] = {{-far, 0, -0.9f}, {far, 0, -0.9f}, {0, far, -0.9f}, {0, -far, -0.9f}};
+    for (int l = 0; l < 4; l++) {
+        scene s = {0};
+        scene_new(&s);
+        put_plane(&s, vec3_make(0, 0, 1), -1.2f);
+        put_ball(&s, balls[l], 0.15f);
+        img seen;
+        int dark_outside = 0, dark_inside = 0;
+        cast(&s, lights[l], FINE, &seen);
+        for (int i = 0; i < FINE; i++) {
+            int across = balls[l].x != 0, end = balls[l].x + balls[l].y > 0, edge = end == across ? FINE - 1 : 0;
+            int next = edge ? FINE - 2 : 1; /* rows run downwards */
+            dark_outside += (across ? *img_at(&seen, edge, i) : *img_at(&seen, i, edge)) < 0.5f;
+            dark_inside += (across ? *img_at(&seen, next, i) : *img_at(&seen, i, next)) < 0.5f;
+        }
+        assert_true(dark_inside > 20);
+        /* half of a caster's pixel apart, the ends of the shadow may have moved by a few points */
+        assert_true(dark_outside > 0.9 * dark_inside);
+        img_free(&seen);
+        scene_free(&s);
+    }
+}
+
 static void fusion_takes_noise_out_of_a_slope_and_leaves_a_jump(void **state)
 {
     (void)state;
@@ -289,6 +319,7 @@ int main(void)
         cmocka_unit_test(lights_anywhere_give_shares_between_nothing_and_all),
         cmocka_unit_test(a_surface_of_no_pixels_has_no_shadow),
         cmocka_unit_test(a_finer_grid_of_rays_sees_the_same),
+        cmocka_unit_test(a_shadow_reaches_the_edge_of_the_frame),
         cmocka_unit_test(fusion_takes_noise_out_of_a_slope_and_leaves_a_jump),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
