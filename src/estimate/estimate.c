@@ -179,7 +179,7 @@ static status follow_mean(network *n, work *w, bool in_environment)
 /* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
 static status refine(work *w, float gain, bool in_environment)
 {
-    surface_encode_guide(&w->crop_photo);
+    surface_encode_guide(&w->crop_photo, gain);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     img_free(&w->crop_photo);
     img *picture = &w->reconstruction;

@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "estimate/exposure.h"
 #include "estimate/fill.h"
 #include "image/resize.h"
+#include "model/model.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 
@@ -169,16 +171,21 @@ static status refine(const refinement *r, const img *from, float epsilon, img *o
     return s;
 }
 
+typedef struct encoding {
+    float *value, scale;
+} encoding;
+
 static void encode_values(void *context, size_t begin, size_t end)
 {
-    float *value = context;
+    const encoding *e = context;
     for (size_t i = begin; i < end; i++)
-        if (value[i] != 0) value[i] = sqrtf(clamp(value[i], 0, 1));
+        if (e->value[i] != 0) e->value[i] = sqrtf(clamp(e->scale * e->value[i], 0, MODEL_BRIGHTEST / EXPOSURE_WHITE));
 }
 
-void surface_encode_guide(img *photo)
+void surface_encode_guide(img *photo, float gain)
 {
-    parallel_blocks((size_t)photo->width * (size_t)photo->height * (size_t)photo->channels, encode_values, photo->data);
+    encoding e = {photo->data, fminf(gain / EXPOSURE_WHITE, 1)};
+    parallel_blocks(img_value_count(photo), encode_values, &e);
 }
 
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out)

@@ -1,7 +1,7 @@
 /* A visible surface in a square frame: the maps of one crop, and what is done with them.
  *
  *     surface low;                         what the network said, at its size
- *     surface_encode_guide(&guide);        the photograph
+ *     surface_encode_guide(&guide, gain);  the photograph
  *     surface_refine(&low, &guide, &mask, &full);  the same at its resolution
  *     surface_shade(&full, light, &direct);        under a point light
  *     surface_free(&low);
@@ -41,8 +41,9 @@ void harden_mask(img *image, img *mask);
 status surface_resize(const surface *from, const img *mask, surface *out);
 
 /* Makes a photograph (linear, any size) a guide: its noise should be even from shadow to light, and a square root does
- * that for photon noise. */
-void surface_encode_guide(img *photo);
+ * that for photon noise. gain: the photograph's (exposure.h). Bright pictures of any unit become the usual ones; dark
+ * ones stay dark, for brightening would bring their noise above what is followed. */
+void surface_encode_guide(img *photo, float gain);
 
 /* The same with albedo and roughness edges that follow a guide (3 channels, encoded, mask's size); shape does not, or
  * print on a flat side would become relief. For a guide smaller than the surface this is surface_resize. */

@@ -260,9 +260,10 @@ static void a_surface_survives_resizing(void **state)
     surface_free(&half);
 }
 
-static void refined_albedo_follows_the_photographs_edge(void **state)
+/* How much the albedo changes from one pixel to the next at an edge of a photograph whose values are `unit` times the
+ * usual ones and counted accordingly. */
+static float albedo_step_at_an_edge(float unit)
 {
-    (void)state;
     enum { LOW = 16, FULL = 64, EDGE = 29 }; /* between two low pixels' centres */
     surface s = plate(LOW), full;
     img guide, mask;
@@ -270,21 +271,37 @@ static void refined_albedo_follows_the_photographs_edge(void **state)
     assert_int_equal(img_new(&mask, FULL, FULL, 1), OK);
     box(&mask, 0, 0, FULL, FULL);
     for (int i = 0; i < FULL * FULL * 3; i++)
-        guide.data[i] = i / 3 % FULL < EDGE ? 0.1f : 0.6f;
+        guide.data[i] = unit * (i / 3 % FULL < EDGE ? 0.1f : 0.6f);
     for (int i = 0; i < LOW * LOW; i++) {
         float low = (float)(i % LOW) * 4, share = fminf(fmaxf((EDGE - low) / 4, 0), 1);
         for (int c = 0; c < 3; c++)
             s.albedo.data[3 * i + c] = share * 0.2f + (1 - share) * 0.8f;
     }
-    surface_encode_guide(&guide);
+    surface_encode_guide(&guide, EXPOSURE_WHITE / unit);
     assert_int_equal(surface_refine(&s, &guide, &mask, &full), OK);
-    float left = img_at(&full.albedo, EDGE - 1, 32)[0], right = img_at(&full.albedo, EDGE, 32)[0];
-    /* bilinear enlargement would change by 0.15 a pixel here */
-    assert_true(right - left > 0.4f);
+    float step = img_at(&full.albedo, EDGE, 32)[0] - img_at(&full.albedo, EDGE - 1, 32)[0];
     img_free(&guide);
     img_free(&mask);
     surface_free(&s);
     surface_free(&full);
+    return step;
+}
+
+static void refined_albedo_follows_the_photographs_edge(void **state)
+{
+    (void)state;
+    /* bilinear enlargement would change by 0.15 a pixel here */
+    assert_true(albedo_step_at_an_edge(1) > 0.4f);
+}
+
+static void refined_albedo_follows_the_edge_of_a_photograph_in_any_unit(void **state)
+{
+    (void)state;
+    /* bright ones are brought to the usual exposure: the same but for roundings */
+    assert_float_equal(albedo_step_at_an_edge(32), albedo_step_at_an_edge(1), 1e-4);
+    assert_float_equal(albedo_step_at_an_edge(1000), albedo_step_at_an_edge(1), 1e-4);
+    /* dark ones are not, for their noise is that of other photographs; what it allows to be followed is */
+    assert_true(albedo_step_at_an_edge(0.1f) > 0.4f);
 }
 
 static void usual_exposures_are_left_alone_and_others_brought_near(void **state)
@@ -364,6 +381,7 @@ int main(void)
         cmocka_unit_test(a_light_on_the_left_brightens_the_left),
         cmocka_unit_test(a_surface_survives_resizing),
         cmocka_unit_test(refined_albedo_follows_the_photographs_edge),
+        cmocka_unit_test(refined_albedo_follows_the_edge_of_a_photograph_in_any_unit),
         cmocka_unit_test(usual_exposures_are_left_alone_and_others_brought_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
