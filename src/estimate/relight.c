@@ -49,7 +49,8 @@ static status light_by_network(network *n, const stage *s, vec3 light, img *full
     illumination both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->look, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
-    if (result == OK && full->width != low->width) multiply_mask(full, &s->full.mask);
+    /* enlarged or not, it goes on beside the object */
+    if (result == OK) multiply_mask(full, &s->full.mask);
     return result;
 }
 

@@ -515,6 +515,32 @@ static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
     }
 }
 
+/* A square photograph is taken whole; its object here, a ring with a soft edge, surrounds what is none. */
+static void the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too(void **state)
+{
+    enum { SIDE = 64 };
+    const fixture *f = *state;
+    const float left[3] = {-0.7f, 0.3f, -0.4f};
+    merlin_params p = small();
+    merlin_image photo = image_new(SIDE, SIDE, 3), mask = image_new(SIDE, SIDE, 1), relit;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float x = (float)(i % SIDE) - 31.5f, y = (float)(i / SIDE) - 31.5f, away = fabsf(sqrtf(x * x + y * y) - 20);
+        mask.data[i] = fminf(fmaxf(8 - away, 0), 1);
+        for (int c = 0; c < 3; c++)
+            photo.data[3 * i + c] = 0.5f;
+    }
+    merlin_maps maps;
+    assert_int_equal(merlin_estimate(f->model, &photo, &mask, &p, &maps), MERLIN_OK);
+    assert_int_equal(maps.crop.side, SIDE);
+    assert_int_equal(merlin_relight(f->model, &maps, left, MERLIN_BY_NETWORK, &relit), MERLIN_OK);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        if (maps.mask.data[i / 3] == 0) assert_true(relit.data[i] == 0);
+    merlin_image_free(&relit);
+    merlin_maps_free(&maps);
+    merlin_image_free(&photo);
+    merlin_image_free(&mask);
+}
+
 static void lights_that_are_nowhere_are_refused(void **state)
 {
     const fixture *f = *state;
@@ -570,6 +596,7 @@ int main(void)
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing),
         cmocka_unit_test(folders_without_maps_are_refused),
         cmocka_unit_test(relighting_moves_the_light_and_keeps_the_outside_black),
+        cmocka_unit_test(the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too),
         cmocka_unit_test(lights_that_are_nowhere_are_refused),
         cmocka_unit_test(damaged_weights_are_refused),
     };
