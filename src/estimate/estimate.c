@@ -130,8 +130,14 @@ static status take_out(work *w, merlin_image *object)
     return s;
 }
 
-static status check_lit(const img *photo)
+/* Of what the network will see. */
+static status check_seen(const img *photo, const img *mask)
 {
+    if (mask_is_transparent(mask))
+        return fail(ERROR_INPUT,
+                    "the object is too thin or scattered: it covers half of no pixel of the %d×%d that the network "
+                    "sees; give a larger size or a mask of one part",
+                    mask->width, mask->height);
     for (size_t i = 0; i < img_value_count(photo); i++)
         if (photo->data[i] > 0) return OK;
     return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
@@ -148,7 +154,7 @@ static status make_input(work *w, merlin_maps *maps)
     if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
     if (s != OK) return s;
     harden_mask(&w->low_photo, &w->low_mask);
-    s = check_lit(&w->low_photo);
+    s = check_seen(&w->low_photo, &w->low_mask);
     if (s != OK) return s;
     *gain =
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);

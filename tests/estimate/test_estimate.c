@@ -178,6 +178,21 @@ static void empty_masks_are_refused(void **state)
     merlin_image_free(&mask);
 }
 
+/* Single pixels, of which the network's larger ones are covered by a small part. */
+static void an_object_too_thin_for_the_networks_pixels_is_refused_as_that(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_params p = small();
+    merlin_image dots = image_new(WIDTH, HEIGHT, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        dots.data[i] = i % WIDTH % 10 == 0 && i / WIDTH % 10 == 0;
+    assert_int_equal(merlin_estimate(f->model, &f->photo, &dots, &p, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "too thin"));
+    assert_non_null(strstr(merlin_error(), "64×64"));
+    merlin_image_free(&dots);
+}
+
 /* A grey PNG of 9000 by 9000 pixels as far as its head goes. */
 static void a_photograph_that_is_too_large_is_refused_before_it_is_decoded(void **state)
 {
@@ -578,6 +593,7 @@ int main(void)
         cmocka_unit_test(the_object_is_found_without_a_mask),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
+        cmocka_unit_test(an_object_too_thin_for_the_networks_pixels_is_refused_as_that),
         cmocka_unit_test(a_photograph_that_is_too_large_is_refused_before_it_is_decoded),
         cmocka_unit_test(an_alpha_that_shows_nothing_is_refused_by_its_name),
         cmocka_unit_test(only_names_of_pngs_are_written_to),
