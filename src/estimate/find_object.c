@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "estimate/border_distance.h"
+#include "estimate/exposure.h"
 #include "image/resize.h"
 
 /* The search runs on a small copy: what cannot be reached from the border without crossing an edge starts a two-sided
@@ -48,6 +49,14 @@ static void mark_ring(search *s)
             s->ring[y * s->width + x] = x < margin || y < margin || x >= s->width - margin || y >= s->height - margin;
 }
 
+/* Below 1 for pictures whose values go far above it. Dark ones stay: what is bright in them may be the object alone. */
+static float exposure_of(const search *s)
+{
+    for (size_t i = 0; i < s->count; i++)
+        s->probability.data[i] = 1; /* so far, all of it */
+    return fminf(exposure_gain(&s->color, &s->probability) / EXPOSURE_WHITE, 1);
+}
+
 static status search_new(const img *photo, search *s)
 {
     *s = (search){0};
@@ -59,8 +68,9 @@ static status search_new(const img *photo, search *s)
     status result = img_resize(photo, s->width, s->height, &s->color);
     if (result == OK) result = img_new(&s->probability, s->width, s->height, 1);
     if (result != OK) return result;
+    float exposure = exposure_of(s);
     for (size_t i = 0; i < 3 * s->count; i++)
-        s->color.data[i] = sqrtf(fminf(fmaxf(s->color.data[i], 0), 1));
+        s->color.data[i] = sqrtf(fminf(fmaxf(exposure * s->color.data[i], 0), 1));
     s->prior = calloc(s->count, sizeof *s->prior);
     s->object = calloc(s->count, 1);
     s->ring = calloc(s->count, 1);

@@ -157,6 +157,30 @@ static void the_object_is_found_without_a_mask(void **state)
     merlin_maps_free(&maps);
 }
 
+static void the_object_is_found_in_a_picture_of_any_unit(void **state)
+{
+    const fixture *f = *state;
+    merlin_params p = small();
+    merlin_maps usual, bright;
+    merlin_image photo = image_new(WIDTH, HEIGHT, 3);
+    for (int unit = 1; unit <= 32; unit *= 32) {
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            photo.data[i] = (float)unit * (f->mask.data[i / 3] > 0 ? f->photo.data[i] : 0.1f);
+        merlin_maps *maps = unit == 1 ? &usual : &bright;
+        if (merlin_estimate(f->model, &photo, NULL, &p, maps) != MERLIN_OK) fail_msg("%s", merlin_error());
+    }
+    double off = 0, all = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        off += fabs((double)usual.mask.data[i] - (double)bright.mask.data[i]);
+        all += (double)usual.mask.data[i];
+    }
+    /* not quite the same exposure: a part of the outline, which is a twentieth of the disc for each pixel of width */
+    assert_true(off < 0.05 * all);
+    merlin_maps_free(&usual);
+    merlin_maps_free(&bright);
+    merlin_image_free(&photo);
+}
+
 static void masks_of_another_size_are_refused(void **state)
 {
     const fixture *f = *state;
@@ -591,6 +615,7 @@ int main(void)
         cmocka_unit_test(normals_are_unit_and_face_the_camera),
         cmocka_unit_test(albedo_and_roughness_are_in_their_ranges),
         cmocka_unit_test(the_object_is_found_without_a_mask),
+        cmocka_unit_test(the_object_is_found_in_a_picture_of_any_unit),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
         cmocka_unit_test(an_object_too_thin_for_the_networks_pixels_is_refused_as_that),
