@@ -11,6 +11,8 @@
 #include "image/write.h"
 
 enum { MOST_TILES = 24, TILE_SIZE = 192, COLUMNS = 6, LABEL_SIZE = 48, USUAL_FRAME = 512, ORBIT_MILLISECONDS = 3000 };
+/* Viewers show frames of 10 ms and less, which a GIF counts by, for a tenth of a second. */
+enum { LEAST_MILLISECONDS = 20 };
 static const real ORBIT_TILT = (real)0.87; /* 50 degrees from the optical axis */
 
 static bool stopped(const relight_job *job)
@@ -178,11 +180,13 @@ static vec3 orbit_light(int i, int count)
 static status write_animations(const relight_job *job, const staging *t, const img *frames)
 {
     static const char *const names[] = {"orbit.webp", "orbit.gif"};
+    int delay = ORBIT_MILLISECONDS / job->orbit;
+    if (delay < LEAST_MILLISECONDS) delay = LEAST_MILLISECONDS;
     status s = OK;
     for (int i = 0; i < 2 && s == OK; i++) {
         if (stopped(job)) return fail(ERROR_STOPPED, "stopped");
         char path[PATH_MAX];
-        s = img_write_animation(staging_path(t, names[i], path), frames, job->orbit, ORBIT_MILLISECONDS / job->orbit);
+        s = img_write_animation(staging_path(t, names[i], path), frames, job->orbit, delay);
     }
     return s;
 }

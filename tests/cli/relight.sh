@@ -60,6 +60,9 @@ echo "an orbit becomes frames and animations"
 succeeds orbit relight disc.merlin --orbit 5 -o orbit
 present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.png
 absent orbit/frame_005.png
+# viewers take delays of a hundredth of a second for "as usual", which is a tenth
+succeeds quick relight disc.merlin --orbit 201 --frame 32 -o quick
+od -An -v -tx1 quick/orbit.gif | tr -d ' \n' | grep -q '21f904..0200..00' || complain "the GIF's frames do not take 0.02 s each"
 
 echo "surroundings, alone and beside a light"
 radiance room.hdr 8 3 16
