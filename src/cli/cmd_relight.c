@@ -87,7 +87,10 @@ static status check(request *r)
     if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
         return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
     if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
-    if (r->no_shadows && r->how == MERLIN_BY_BRDF) r->how = MERLIN_BY_BRDF_UNSHADOWED;
+    if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
+    if (r->no_shadows && r->how == MERLIN_BY_NETWORK)
+        return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
+    if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     status s = file_is_folder(r->input) ? photo_check_maps(r->input, r->mask, &r->params) : OK;
     if (s != OK) return s;
     if (r->how == MERLIN_BY_NETWORK && stereo_maps_in(r->input))
@@ -150,6 +153,15 @@ static status read_lights(request *r)
         s = light_list_add(&r->lights, more.at[i]);
     light_list_free(&more);
     return s;
+}
+
+/* Those of a list, too. */
+static status check_lights(const request *r)
+{
+    if (!r->env) return OK;
+    if (r->orbit && r->lights.count > 1)
+        return fail(ERROR_USAGE, "an --orbit of the --env goes round beside one --light, not %zu", r->lights.count);
+    return stage_check(r->how, r->lights.count > 0);
 }
 
 /* From a folder of estimate's or stereo's, or by estimating now. */
@@ -233,7 +245,7 @@ static status run(request *r)
     char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
     status s = output ? read_lights(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
-    if (s == OK && r->env) s = stage_check(r->how, r->lights.count > 0);
+    if (s == OK) s = check_lights(r);
     if (s == OK) s = photo_find_model(r->weights, &weights);
     if (s == OK) s = relight(r, weights, output);
     free(weights);

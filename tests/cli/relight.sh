@@ -95,6 +95,10 @@ absent none
 echo "wrong use"
 refuses 2 'no photograph' relight
 refuses 2 'no light' relight disc.merlin
+refuses 2 '--frame is the side of an --orbit' relight disc.merlin --light 0,0,0 --frame 64
+refuses 2 '--no-shadows is of --by brdf' relight disc.merlin --light 0,0,0 --by network --no-shadows
+refuses 2 'one --light, not 2' relight disc.merlin --env room.hdr --orbit 3 --light 0,0,0 --light 1,0,0
+refuses 2 'one --light, not 2' relight disc.merlin --env room.hdr --orbit 3 --lights lights.txt
 refuses 2 'holds maps already' relight disc.merlin --light 0,0,0 --views 8
 refuses 2 'holds maps already' relight disc.merlin --light 0,0,0 --mask disc.merlin/mask.png
 refuses 2 'one photograph' relight disc.merlin disc.hdr --light 0,0,0
