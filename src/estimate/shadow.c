@@ -153,6 +153,17 @@ typedef struct cast {
     img *seen;
 } cast;
 
+/* Points next to the surface count, too: finer pictures have pixels there, and interpolate between them and the next.
+ */
+static bool near_surface(const img *mask, float x, float y)
+{
+    int left = (int)floorf(x) - 1, top = (int)floorf(y) - 1;
+    for (int row = top > 0 ? top : 0; row < top + 4 && row < mask->height; row++)
+        for (int column = left > 0 ? left : 0; column < left + 4 && column < mask->width; column++)
+            if (*img_at(mask, column, row) >= 0.5f) return true;
+    return false;
+}
+
 static void cast_row(void *context, size_t row)
 {
     const cast *job = context;
@@ -162,11 +173,11 @@ static void cast_row(void *context, size_t row)
     float y = ((float)row + 0.5f) * scale_y - 0.5f;
     for (int i = 0; i < job->seen->width; i++) {
         float x = ((float)i + 0.5f) * scale_x - 0.5f;
-        corners around = corners_of(&c->mask, x, y);
+        corners around = corners_of(&c->depth, x, y);
         march m;
         float *seen = img_at(job->seen, i, (int)row);
         *seen = 1;
-        if (!(value_at(&c->mask, &around, 0) > 0)) continue;
+        if (!near_surface(&c->mask, x, y)) continue;
         if (march_begin(c, x, y, value_at(&c->depth, &around, 0), job->light, &m)) *seen = 1 - hidden(c, &m);
     }
 }

@@ -282,6 +282,34 @@ static void a_shadow_reaches_the_edge_of_the_frame(void **state)
     }
 }
 
+/* A picture finer than the map has pixels of the object beside the map's, and interpolates between these and the next.
+ */
+static void a_shadow_goes_on_beside_the_map(void **state)
+{
+    (void)state;
+    enum { END = SIDE / 2 };
+    scene s = {0};
+    scene_new(&s);
+    put_plane(&s, vec3_make(0, 0, 1), -1.2f);
+    put_ball(&s, vec3_make(-0.2f, 0, -0.9f), 0.07f);
+    for (int i = 0; i < PIXELS; i++)
+        if (i % SIDE >= END) s.mask.data[i] = s.depth.data[i] = 0;
+    for (int scale = 1; scale <= 2; scale++) {
+        img seen;
+        int dark_outside = 0, dark_inside = 0;
+        cast(&s, vec3_make(-0.6f, 0, -0.6f), scale * SIDE, &seen);
+        for (int row = 0; row < scale * SIDE; row++) {
+            dark_inside += *img_at(&seen, scale * END - 1, row) < 0.5f;
+            dark_outside += *img_at(&seen, scale * END + scale - 1, row) < 0.5f;
+        }
+        assert_true(dark_inside > 10 * scale);
+        /* a pixel of the map apart, the ends of the shadow may have moved by as much */
+        assert_true(dark_outside >= dark_inside - 2 * scale);
+        img_free(&seen);
+    }
+    scene_free(&s);
+}
+
 static void fusion_takes_noise_out_of_a_slope_and_leaves_a_jump(void **state)
 {
     (void)state;
@@ -320,6 +348,7 @@ int main(void)
         cmocka_unit_test(a_surface_of_no_pixels_has_no_shadow),
         cmocka_unit_test(a_finer_grid_of_rays_sees_the_same),
         cmocka_unit_test(a_shadow_reaches_the_edge_of_the_frame),
+        cmocka_unit_test(a_shadow_goes_on_beside_the_map),
         cmocka_unit_test(fusion_takes_noise_out_of_a_slope_and_leaves_a_jump),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
