@@ -20,7 +20,7 @@ bool mask_is_transparent(const img *mask)
     return true;
 }
 
-static void clean(img *mask)
+void mask_clean(img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;
     for (size_t i = 0; i < count; i++) {
@@ -46,6 +46,6 @@ status mask_choose(const img *photo, const img *given, img *mask, mask_choice *c
         choice->found = true;
         s = find_object(photo, mask, &choice->confidence);
     }
-    if (s == OK) clean(mask);
+    if (s == OK) mask_clean(mask);
     return s;
 }

@@ -15,6 +15,9 @@ typedef struct mask_choice {
  * Values below 0.05 count as 0 and above 0.95 as 1, so that a mask that went through JPEG has clean sides. */
 status mask_choose(const img *photo, const img *given, img *mask, mask_choice *choice);
 
+/* Makes values below 0.05 zero and those above 0.95 one: what an enlargement rings by, too. */
+void mask_clean(img *mask);
+
 /* Says nothing: 1 everywhere. */
 bool mask_is_opaque(const img *mask);
 /* Shows nothing: less than half everywhere. */

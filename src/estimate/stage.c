@@ -82,6 +82,7 @@ static status take_surface(const merlin_maps *maps, const img *mask, int side, b
     img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
     status s = img_resize(mask, side, side, &out->mask);
     if (s == OK && hard) harden_mask(NULL, &out->mask);
+    if (s == OK && side > mask->width) mask_clean(&out->mask);
     for (int i = 0; i < 4 && s == OK; i++)
         s = take_map(maps, from[i], mask, &out->mask, to[i]);
     if (s == OK) surface_tidy(out);

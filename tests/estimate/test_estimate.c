@@ -554,30 +554,60 @@ static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
     }
 }
 
-/* A square photograph is taken whole; its object here, a ring with a soft edge, surrounds what is none. */
-static void the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too(void **state)
+enum { RING_SIDE = 64, RING_RADIUS = 20 };
+
+/* A square photograph of a grey ring, 16 pixels wide with a soft edge, which is taken whole. */
+static void estimate_ring(const fixture *f, merlin_maps *maps)
 {
-    enum { SIDE = 64 };
-    const fixture *f = *state;
-    const float left[3] = {-0.7f, 0.3f, -0.4f};
     merlin_params p = small();
-    merlin_image photo = image_new(SIDE, SIDE, 3), mask = image_new(SIDE, SIDE, 1), relit;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        float x = (float)(i % SIDE) - 31.5f, y = (float)(i / SIDE) - 31.5f, away = fabsf(sqrtf(x * x + y * y) - 20);
-        mask.data[i] = fminf(fmaxf(8 - away, 0), 1);
+    merlin_image photo = image_new(RING_SIDE, RING_SIDE, 3), mask = image_new(RING_SIDE, RING_SIDE, 1);
+    for (int i = 0; i < RING_SIDE * RING_SIDE; i++) {
+        float x = (float)(i % RING_SIDE) - 31.5f, y = (float)(i / RING_SIDE) - 31.5f;
+        mask.data[i] = fminf(fmaxf(8 - fabsf(sqrtf(x * x + y * y) - RING_RADIUS), 0), 1);
         for (int c = 0; c < 3; c++)
             photo.data[3 * i + c] = 0.5f;
     }
+    assert_int_equal(merlin_estimate(f->model, &photo, &mask, &p, maps), MERLIN_OK);
+    assert_int_equal(maps->crop.side, RING_SIDE);
+    merlin_image_free(&photo);
+    merlin_image_free(&mask);
+}
+
+static void the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too(void **state)
+{
+    const fixture *f = *state;
+    const float left[3] = {-0.7f, 0.3f, -0.4f};
     merlin_maps maps;
-    assert_int_equal(merlin_estimate(f->model, &photo, &mask, &p, &maps), MERLIN_OK);
-    assert_int_equal(maps.crop.side, SIDE);
+    merlin_image relit;
+    estimate_ring(f, &maps);
     assert_int_equal(merlin_relight(f->model, &maps, left, MERLIN_BY_NETWORK, &relit), MERLIN_OK);
-    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+    for (int i = 0; i < 3 * RING_SIDE * RING_SIDE; i++)
         if (maps.mask.data[i / 3] == 0) assert_true(relit.data[i] == 0);
     merlin_image_free(&relit);
     merlin_maps_free(&maps);
-    merlin_image_free(&photo);
-    merlin_image_free(&mask);
+}
+
+static void an_enlarged_picture_is_black_beside_the_object(void **state)
+{
+    enum { SIDE = 4 * RING_SIDE };
+    const fixture *f = *state;
+    const float left[3] = {-0.7f, 0.3f, -0.4f};
+    merlin_maps maps;
+    merlin_stage *stage;
+    merlin_image relit;
+    estimate_ring(f, &maps);
+    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_UNSHADOWED; how++) {
+        assert_int_equal(merlin_stage_new(f->model, &maps, SIDE, (merlin_relighting)how, &stage), MERLIN_OK);
+        assert_int_equal(merlin_stage_relight(stage, left, NULL, &relit), MERLIN_OK);
+        for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+            float x = ((float)(i / 3 % SIDE) + 0.5f) / 4 - 32, y = ((float)(i / 3 / SIDE) + 0.5f) / 4 - 32;
+            /* the soft edge, and a pixel of the photograph between one that is covered and one that is not */
+            if (fabsf(sqrtf(x * x + y * y) - RING_RADIUS) > 8 + 1.5f) assert_true(relit.data[i] == 0);
+        }
+        merlin_image_free(&relit);
+        merlin_stage_free(stage);
+    }
+    merlin_maps_free(&maps);
 }
 
 static void lights_that_are_nowhere_are_refused(void **state)
@@ -638,6 +668,7 @@ int main(void)
         cmocka_unit_test(folders_without_maps_are_refused),
         cmocka_unit_test(relighting_moves_the_light_and_keeps_the_outside_black),
         cmocka_unit_test(the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too),
+        cmocka_unit_test(an_enlarged_picture_is_black_beside_the_object),
         cmocka_unit_test(lights_that_are_nowhere_are_refused),
         cmocka_unit_test(damaged_weights_are_refused),
     };
