@@ -100,7 +100,7 @@ typedef struct merlin_maps {
     merlin_image depth;          /* 1, distance along -z in scene units */
     merlin_image mask;           /* 1, coverage in [0, 1] */
     merlin_image photo;          /* 3, the photograph times the mask */
-    merlin_image reconstruction; /* 3, the maps under the flash, in the photograph's exposure */
+    merlin_image reconstruction; /* 3, the maps under the flash, exposed as by merlin_relight */
     struct {
         int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
     } crop;
@@ -137,7 +137,7 @@ typedef enum merlin_relighting {
 } merlin_relighting;
 
 /* The object under one point light at this place instead of the flash, of the flash's power (5.95): the photograph's
- * size and exposure, 3 channels in [0, 1]. */
+ * size and exposure (the usual one if its values go beyond 1), 3 channels in [0, 1]. */
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
 

@@ -61,7 +61,7 @@ typedef struct stage {
     shadow_caster caster;       /* empty unless shadows are cast */
     horizon horizon;            /* the same, and an environment was given */
     const env_map *environment; /* lights beside the point light, or NULL; borrowed */
-    float white;                /* the radiance that becomes 1: the photograph's, unless changed */
+    float white;                /* the radiance that becomes 1: exposure_white's, unless changed */
     merlin_relighting how;
 } stage;
 

@@ -182,8 +182,8 @@ static status follow_mean(network *n, work *w, bool in_environment)
     return OK;
 }
 
-/* The maps at the crop's own resolution, and what they look like under the photograph's light in its exposure. */
-static status refine(work *w, float gain, bool in_environment)
+/* The maps at the crop's own resolution, and what they look like under the photograph's light. */
+static status refine(work *w, float gain, float white, bool in_environment)
 {
     surface_encode_guide(&w->crop_photo, gain);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
@@ -201,7 +201,7 @@ static status refine(work *w, float gain, bool in_environment)
         surface_add_ambient_highlights(&w->full, sh, picture);
     }
     for (size_t i = 0; i < count; i++)
-        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / gain, 0), 1);
+        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / white, 0), 1);
     return OK;
 }
 
@@ -254,7 +254,8 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
     if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
-    if (s == OK) s = refine(w, maps->gain, maps->has_environment);
+    img photo = img_of(&maps->photo);
+    if (s == OK) s = refine(w, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
     if (s == OK) s = place_all(w, maps);
     if (s == OK) s = lap(w, &t->upsample);
     return s;

@@ -36,6 +36,15 @@ float exposure_gain(const img *color, const img *mask)
     return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / LARGEST_CHANGE), LARGEST_CHANGE);
 }
 
+float exposure_white(const img *photo, float gain)
+{
+    const float room = 1.01f; /* for roundings */
+    if (gain >= EXPOSURE_WHITE) return gain;
+    for (size_t i = 0; i < img_value_count(photo); i++)
+        if (photo->data[i] > room) return EXPOSURE_WHITE;
+    return gain;
+}
+
 float exposure_from_ev(float ev)
 {
     return EXPOSURE_WHITE * exp2f(ev);

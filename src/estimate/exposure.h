@@ -19,6 +19,10 @@
  * EXPOSURE_WHITE, which a black photograph gets. */
 float exposure_gain(const img *color, const img *mask);
 
+/* The radiance that becomes 1 in new pictures of a photograph's object: the photograph's own white, unless it has
+ * values above 1, for which a picture has no room; then at least EXPOSURE_WHITE. */
+float exposure_white(const img *photo, float gain);
+
 /* Stops that may be asked for. */
 #define EXPOSURE_MOST_EV 20.0f
 /* EXPOSURE_WHITE · 2^EV. */

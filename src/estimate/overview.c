@@ -27,8 +27,8 @@ static status show_values(const img *values, img *out)
     return OK;
 }
 
-/* In the photograph's size and exposure beside it. */
-static status show_reconstruction(const merlin_maps *maps, img *out)
+/* In the size and exposure of the photograph beside it. */
+static status show_reconstruction(const merlin_maps *maps, float white, img *out)
 {
     img whole = img_of(&maps->reconstruction), mask = img_of(&maps->mask), part = {0};
     status s = crop_take(&whole, crop_of(maps), &mask, &part);
@@ -36,7 +36,7 @@ static status show_reconstruction(const merlin_maps *maps, img *out)
     img_free(&part);
     size_t count = s == OK ? 3 * (size_t)maps->size * (size_t)maps->size : 0;
     for (size_t i = 0; i < count; i++)
-        out->data[i] *= maps->gain / EXPOSURE_WHITE;
+        out->data[i] *= white / EXPOSURE_WHITE;
     return s;
 }
 
@@ -47,6 +47,7 @@ static status make(network *n, const merlin_maps *maps, overview *o)
         s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;
     /* an underexposed photograph is shown as it should have been exposed */
+    float white = o->stage.white;
     o->stage.white = EXPOSURE_WHITE;
     size_t count = 3 * (size_t)maps->size * (size_t)maps->size;
     for (size_t i = 0; i < count; i++)
@@ -55,7 +56,7 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     s = figure_normals(&full->normal, &full->mask, &o->normal);
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
-    if (s == OK) s = show_reconstruction(maps, &o->reconstruction);
+    if (s == OK) s = show_reconstruction(maps, white, &o->reconstruction);
     if (s == OK) s = stage_relight(n, &o->stage, &from_left, &o->left);
     if (s == OK) s = stage_relight(n, &o->stage, &from_right, &o->right);
     return s;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "estimate/api.h"
+#include "estimate/exposure.h"
 
 typedef struct range {
     double low, high, sum;
@@ -58,10 +59,12 @@ static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
 {
     if (!maps->reconstruction.data) return;
     range r = {0};
+    img photo = img_of(&maps->photo);
+    float scale = maps->gain / exposure_white(&photo, maps->gain);
     size_t count = (size_t)maps->mask.width * (size_t)maps->mask.height;
     for (size_t i = 0; i < 3 * count; i++) {
         if (maps->mask.data[i / 3] < 0.5f) continue;
-        double seen = fmin(maps->photo.data[i], 1), made = maps->reconstruction.data[i];
+        double seen = fmin(scale * photo.data[i], 1), made = maps->reconstruction.data[i];
         add(&r, (seen - made) * (seen - made));
     }
     cJSON_AddNumberToObject(root, "reconstruction_rmse", sqrt(mean(&r)));

@@ -171,9 +171,10 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
 
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
-    *out = (stage){.how = how, .white = maps->gain};
-    img mask = {0};
+    *out = (stage){.how = how};
+    img mask = {0}, photo = img_of(&maps->photo);
     status s = maps_check(maps);
+    if (s == OK) out->white = exposure_white(&photo, maps->gain);
     if (s == OK) s = take_mask(maps, &mask);
     if (s == OK) s = take_low(n, maps, &mask, out);
     if (s == OK) s = take_full(maps, &mask, side, &out->full);

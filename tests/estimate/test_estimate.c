@@ -554,6 +554,32 @@ static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
     }
 }
 
+static void a_photograph_in_another_unit_gives_the_same_pictures(void **state)
+{
+    fixture *f = *state;
+    const float left[3] = {-0.7f, 0.3f, -0.4f};
+    merlin_params p = small();
+    merlin_image relit[2], again[2];
+    p.auto_exposure = 0;
+    for (int k = 0; k < 2; k++) {
+        merlin_maps maps;
+        assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+        assert_int_equal(merlin_relight(f->model, &maps, left, MERLIN_BY_BRDF, &relit[k]), MERLIN_OK);
+        again[k] = maps.reconstruction;
+        maps.reconstruction = (merlin_image){0};
+        merlin_maps_free(&maps);
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            f->photo.data[i] *= k ? 1 / 16.0f : 16;
+        p.exposure = -4; /* by powers of two: the network sees the same, bit for bit */
+    }
+    assert_memory_equal(relit[0].data, relit[1].data, WIDTH * HEIGHT * 3 * sizeof(float));
+    assert_memory_equal(again[0].data, again[1].data, WIDTH * HEIGHT * 3 * sizeof(float));
+    for (int k = 0; k < 2; k++) {
+        merlin_image_free(&relit[k]);
+        merlin_image_free(&again[k]);
+    }
+}
+
 enum { RING_SIDE = 64, RING_RADIUS = 20 };
 
 /* A square photograph of a grey ring, 16 pixels wide with a soft edge, which is taken whole. */
@@ -668,6 +694,7 @@ int main(void)
         cmocka_unit_test(folders_without_maps_are_refused),
         cmocka_unit_test(relighting_moves_the_light_and_keeps_the_outside_black),
         cmocka_unit_test(the_decoders_picture_is_black_beside_the_object_at_the_networks_own_size_too),
+        cmocka_unit_test(a_photograph_in_another_unit_gives_the_same_pictures),
         cmocka_unit_test(an_enlarged_picture_is_black_beside_the_object),
         cmocka_unit_test(lights_that_are_nowhere_are_refused),
         cmocka_unit_test(damaged_weights_are_refused),
