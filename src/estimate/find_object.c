@@ -17,9 +17,11 @@
 enum { WORKING_SIDE = 192, ROUNDS = 4, SMOOTHING = 2, BINS = 12, OTSU_BINS = 128 };
 static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f;
 static const float KEPT_SHARE = 0.1f;
+static const float LEAST_WHITE = 0.5f, MOST_GAIN = 64;
 static const float COLOR_WEIGHT = 0.5f, LEAST_AREA = 0.005f, LARGEST_AREA = 0.9f;
 
 typedef struct search {
+    float exposure;  /* what the photograph's values are multiplied by */
     img color;       /* small, square-root encoded */
     img probability; /* of being object */
     float *prior;    /* log odds of being object, from the place alone */
@@ -49,9 +51,13 @@ static void mark_ring(search *s)
             s->ring[y * s->width + x] = x < margin || y < margin || x >= s->width - margin || y >= s->height - margin;
 }
 
-/* Below 1 for pictures whose values go far above it. Dark ones stay: what is bright in them may be the object alone. */
+/* Brings values to the usual ones: those far above 1, and those of a picture that has no bright pixel at all. */
 static float exposure_of(const search *s)
 {
+    float brightest = 0;
+    for (size_t i = 0; i < 3 * s->count; i++)
+        brightest = fmaxf(brightest, s->color.data[i]);
+    if (brightest < LEAST_WHITE) return LEAST_WHITE / fmaxf(brightest, LEAST_WHITE / MOST_GAIN);
     for (size_t i = 0; i < s->count; i++)
         s->probability.data[i] = 1; /* so far, all of it */
     return fminf(exposure_gain(&s->color, &s->probability) / EXPOSURE_WHITE, 1);
@@ -68,9 +74,9 @@ static status search_new(const img *photo, search *s)
     status result = img_resize(photo, s->width, s->height, &s->color);
     if (result == OK) result = img_new(&s->probability, s->width, s->height, 1);
     if (result != OK) return result;
-    float exposure = exposure_of(s);
+    s->exposure = exposure_of(s);
     for (size_t i = 0; i < 3 * s->count; i++)
-        s->color.data[i] = sqrtf(fminf(fmaxf(exposure * s->color.data[i], 0), 1));
+        s->color.data[i] = sqrtf(fminf(fmaxf(s->exposure * s->color.data[i], 0), 1));
     s->prior = calloc(s->count, sizeof *s->prior);
     s->object = calloc(s->count, 1);
     s->ring = calloc(s->count, 1);
@@ -292,11 +298,12 @@ static float trust(const search *s, float area)
 static status enlarge(const search *s, const img *photo, img *mask)
 {
     img small = {0};
+    float epsilon = 1e-4f / (s->exposure * s->exposure);
     status result = img_new(&small, s->width, s->height, 1);
     for (size_t i = 0; result == OK && i < s->count; i++)
         small.data[i] = s->object[i];
     if (result == OK && (photo->width != s->width || photo->height != s->height))
-        result = img_guided_upsample(&small, NULL, photo, NULL, 2, 1e-4f, mask);
+        result = img_guided_upsample(&small, NULL, photo, NULL, 2, epsilon, mask);
     else if (result == OK)
         result = img_copy(mask, &small);
     img_free(&small);
