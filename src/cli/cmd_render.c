@@ -10,7 +10,7 @@
 #include "render/generate.h"
 
 static const char help[] =
-    "Usage: merlin render --count N -o DIR [options]\n"
+    "usage: merlin render --count N -o DIR [options]\n"
     "Renders training samples: objects with their maps, under a flash at the camera (direct and indirect light apart)\n"
     "and under an environment. A run that was interrupted is continued by the same command.\n"
     "\n"
@@ -30,8 +30,8 @@ static const char help[] =
     "  --paths N       indirect paths a pixel (default 8); environment light takes five for every eight\n"
     "  --threads T     threads (default: all processors)\n"
     "  --quiet         no progress bar\n"
-    "  --json          a report as JSON on stdout\n"
-    "  --help          this text\n";
+    "  --json          a report as JSON on standard output\n"
+    "  -h, --help      this text\n";
 
 typedef struct request {
     render_options options;

@@ -7,7 +7,7 @@
 #include "train/train.h"
 
 static const char help[] =
-    "Usage: merlin train CONFIG.json --data DIR -o DIR [OPTION]...\n"
+    "usage: merlin train CONFIG.json --data DIR -o DIR [OPTION]...\n"
     "Train the model of a configuration (configs/) on samples made by merlin render.\n"
     "\n"
     "  -d, --data DIR      folder of samples, all of the configuration's size\n"
