@@ -28,7 +28,7 @@ static const char help[] =
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
     "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
     "                       unless DIR has a light_intensities.txt with one or three numbers a line\n"
-    "      --near           the lights are positions in front of a camera at 0,0,0, not directions\n"
+    "      --near           the lights are positions, with the camera at 0,0,0 looking along -z, not directions\n"
     "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
     "                       near for positions, uncalibrated without lights; auto (default): near with --near, ls\n"
