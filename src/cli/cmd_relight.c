@@ -96,7 +96,6 @@ static status check(request *r)
     if (r->how == MERLIN_BY_NETWORK && stereo_maps_in(r->input))
         return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
-    if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
     return OK;
 }
 

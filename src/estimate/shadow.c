@@ -11,6 +11,8 @@
 static const float THICKNESS_BORDER = 0.04f;
 /* How far behind the map is behind it, and over what range it becomes so: in pixels, and in shares of the way. */
 static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
+/* Slope of a surface, in pixels a pixel. */
+static const float STEEPEST = 16;
 
 status shadow_caster_new(const img *depth, const img *normal, const img *mask, float fov, shadow_caster *out)
 {
@@ -72,10 +74,11 @@ static float value_at(const img *image, const corners *c, int channel)
 typedef struct march {
     float x, y, inverse;                /* where it starts, pixel centres at whole coordinates */
     float step_x, step_y, step_inverse; /* a pixel further along the longer axis */
-    float first, count;                 /* steps: to the first pixel centre along that axis, and to the end */
-    bool across;                        /* the longer axis is x */
-    float way;                          /* scene units to the end, times the end's inverse depth, a step */
-    float pixel;                        /* its size in scene units at the start */
+    float first, count; /* steps: to the first pixel centre that counts along that axis, and to the end */
+    bool across;        /* the longer axis is x */
+    float way;          /* scene units to the end, times the end's inverse depth, a step */
+    float pixel;        /* its size in scene units at the start */
+    float slope;        /* what the surface's depth grows by a pixel across, to the right or down */
 } march;
 
 /* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
@@ -87,9 +90,23 @@ static float part_with_occluders(const shadow_caster *c, vec3 p, vec3 to_light)
     return fminf(part, 1);
 }
 
-/* False if nothing can be met. */
-static bool march_begin(const shadow_caster *c, float x, float y, float depth, vec3 light, march *m)
+/* Of the surface there, along one axis; steeper ones are jumps from part to part. */
+static float slope_at(const img *depth, const corners *at, bool down, float pixel)
 {
+    const float *d = depth->data, *w = at->weight;
+    float change;
+    if (down)
+        change = (w[0] + w[2]) * (d[at->at[2]] - d[at->at[0]]) + (w[1] + w[3]) * (d[at->at[3]] - d[at->at[1]]);
+    else
+        change = (w[0] + w[1]) * (d[at->at[1]] - d[at->at[0]]) + (w[2] + w[3]) * (d[at->at[3]] - d[at->at[2]]);
+    return fabsf(change) < STEEPEST * pixel ? change : 0;
+}
+
+/* False if nothing can be met. */
+static bool march_begin(const shadow_caster *c, float x, float y, vec3 light, march *m)
+{
+    corners around = corners_of(&c->depth, x, y);
+    float depth = value_at(&c->depth, &around, 0);
     camera view = {c->depth.width, c->depth.height, c->fov};
     vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = vec3_sub(light, p);
     float part = part_with_occluders(c, p, to_light);
@@ -109,8 +126,10 @@ static bool march_begin(const shadow_caster *c, float x, float y, float depth, v
     m->step_inverse = (-1 / end.z - m->inverse) / m->count;
     float start = m->across ? x : y, forward = m->across ? dx : dy;
     m->first = forward > 0 ? floorf(start) + 1 - start : start - ceilf(start) + 1;
+    if (m->first < 0.5f) m->first += 1; /* that is the surface where it starts */
     m->way = part * vec3_length(to_light) * (-1 / end.z) / m->count;
     m->pixel = camera_pixel_size(&view) * depth;
+    m->slope = slope_at(&c->depth, &around, m->across, m->pixel);
     return true;
 }
 
@@ -139,7 +158,9 @@ static float hidden(const shadow_caster *c, const march *m)
         float between = fmaxf(m->across ? y - (float)row : x - (float)column, 0);
         size_t at = (size_t)row * (size_t)width + (size_t)column;
         size_t next = m->across ? at + (size_t)(row + 1 < height ? width : 0) : at + (column + 1 < width ? 1 : 0);
-        float a = stops(c, at, depth, margin, border), b = stops(c, next, depth, margin, border);
+        /* the map's pixels lie beside the ray, where the surface that it starts from has another depth, too */
+        float a = stops(c, at, depth - between * m->slope, margin, border);
+        float b = stops(c, next, depth + (1 - between) * m->slope, margin, border);
         most = fmaxf(most, a + between * (b - a));
     }
     return most;
@@ -173,12 +194,11 @@ static void cast_row(void *context, size_t row)
     float y = ((float)row + 0.5f) * scale_y - 0.5f;
     for (int i = 0; i < job->seen->width; i++) {
         float x = ((float)i + 0.5f) * scale_x - 0.5f;
-        corners around = corners_of(&c->depth, x, y);
         march m;
         float *seen = img_at(job->seen, i, (int)row);
         *seen = 1;
         if (!near_surface(&c->mask, x, y)) continue;
-        if (march_begin(c, x, y, value_at(&c->depth, &around, 0), job->light, &m)) *seen = 1 - hidden(c, &m);
+        if (march_begin(c, x, y, job->light, &m)) *seen = 1 - hidden(c, &m);
     }
 }
 

@@ -105,7 +105,6 @@ refuses 2 'one photograph' relight disc.merlin disc.hdr --light 0,0,0
 refuses 2 '--light' relight disc.merlin --light 1,2
 refuses 2 '--light' relight disc.merlin --light 0,nan,0
 refuses 2 '--orbit' relight disc.merlin --orbit 100000
-refuses 2 "--frame is the side of an --orbit's" relight disc.merlin --light 0,0,0 --frame 64
 refuses 2 '--by' relight disc.merlin --light 0,0,0 --by magic
 refuses 2 'unknown option' relight disc.merlin --nonsense
 
