@@ -57,6 +57,23 @@ static void gate_backward_is_the_product_rule(void **state)
         }
 }
 
+/* x·x: both gradients are the same tensor's, the first written and the second added, as steps ask for it. */
+static void what_is_gated_by_itself_has_twice_the_gradient(void **state)
+{
+    (void)state;
+    for (int t = NN_FLOAT32; t <= NN_BFLOAT16; t++) {
+        const int *b = bases[3];
+        cpu_tensor x = made((nn_type)t, b, 1, 1), dy = made((nn_type)t, b, 1, 2), dx = made((nn_type)t, b, 1, 3);
+        cpu_tensor expected = tensor_converted(&x, NN_FLOAT32);
+        for (size_t i = 0; i < cpu_count(&x); i++)
+            tensor_set(&expected, i, 2 * tensor_get(&x, i) * tensor_get(&dy, i));
+        cpu_gate_backward(&x, &x, &dy, &dx, false, &dx, true);
+        /* rounded when written and again when added */
+        assert_near("dx", &dx, &expected, 2 * tensor_rounding((nn_type)t), 0);
+        tensor_free(&x), tensor_free(&dy), tensor_free(&dx), tensor_free(&expected);
+    }
+}
+
 static void gate_leaves_out_unwanted_gradients(void **state)
 {
     (void)state;
@@ -168,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gate_scales_every_channel_of_a_pixel),
         cmocka_unit_test(gate_backward_is_the_product_rule),
+        cmocka_unit_test(what_is_gated_by_itself_has_twice_the_gradient),
         cmocka_unit_test(gate_leaves_out_unwanted_gradients),
         cmocka_unit_test(normalized_vectors_are_unit_and_keep_their_direction),
         cmocka_unit_test(normalize_backward_is_that_of_central_differences),

@@ -185,6 +185,7 @@ void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y)
     }
 }
 
+/* The inputs in their order: what is gated by itself has one gradient, written first and added to then. */
 void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
                        bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate)
 {
@@ -194,15 +195,15 @@ void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_te
         float room_x[TILE], room_dy[TILE], room_gate[TILE], room_out[TILE];
         size_t n = cpu_min(step, pixels - at);
         const float *d = cpu_load(dy, at * channels, n * channels, room_dy);
-        if (dgate && dgate->data) {
-            float *out = cpu_target(dgate, at, room_out, accumulate_gate);
-            dot(cpu_load(x, at * channels, n * channels, room_x), d, out, n, channels);
-            cpu_store(dgate, at, n, out, accumulate_gate);
-        }
         if (dx && dx->data) {
             float *out = cpu_target(dx, at * channels, room_out, accumulate_x);
             weigh(d, cpu_load(gate, at, n, room_gate), out, n, channels);
             cpu_store(dx, at * channels, n * channels, out, accumulate_x);
+        }
+        if (dgate && dgate->data) {
+            float *out = cpu_target(dgate, at, room_out, accumulate_gate);
+            dot(cpu_load(x, at * channels, n * channels, room_x), d, out, n, channels);
+            cpu_store(dgate, at, n, out, accumulate_gate);
         }
     }
 }
