@@ -49,12 +49,16 @@ static double gradient_norm(nn_params *params)
     return sqrt(sum);
 }
 
+/* Squares of what is larger overflow: the second moment would stay infinite, and its parameter where it is. */
+static const double LARGEST_NORM = 1e19;
+
 status nn_adam_step(nn_adam *adam, float learning_rate)
 {
     if (!(learning_rate >= 0) || isinf(learning_rate))
         return fail(ERROR_USAGE, "the learning rate must be a number of at least 0");
     double norm = gradient_norm(adam->params), clip = (double)adam->options.clip_norm;
-    if (!isfinite(norm)) {
+    double scale = clip > 0 && norm > clip ? clip / norm : 1;
+    if (!(norm * scale <= LARGEST_NORM)) {
         adam->skipped++;
         return OK;
     }
@@ -64,7 +68,7 @@ status nn_adam_step(nn_adam *adam, float learning_rate)
                           .epsilon = adam->options.epsilon,
                           .correction1 = (float)(1 - pow((double)adam->options.beta1, (double)adam->steps)),
                           .correction2 = (float)(1 - pow((double)adam->options.beta2, (double)adam->steps)),
-                          .gradient_scale = clip > 0 && norm > clip ? (float)(clip / norm) : 1};
+                          .gradient_scale = (float)scale};
     for (size_t i = 0; i < nn_params_count(adam->params); i++) {
         nn_param *p = nn_params_at(adam->params, i);
         if (!p->gradient) continue;

@@ -208,7 +208,8 @@ typedef struct nn_adam_options {
 } nn_adam_options;
 status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out);
 void nn_adam_free(nn_adam *adam);
-/* One step with the gradients in params; a gradient with NaN or infinity skips the step and is counted. */
+/* One step with the gradients in params; a gradient with NaN or infinity, or one so large that its square would be,
+ * skips the step and is counted. */
 status nn_adam_step(nn_adam *adam, float learning_rate);
 /* For checkpoints: step count, skipped count and per-parameter moments (same order and sizes as params). */
 int64_t nn_adam_steps(const nn_adam *adam);

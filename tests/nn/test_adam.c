@@ -142,6 +142,36 @@ static void a_broken_gradient_changes_nothing_and_is_counted(void **state)
     nn_params_free(params);
 }
 
+/* Its second moment would be infinite, and the parameter would never move again. */
+static void a_gradient_whose_square_overflows_changes_nothing(void **state)
+{
+    (void)state;
+    nn_params *params = layer();
+    nn_adam *adam = adam_for(params, 0);
+    set_gradients(params, 1, 1e20f);
+    assert_int_equal(nn_adam_step(adam, 0.01f), OK);
+    assert_int_equal(nn_adam_skipped(adam), 1);
+    set_gradients(params, 1, 1);
+    assert_int_equal(nn_adam_step(adam, 0.01f), OK);
+    assert_true(fabsf(change(params, "layer.bias", 0) + 0.01f) < 1e-6f);
+    nn_adam_free(adam);
+    nn_params_free(params);
+}
+
+/* Clipping comes before the square. */
+static void a_large_gradient_that_is_clipped_is_taken(void **state)
+{
+    (void)state;
+    nn_params *params = layer();
+    nn_adam *adam = adam_for(params, 1);
+    set_gradients(params, 0, 1e20f);
+    assert_int_equal(nn_adam_step(adam, 0.01f), OK);
+    assert_int_equal(nn_adam_skipped(adam), 0);
+    assert_true(fabsf(change(params, "layer.bias", 0) + 0.01f) < 1e-6f);
+    nn_adam_free(adam);
+    nn_params_free(params);
+}
+
 /* What a checkpoint keeps is enough: values, moments and counts in a fresh optimizer go on with the same bits. */
 static void a_restored_optimizer_goes_on_with_the_same_bits(void **state)
 {
@@ -223,6 +253,8 @@ int main(void)
         cmocka_unit_test(gradients_are_clipped_by_their_global_norm),
         cmocka_unit_test(smaller_gradients_are_not_clipped),
         cmocka_unit_test(a_broken_gradient_changes_nothing_and_is_counted),
+        cmocka_unit_test(a_gradient_whose_square_overflows_changes_nothing),
+        cmocka_unit_test(a_large_gradient_that_is_clipped_is_taken),
         cmocka_unit_test(a_restored_optimizer_goes_on_with_the_same_bits),
         cmocka_unit_test(senseless_options_are_refused),
         cmocka_unit_test(kernels_do_not_depend_on_the_number_of_threads),
