@@ -12,7 +12,9 @@
 #include "base/half.h"
 #include "nn/safetensors_format.h"
 
-enum { FILE_LIMIT = 1 << 30, WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken */ };
+/* Files are mapped, not copied. Checkpoints are four times a model, and one that was written must be read again. */
+static const size_t FILE_LIMIT = (size_t)1 << 36;
+enum { WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken */ };
 
 struct st_file {
     file_view view; /* the bytes, if st_open looked at them */

@@ -93,6 +93,26 @@ static char *sample_bytes(size_t *size)
     return bytes;
 }
 
+/* What a training run writes of a large model: one tensor of 1.2 GB, which take no room on the disk. */
+static void a_file_of_more_than_a_gigabyte_is_read(void **state)
+{
+    (void)state;
+    static const char header[] =
+        "{\"w\":{\"dtype\":\"F32\",\"shape\":[300000000],\"data_offsets\":[0,1200000000]}}    ";
+    const uint64_t length = sizeof header - 1;
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(&length, sizeof length, 1, out), 1);
+    assert_int_equal(fwrite(header, length, 1, out), 1);
+    assert_int_equal(fclose(out), 0);
+    assert_int_equal(truncate(path, (off_t)(sizeof length + length + 1200000000)), 0);
+    st_file *f = NULL;
+    if (st_open(path, &f) != OK) fail_msg("%s", status_message());
+    assert_int_equal(st_find(f, "w")->count, 300000000);
+    st_close(f);
+    assert_int_equal(unlink(path), 0);
+}
+
 static void truncated_weights_are_refused(void **state)
 {
     (void)state;
@@ -259,6 +279,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_written_is_read),
         cmocka_unit_test(tensors_are_given_in_their_order_in_the_file),
+        cmocka_unit_test(a_file_of_more_than_a_gigabyte_is_read),
         cmocka_unit_test(truncated_weights_are_refused),
         cmocka_unit_test(altered_weights_are_refused),
         cmocka_unit_test(other_files_are_called_what_they_are),
