@@ -1,11 +1,13 @@
 #include "train/dataset.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/half.h"
+#include "model/model.h"
 #include "optics/orientation.h"
 #include "render/sample.h"
 
@@ -109,6 +111,21 @@ static packed *pack(const trn_dataset *d, const sample *s)
     return p;
 }
 
+/* The rendering layer knows one camera and one flash: to it, the shading of others is wrong everywhere. */
+static status check_optics(const char *path, const sample *s)
+{
+    if (fabsf(s->fov - MODEL_FOV) > 0.01f)
+        return fail(ERROR_INPUT, "%s was rendered with a field of view of %g degrees, training wants %g", path,
+                    (double)s->fov, (double)MODEL_FOV);
+    if (fabsf(s->light_power - MODEL_LIGHT_POWER) > 0.001f * MODEL_LIGHT_POWER)
+        return fail(ERROR_INPUT, "%s was rendered with a light of power %g, training wants %g", path,
+                    (double)s->light_power, (double)MODEL_LIGHT_POWER);
+    if (!(vec3_length(s->light) <= 0.001f))
+        return fail(ERROR_INPUT, "%s was rendered with its light at %g, %g, %g, training wants it at the camera", path,
+                    (double)s->light.x, (double)s->light.y, (double)s->light.z);
+    return OK;
+}
+
 static status read_packed(trn_dataset *d, size_t i, packed **out)
 {
     sample one;
@@ -116,10 +133,12 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
     status s = d->options.environment ? sample_read_training_environment(d->paths[i], &one)
                                       : sample_read_training(d->paths[i], &one);
     if (s != OK) return s;
-    if (one.mask.width != size || one.mask.height != size) {
+    if (one.mask.width != size || one.mask.height != size)
         s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
                  one.mask.height, size, size);
-    } else {
+    else
+        s = check_optics(d->paths[i], &one);
+    if (s == OK) {
         *out = pack(d, &one);
         if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
     }

@@ -49,8 +49,8 @@ typedef struct trn_dataset_options {
 status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out);
 void trn_dataset_close(trn_dataset *d);
 size_t trn_dataset_count(const trn_dataset *d);
-/* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Safe to call from several
- * threads. */
+/* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Refuses a sample of another
+ * size, and of another camera or flash than the model's. Safe to call from several threads. */
 status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out);
 /* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
 status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);

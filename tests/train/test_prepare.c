@@ -85,6 +85,36 @@ static void sample_of_another_size_is_refused(void **state)
     trn_dataset_close(d);
 }
 
+static void rewrite(const char *path, float fov, float power, vec3 light)
+{
+    sample s;
+    assert_int_equal(sample_read(path, &s), OK);
+    s.fov = fov, s.light_power = power, s.light = light;
+    assert_int_equal(sample_write(path, &s), OK);
+    sample_free(&s);
+}
+
+static void sample_of_another_camera_or_flash_is_refused(void **state)
+{
+    fixture *f = *state;
+    static const struct {
+        float fov, power;
+        vec3 light;
+        const char *word;
+    } wrong[] = {{40, LIGHT_POWER, {0, 0, 0}, "field of view of 40"},
+                 {60, 1, {0, 0, 0}, "power 1"},
+                 {60, LIGHT_POWER, {0.5f, 0, 0}, "at the camera"}};
+    char *path = sample_path(f->folder, 0);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        rewrite(path, wrong[i].fov, wrong[i].power, wrong[i].light);
+        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), ERROR_INPUT);
+        assert_non_null(strstr(status_message(), wrong[i].word));
+    }
+    rewrite(path, 60, LIGHT_POWER, vec3_make(0, 0, 0));
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    free(path);
+}
+
 static void a_folder_is_of_its_first_samples_version(void **state)
 {
     (void)state;
@@ -486,6 +516,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_eight_orientations_differ, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sample_from_memory_equals_sample_from_disk, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sample_of_another_size_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sample_of_another_camera_or_flash_is_refused, set_up, tear_down),
         cmocka_unit_test(a_folder_is_of_its_first_samples_version),
         cmocka_unit_test(empty_folder_is_refused),
         cmocka_unit_test_setup_teardown(perfect_camera_shows_direct_plus_indirect, set_up, tear_down),
