@@ -151,7 +151,8 @@ static bool is_seen(const trn_view *v, int outline, int x, int y)
 /* The input, encoded, and where it shows something in loss_mask. */
 static status take_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise)
 {
-    expose(v, global, lens, lens->background || lens->jpeg, noise);
+    /* a mask too large shows pixels that the object covers by less than half */
+    expose(v, global, lens, lens->background || lens->jpeg || lens->outline > 0, noise);
     status s = lens->jpeg ? compress(v, lens) : OK;
     for (int y = 0; y < v->size; y++) {
         for (int x = 0; x < v->size; x++) {

@@ -280,6 +280,30 @@ static void outline_errors_are_one_pixel_wide(void **state)
     }
 }
 
+/* The pixel that a mask too large adds beside row 32, of which the object covers a quarter, is as dark as that. */
+static void a_mask_too_large_shows_what_the_object_covers_in_part(void **state)
+{
+    fixture *f = *state;
+    trn_view *v = &f->view;
+    trn_camera lens = trn_camera_perfect();
+    rng r = rng_at(1, 2, 3);
+    lens.outline = 1;
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    size_t edge = (size_t)32 * SIZE;
+    while (v->mask[edge] == 0)
+        edge++;
+    v->mask[edge] = 0.25f;
+    for (size_t c = 0; c < 3; c++) {
+        v->direct[3 * edge + c] = 0.2f;
+        v->indirect[3 * edge + c] = 0;
+    }
+    assert_int_equal(trn_prepare(v, true, &lens, &at_the_camera, &r), OK);
+    assert_true(v->mask[edge] == 1 && v->loss_mask[edge] == 0);
+    /* the input is the square root of the radiance */
+    for (size_t c = 0; c < 3; c++)
+        assert_float_equal(v->image[3 * edge + c] * v->image[3 * edge + c], 0.2f, 1e-6);
+}
+
 static void jpeg_spoils_the_input_and_not_the_targets(void **state)
 {
     fixture *f = *state;
@@ -531,6 +555,7 @@ int main(void)
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
         cmocka_unit_test_setup_teardown(background_shows_where_the_object_does_not_cover_the_pixel, set_up, tear_down),
         cmocka_unit_test_setup_teardown(outline_errors_are_one_pixel_wide, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_mask_too_large_shows_what_the_object_covers_in_part, set_up, tear_down),
         cmocka_unit_test_setup_teardown(jpeg_spoils_the_input_and_not_the_targets, set_up, tear_down),
         cmocka_unit_test(photographs_have_no_faults_unless_asked_for),
         cmocka_unit_test(perfect_cameras_are_as_many_as_asked_for),
