@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "base/rng.h"
 #include "nn/nn.h"
 
@@ -328,6 +329,49 @@ static void touched_parameters_are_picked_up(void **state)
     close_fixture(&f);
 }
 
+static nn_program *strided_program(nn_type type, nn_params **params)
+{
+    enum { CHANNELS = 8, SIZE = 64 };
+    nn_graph *g = nn_graph_new();
+    nn_node *x = nn_compute(g, nn_input(g, "x", CHANNELS, 1));
+    nn_node *y = nn_float(g, nn_conv2d(g, x, "y", CHANNELS, 1, 2, NN_NO_BIAS));
+    nn_masked_l2(g, y, nn_input(g, "t", CHANNELS, 2), nn_input(g, "m", 1, 2), "loss", 1);
+    nn_program *p;
+    assert_int_equal(nn_params_new(g, 1, params), OK);
+    const nn_options options = {.batch = 1, .height = SIZE, .width = SIZE, .type = type, .purpose = NN_TRAIN};
+    if (nn_compile(g, *params, &options, &p) != OK) fail_msg("%s", status_message());
+    nn_graph_free(g);
+    rng r = rng_at(4, 0, 0);
+    for (int i = 0; i < SIZE * SIZE * CHANNELS; i++)
+        nn_input_data(p, "x")[i] = rng_range(&r, -1, 1);
+    for (int i = 0; i < SIZE * SIZE / 4; i++)
+        nn_input_data(p, "m")[i] = 1;
+    return p;
+}
+
+/* A gate's first convolution, of fewer channels than a vector has: what its threads do must not meet. */
+static void gradients_of_a_narrow_strided_convolution_are_the_same_every_time(void **state)
+{
+    (void)state;
+    int before = parallel_threads();
+    parallel_set_threads(4);
+    for (nn_type type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {
+        nn_params *params;
+        nn_program *p = strided_program(type, &params);
+        const nn_param *w = nn_params_at(params, 0);
+        float first[64];
+        for (int i = 0; i < 100; i++) {
+            assert_int_equal(nn_forward(p), OK);
+            assert_int_equal(nn_backward(p), OK);
+            if (i == 0) memcpy(first, w->gradient, sizeof first);
+            assert_memory_equal(first, w->gradient, sizeof first);
+        }
+        nn_program_free(p);
+        nn_params_free(params);
+    }
+    parallel_set_threads(before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -337,6 +381,7 @@ int main(void)
         cmocka_unit_test(running_statistics_follow_the_batch),
         cmocka_unit_test(running_statistics_can_be_the_mean_over_batches),
         cmocka_unit_test(touched_parameters_are_picked_up),
+        cmocka_unit_test(gradients_of_a_narrow_strided_convolution_are_the_same_every_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 #include "nn/cpu/dnn.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const char *reason(dnnl_status_t code)
 {
@@ -80,6 +81,44 @@ status dnn_describe(dnn_call *call, const dnn_context *context, const void *desc
         s = dnn_check(dnnl_primitive_desc_create(&call->description, descriptor, attributes, context->engine,
                                                  hint ? hint->description : NULL),
                       "primitive description");
+    if (attributes) dnnl_primitive_attr_destroy(attributes);
+    return s;
+}
+
+static bool is_called(dnnl_primitive_desc_t description, const char *part)
+{
+    const char *name = NULL;
+    dnnl_primitive_desc_query(description, dnnl_query_impl_info_str, 0, (void *)&name);
+    return name && strstr(name, part);
+}
+
+static status find_otherwise(dnn_call *call, dnnl_primitive_desc_iterator_t at, const char *avoided)
+{
+    for (;;) {
+        dnnl_primitive_desc_t found = dnnl_primitive_desc_iterator_fetch(at);
+        if (!found) return fail(ERROR_MEMORY, "oneDNN: no memory for a primitive description");
+        if (!is_called(found, avoided)) {
+            call->description = found;
+            return OK;
+        }
+        dnnl_primitive_desc_destroy(found);
+        status s = dnn_check(dnnl_primitive_desc_iterator_next(at), "another primitive description");
+        if (s != OK) return s;
+    }
+}
+
+status dnn_describe_otherwise(dnn_call *call, const dnn_context *context, const void *descriptor, const char *avoided,
+                              const dnn_call *hint)
+{
+    dnnl_primitive_attr_t attributes = NULL;
+    dnnl_primitive_desc_iterator_t at = NULL;
+    status s = make_attributes(&attributes, false);
+    if (s == OK)
+        s = dnn_check(
+            dnnl_primitive_desc_iterator_create(&at, descriptor, attributes, context->engine, hint->description),
+            "primitive descriptions");
+    if (s == OK) s = find_otherwise(call, at, avoided);
+    if (at) dnnl_primitive_desc_iterator_destroy(at);
     if (attributes) dnnl_primitive_attr_destroy(attributes);
     return s;
 }

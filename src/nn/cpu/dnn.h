@@ -36,6 +36,9 @@ typedef struct dnn_call {
 /* Describes a primitive from an operation descriptor; relu is a post-operation; hint a forward description or NULL. */
 status dnn_describe(dnn_call *call, const dnn_context *context, const void *descriptor, bool relu,
                     const dnn_call *hint);
+/* The same without ReLU, by the first implementation whose name does not have `avoided` in it. */
+status dnn_describe_otherwise(dnn_call *call, const dnn_context *context, const void *descriptor, const char *avoided,
+                              const dnn_call *hint);
 size_t dnn_scratch_bytes(const dnn_call *call);
 const dnnl_memory_desc_t *dnn_query(const dnn_call *call, dnnl_query_t what);
 /* Adds an argument that lies at data. */
