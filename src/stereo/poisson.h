@@ -11,8 +11,8 @@
  * minimizes  Σ weight (x_j − x_i − target)²  over pairs of neighbours  +  Σ pull (x_i − pulled_to)².
  *
  * Up to POISSON_DIRECT unknowns by sparse Cholesky factorization (CHOLMOD, ordered by AMD or METIS); above it by
- * conjugate gradients preconditioned with a W-cycle over masks of half the size, the coarsest one factorized. Memory is
- * about 110 bytes an unknown (12 million: 1.3 GB) and 0.3 GB at most for the factor. */
+ * conjugate gradients preconditioned with a W-cycle over masks of half the size, whose pieces stay apart, the coarsest
+ * one factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB) and 0.3 GB at most for the factor. */
 #ifndef MERLIN_STEREO_POISSON_H
 #define MERLIN_STEREO_POISSON_H
 

@@ -3,7 +3,7 @@
 #include "stereo/poisson.h"
 #include "stereo/poisson_level.h"
 
-static status allocate(poisson_grid *g)
+status poisson_grid_allocate(poisson_grid *g)
 {
     size_t n = (size_t)g->count;
     g->pixel = calloc(n, sizeof *g->pixel);
@@ -34,10 +34,11 @@ static void link_neighbours(poisson_grid *g)
     }
 }
 
-status poisson_grid_link(poisson_grid *g)
+/* Numbers and links a grid whose width, height, count and node (≥ 0 inside) are set. */
+static status number_and_link(poisson_grid *g)
 {
     size_t pixels = (size_t)g->width * (size_t)g->height;
-    status s = allocate(g);
+    status s = poisson_grid_allocate(g);
     if (s != OK) return s;
     int i = 0;
     for (size_t p = 0; p < pixels; p++) {
@@ -60,7 +61,7 @@ status poisson_grid_new(const img *mask, poisson_grid *g)
         g->node[p] = inside ? 0 : -1;
         g->count += inside;
     }
-    status s = g->count ? poisson_grid_link(g) : fail(ERROR_INPUT, "the mask is empty: there is nothing to integrate");
+    status s = g->count ? number_and_link(g) : fail(ERROR_INPUT, "the mask is empty: there is nothing to integrate");
     if (s != OK) poisson_grid_free(g);
     return s;
 }

@@ -6,8 +6,12 @@
 
 #include "stereo/poisson.h"
 
-/* Numbers and links a grid whose width, height, count and node (≥ 0 inside) are set. */
-status poisson_grid_link(poisson_grid *g);
+/* The arrays of count entries. */
+status poisson_grid_allocate(poisson_grid *g);
+
+/* A grid of half the size, with links but no weights yet, and the fine nodes' parents in it (fine->count). It has no
+ * map of nodes, for where pieces meet a place has several. */
+status poisson_grid_coarsen(const poisson_grid *fine, int *parent, poisson_grid *coarse);
 
 /* The operator's diagonal at node i. */
 static inline double poisson_diagonal(const poisson_grid *g, int i)

@@ -27,25 +27,6 @@ struct poisson_solver {
 
 /* ---- building ---- */
 
-static status coarsen(const poisson_grid *fine, int *parent, poisson_grid *coarse)
-{
-    *coarse = (poisson_grid){.width = (fine->width + 1) / 2, .height = (fine->height + 1) / 2};
-    size_t pixels = (size_t)coarse->width * (size_t)coarse->height;
-    coarse->node = malloc(pixels * sizeof *coarse->node);
-    if (!coarse->node) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", fine->count);
-    memset(coarse->node, 0xff, pixels * sizeof *coarse->node);
-    for (int i = 0; i < fine->count; i++) {
-        int x = fine->pixel[i] % fine->width / 2, y = fine->pixel[i] / fine->width / 2;
-        parent[i] = y * coarse->width + x;
-        coarse->count += coarse->node[parent[i]] < 0;
-        coarse->node[parent[i]] = 0;
-    }
-    status s = poisson_grid_link(coarse);
-    for (int i = 0; i < fine->count && s == OK; i++)
-        parent[i] = coarse->node[parent[i]];
-    return s;
-}
-
 static status add_level(poisson_solver *s)
 {
     level *fine = &s->levels[s->depth - 1], *coarse = &s->levels[s->depth];
@@ -55,7 +36,7 @@ static status add_level(poisson_solver *s)
     if (!fine->parent || !fine->r) return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
     coarse->grid = &coarse->own;
     s->depth++;
-    status result = coarsen(fine->grid, fine->parent, &coarse->own);
+    status result = poisson_grid_coarsen(fine->grid, fine->parent, &coarse->own);
     if (result != OK) return result;
     size_t m = (size_t)coarse->grid->count;
     coarse->x = malloc(m * sizeof *coarse->x);
