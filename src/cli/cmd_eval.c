@@ -86,8 +86,9 @@ static int run_means(const request *r)
 {
     if (!r->output) return cli_usage("eval", "--means needs -o FILE.exr");
     eval_means means;
+    const eval_options *o = &r->options;
     status s = file_check_writable(r->output);
-    if (s == OK) s = eval_means_of_folder(r->means_folder, r->options.count, r->options.quiet, &means);
+    if (s == OK) s = eval_means_of_folder(r->means_folder, o->count, o->quiet, o->stopped, &means);
     if (s != OK) return cli_fail("eval", s);
     s = eval_means_write(&means, r->output);
     if (s == OK && !r->options.quiet) printf("%s: means over %zu samples\n", r->output, means.samples);

@@ -93,7 +93,7 @@ static status begin(evaluation *e, const char *first_path)
     if (o->means)
         s = eval_means_read(o->means, e->report->size, e->report->size, &e->scorer.means);
     else
-        s = eval_means_of_folder(o->data, o->count, o->quiet, &e->scorer.means);
+        s = eval_means_of_folder(o->data, o->count, o->quiet, o->stopped, &e->scorer.means);
     e->report->means_samples = e->scorer.means.samples;
     memcpy(e->report->model, eval_model_config(e->scorer.model)->name, sizeof e->report->model);
     return s;

@@ -80,7 +80,17 @@ static status finish_means(const mean_sums *m, eval_means *out)
     return OK;
 }
 
-status eval_means_of_folder(const char *folder, size_t limit, bool quiet, eval_means *out)
+static status add_file(mean_sums *m, const char *path)
+{
+    sample one;
+    status s = sample_read_training(path, &one);
+    if (s != OK) return s;
+    s = add_sample(m, &one, path);
+    sample_free(&one);
+    return s;
+}
+
+status eval_means_of_folder(const char *folder, size_t limit, bool quiet, int (*stopped)(void), eval_means *out)
 {
     *out = (eval_means){0};
     char **names;
@@ -92,12 +102,9 @@ status eval_means_of_folder(const char *folder, size_t limit, bool quiet, eval_m
     progress p;
     progress_begin(&p, "means", "samples", 0, used, quiet);
     for (size_t i = 0; s == OK && i < used; i++) {
-        sample one;
-        s = sample_read_training(names[i], &one);
-        if (s != OK) break;
-        s = add_sample(&sums, &one, names[i]);
-        sample_free(&one);
-        progress_update(&p, i + 1, NULL);
+        s = stopped && stopped() ? fail(ERROR_STOPPED, "stopped after the means of %zu of %zu samples", i, used)
+                                 : add_file(&sums, names[i]);
+        if (s == OK) progress_update(&p, i + 1, NULL);
     }
     progress_end(&p);
     if (s == OK) s = finish_means(&sums, out);

@@ -1,7 +1,7 @@
 /* The two trivial answers that a model must beat: the data set's mean maps, and maps inflated from the mask.
  *
  *     eval_means means;
- *     status s = eval_means_of_folder("train", 0, false, &means);
+ *     status s = eval_means_of_folder("train", 0, false, NULL, &means);
  *     if (s == OK) s = eval_means_write(&means, "means.exr");
  *     ...
  *     eval_maps guess;
@@ -24,8 +24,9 @@ typedef struct eval_means {
     size_t samples;
 } eval_means;
 
-/* Over the first limit samples of a folder made by `merlin render` (0: all); they must share one size. */
-status eval_means_of_folder(const char *folder, size_t limit, bool quiet, eval_means *out);
+/* Over the first limit samples of a folder made by `merlin render` (0: all); they must share one size. stopped (may be
+ * NULL) is polled between samples. */
+status eval_means_of_folder(const char *folder, size_t limit, bool quiet, int (*stopped)(void), eval_means *out);
 void eval_means_free(eval_means *means);
 /* Means as an EXR file with a sample's channel names and ranges. */
 status eval_means_write(const eval_means *means, const char *path);

@@ -68,7 +68,7 @@ static void means_of_one_sample_are_the_sample(void **state)
     eval_means means;
     assert_int_equal(sphere_sample(&ball, 0, &s), OK);
     assert_int_equal(eval_maps_of_sample(&s, &truth), OK);
-    assert_int_equal(eval_means_of_folder(folder, 0, true, &means), OK);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), OK);
     assert_int_equal(means.samples, 2);
     /* half floats keep 11 bits */
     assert_true(eval_mse(&means.maps.albedo, &truth.albedo, &s.mask) < 1e-6);
@@ -90,7 +90,7 @@ static void means_survive_their_file_and_another_size(void **state)
     write_sphere(folder, &ball, 0);
     eval_means means, back;
     char *path = file_join(folder, "means.exr");
-    assert_int_equal(eval_means_of_folder(folder, 0, true, &means), OK);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), OK);
     assert_int_equal(eval_means_write(&means, path), OK);
     assert_int_equal(eval_means_read(path, 96, 96, &back), OK);
     for (int i = 0; i < 96 * 96; i++) {
@@ -121,8 +121,28 @@ static void samples_of_two_sizes_have_no_mean(void **state)
     write_sphere(folder, &ball, 0);
     write_sphere(folder, &small, 1);
     eval_means means;
-    assert_int_equal(eval_means_of_folder(folder, 0, true, &means), ERROR_INPUT);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
+    scratch_remove(folder);
+}
+
+static int polled;
+static int stop_at_the_second(void)
+{
+    return ++polled == 2;
+}
+
+static void means_can_be_stopped(void **state)
+{
+    (void)state;
+    char *folder = scratch_new();
+    write_sphere(folder, &ball, 0);
+    write_sphere(folder, &ball, 1);
+    eval_means means;
+    polled = 0;
+    assert_int_equal(eval_means_of_folder(folder, 0, true, stop_at_the_second, &means), ERROR_STOPPED);
+    assert_non_null(strstr(status_message(), "1 of 2 samples"));
+    assert_null(means.maps.albedo.data);
     scratch_remove(folder);
 }
 
@@ -145,7 +165,7 @@ static void means_without_samples_or_depth_are_refused(void **state)
     write_sphere(folder, &ball, 0);
     char *path = file_join(folder, "means.exr");
     eval_means means, back;
-    assert_int_equal(eval_means_of_folder(folder, 0, true, &means), OK);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), OK);
     for (int i = 0; i < 2; i++) {
         eval_means wrong = means;
         if (i == 0) wrong.samples = 0;
@@ -165,6 +185,7 @@ int main(void)
         cmocka_unit_test(means_of_one_sample_are_the_sample),
         cmocka_unit_test(means_survive_their_file_and_another_size),
         cmocka_unit_test(samples_of_two_sizes_have_no_mean),
+        cmocka_unit_test(means_can_be_stopped),
         cmocka_unit_test(a_sample_is_no_file_of_means),
         cmocka_unit_test(means_without_samples_or_depth_are_refused),
     };
