@@ -57,6 +57,17 @@ static status take_precision(const char *text, void *into)
     return OK;
 }
 
+/* Nobody should wait for an evaluation to find that its report went elsewhere. */
+static status check(const request *r)
+{
+    const eval_options *o = &r->options;
+    if (!r->means_folder && r->output)
+        return fail(ERROR_USAGE, "-o is for --means; an evaluation prints its report, with --json for a program");
+    if (!r->means_folder) return OK;
+    bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->views || o->figure;
+    return evaluates || r->json ? fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone") : OK;
+}
+
 static status parse(int argc, char **argv, request *r)
 {
     const cli_option options[] = {
@@ -79,7 +90,7 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    return argc == 0 ? OK : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
+    return argc == 0 ? check(r) : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
 }
 
 static int run_means(const request *r)
