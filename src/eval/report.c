@@ -38,7 +38,7 @@ eval_verdict eval_judge(const eval_scores *scores, eval_row row)
     bool similarity = row >= EVAL_RECONSTRUCTION;
     eval_verdict v = {.kind = rows[row].kind,
                       .goal = rows[row].goal,
-                      .ratio = similarity ? NAN : model / trivial,
+                      .ratio = !similarity && trivial > 0 ? model / trivial : NAN,
                       .margin = similarity ? model - trivial : NAN};
     if (v.kind == EVAL_RATIO_AT_MOST) v.holds = v.ratio <= v.goal;
     if (v.kind == EVAL_AT_LEAST) v.holds = model >= v.goal;
@@ -117,6 +117,8 @@ static void print_group(const char *name, const eval_scores *scores, FILE *strea
             fprintf(stream, "%16s", "-");
         else if (row >= EVAL_RECONSTRUCTION)
             fprintf(stream, "%7.3f (%+.3f)", model, v.margin);
+        else if (isnan(v.ratio))
+            fprintf(stream, "%8.3f%8s", model, "(-)");
         else
             fprintf(stream, "%8.3f (%.3f)", model, v.ratio);
     }

@@ -13,7 +13,7 @@ typedef enum eval_goal_kind { EVAL_NO_GOAL, EVAL_RATIO_AT_MOST, EVAL_AT_LEAST, E
 typedef struct eval_verdict {
     eval_goal_kind kind;
     double goal;
-    double ratio;  /* model / better trivial answer; NAN for similarities */
+    double ratio;  /* model / better trivial answer; NAN for similarities, and beside an answer without error */
     double margin; /* model - better trivial answer; NAN for errors */
     bool holds;    /* false where there is no figure */
 } eval_verdict;

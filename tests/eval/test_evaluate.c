@@ -285,6 +285,32 @@ static void a_verdict_compares_with_the_better_trivial_answer(void **state)
     assert_false(eval_judge(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
 }
 
+/* The mean maps of a single sample are the sample itself. */
+static void an_error_beside_none_has_no_ratio(void **state)
+{
+    (void)state;
+    eval_report r = {.all = {.samples = 1}, .class_count = 1, .class_names = {"union"}};
+    r.all.count[EVAL_ALBEDO][EVAL_MODEL] = r.all.count[EVAL_ALBEDO][EVAL_MEAN] = 1;
+    r.all.sum[EVAL_ALBEDO][EVAL_MODEL] = 0.06;
+    r.classes[0] = r.all;
+    assert_true(isnan(eval_judge(&r.all, EVAL_ALBEDO).ratio));
+    assert_false(eval_judge(&r.all, EVAL_ALBEDO).holds);
+    char *json = eval_report_json(&r), *table;
+    size_t size;
+    FILE *stream = open_memstream(&table, &size);
+    assert_non_null(json);
+    assert_non_null(stream);
+    eval_print_table(&r, stream);
+    fclose(stream);
+    assert_null(strstr(json, "null"));
+    assert_null(strstr(json, "ratio"));
+    assert_null(strstr(table, "inf "));
+    assert_null(strstr(table, "(inf)"));
+    assert_null(strstr(table, "nan"));
+    free(json);
+    free(table);
+}
+
 static void even_surroundings_show_the_albedo(void **state)
 {
     (void)state;
@@ -394,6 +420,7 @@ int main(void)
         cmocka_unit_test(a_model_without_extras_leaves_its_rows_empty),
         cmocka_unit_test(samples_of_another_size_are_refused),
         cmocka_unit_test(a_figure_that_cannot_be_written_is_refused_before_the_work),
+        cmocka_unit_test(an_error_beside_none_has_no_ratio),
         cmocka_unit_test(a_verdict_compares_with_the_better_trivial_answer),
         cmocka_unit_test(even_surroundings_show_the_albedo),
         cmocka_unit_test(relighting_by_environments_is_measured_on_the_first_samples),
