@@ -57,8 +57,12 @@ static void print_comparison(const stereo_table *t, stereo_row row, const char *
         better += gain < 0;
         solved++;
     }
-    fprintf(stream, "%s against the single image: %+.2f degrees; better on %zu of %zu", label,
-            solved ? change / (double)solved : NAN, better, solved);
+    if (!solved) {
+        fprintf(stream, "%s against the single image: no object was solved\n", label);
+        return;
+    }
+    fprintf(stream, "%s against the single image: %+.2f degrees; better on %zu of %zu", label, change / (double)solved,
+            better, solved);
     const char *before = ", not on ";
     for (size_t i = 0; i < t->count; i++)
         if (t->object[i].row[row].error >= t->object[i].row[STEREO_SINGLE].error) {

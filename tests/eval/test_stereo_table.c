@@ -213,6 +213,24 @@ static void a_sample_without_targets_is_refused(void **state)
     sample_free(&s);
 }
 
+static void a_table_without_solutions_has_no_numbers_for_them(void **state)
+{
+    (void)state;
+    stereo_column refused = {.name = "cup", .pixels = 100, .pictures = 32};
+    for (int row = STEREO_RELIT; row < STEREO_ROWS; row++)
+        refused.row[row] = (stereo_score){.error = NAN, .failed = DRAW_MOST};
+    stereo_table t = {.model = "tiny", .object = &refused, .count = 1};
+    char *text;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    stereo_table_print(&t, stream);
+    fclose(stream);
+    assert_null(strstr(text, "nan"));
+    assert_non_null(strstr(text, "uncalibrated, against the single image: no object was solved"));
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -222,6 +240,7 @@ int main(void)
         cmocka_unit_test(normals_keep_their_angle_to_the_line_of_sight),
         cmocka_unit_test(an_object_that_shrinking_takes_apart_is_refused),
         cmocka_unit_test(a_sample_without_targets_is_refused),
+        cmocka_unit_test(a_table_without_solutions_has_no_numbers_for_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
