@@ -47,21 +47,6 @@ static inline vec3 times(symmetric m, vec3 v)
                      m.xz * v.x + m.yz * v.y + m.zz * v.z);
 }
 
-/* Damped as in pst_solve3. */
-static inline symmetric inverse(symmetric m)
-{
-    float damping = 1e-6f * (m.xx + m.yy + m.zz) + 1e-30f;
-    float xx = m.xx + damping, yy = m.yy + damping, zz = m.zz + damping;
-    float c0 = yy * zz - m.yz * m.yz, c1 = m.xz * m.yz - m.xy * zz, c2 = m.xy * m.yz - m.xz * yy;
-    float d = 1 / larger(xx * c0 + m.xy * c1 + m.xz * c2, 1e-37f);
-    return (symmetric){c0 * d,
-                       c1 * d,
-                       c2 * d,
-                       (xx * zz - m.xz * m.xz) * d,
-                       (m.xy * m.xz - xx * m.yz) * d,
-                       (xx * yy - m.xy * m.xy) * d};
-}
-
 static inline vec3 right_side(const ls_sums *s, int channel, int i)
 {
     return vec3_make(s->right[channel][0][i], s->right[channel][1][i], s->right[channel][2][i]);
@@ -76,13 +61,13 @@ static void answer(const ls_sums *restrict s, int count, answers *restrict out)
     for (int i = 0; i < count; i++) {
         symmetric m = {s->matrix[0][i], s->matrix[1][i], s->matrix[2][i],
                        s->matrix[3][i], s->matrix[4][i], s->matrix[5][i]};
-        symmetric solve = inverse(m);
+        pst_factors factors = pst_factor3(m.xx, m.xy, m.xz, m.yy, m.yz, m.zz);
         vec3 r = right_side(s, 0, i), g = right_side(s, 1, i), b = right_side(s, 2, i);
-        vec3 n = facing(times(solve, vec3_add(vec3_add(r, g), b)));
+        vec3 n = facing(pst_solve_factored(factors, vec3_add(vec3_add(r, g), b)));
         vec3 weighted = vec3_scale(r, larger(vec3_dot(r, n), 0));
         weighted = vec3_fma(weighted, larger(vec3_dot(g, n), 0), g);
         weighted = vec3_fma(weighted, larger(vec3_dot(b, n), 0), b);
-        n = facing(times(solve, weighted));
+        n = facing(pst_solve_factored(factors, weighted));
         n = vec3_scale(n, 1 / sqrtf(vec3_dot(n, n)));
         float share = 1 / larger(vec3_dot(n, times(m, n)), 1e-12f);
         float red = larger(vec3_dot(r, n), 0), green = larger(vec3_dot(g, n), 0), blue = larger(vec3_dot(b, n), 0);

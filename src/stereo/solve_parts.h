@@ -29,18 +29,39 @@ status pst_solve_near(const pst_problem *p, pst_surface *out);
 status pst_solve_semi(const pst_problem *p, pst_surface *out);
 status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out);
 
-/* Symmetric 3×3 (xx, xy, xz, yy, yz, zz) times x = b, lightly damped so that a singular matrix gives the short
- * solution instead of infinity. */
+/* A symmetric 3×3 matrix (xx, xy, xz, yy, yz, zz) as L D Lᵀ, lightly damped so that a singular one gives the short
+ * solution instead of infinity. By pivots, none of them less than the damping: a determinant would be lost in rounding
+ * where one light alone made the matrix. */
+typedef struct pst_factors {
+    float yx, zx, zy; /* of L, below its diagonal of 1 */
+    float x, y, z;    /* one over D */
+} pst_factors;
+
+static inline pst_factors pst_factor3(float xx, float xy, float xz, float yy, float yz, float zz)
+{
+    float damping = 1e-6f * (xx + yy + zz) + 1e-30f;
+    pst_factors f = {.x = 1 / (xx + damping)};
+    f.yx = xy * f.x;
+    f.zx = xz * f.x;
+    float rest = yz - f.zx * xy, second = yy - f.yx * xy;
+    f.y = 1 / ((second > 0 ? second : 0) + damping);
+    f.zy = rest * f.y;
+    float third = zz - f.zx * xz - f.zy * rest;
+    f.z = 1 / ((third > 0 ? third : 0) + damping);
+    return f;
+}
+
+/* x of L D Lᵀ x = b. */
+static inline vec3 pst_solve_factored(pst_factors f, vec3 b)
+{
+    float y = b.y - f.yx * b.x, z = (b.z - f.zx * b.x - f.zy * y) * f.z;
+    y = y * f.y - f.zy * z;
+    return (vec3){b.x * f.x - f.yx * y - f.zx * z, y, z};
+}
+
 static inline vec3 pst_solve3(const float m[6], vec3 b)
 {
-    float damping = 1e-6f * (m[0] + m[3] + m[5]) + 1e-30f;
-    float xx = m[0] + damping, xy = m[1], xz = m[2], yy = m[3] + damping, yz = m[4], zz = m[5] + damping;
-    float c0 = yy * zz - yz * yz, c1 = xz * yz - xy * zz, c2 = xy * yz - xz * yy;
-    float determinant = xx * c0 + xy * c1 + xz * c2;
-    float inverse = 1 / (determinant > 1e-37f ? determinant : 1e-37f);
-    return (vec3){(c0 * b.x + c1 * b.y + c2 * b.z) * inverse,
-                  (c1 * b.x + (xx * zz - xz * xz) * b.y + (xy * xz - xx * yz) * b.z) * inverse,
-                  (c2 * b.x + (xy * xz - xx * yz) * b.y + (xx * yy - xy * xy) * b.z) * inverse};
+    return pst_solve_factored(pst_factor3(m[0], m[1], m[2], m[3], m[4], m[5]), b);
 }
 
 /* Adds a vᵀ, a multiple of v, to a symmetric matrix of that order. */

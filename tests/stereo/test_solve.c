@@ -9,6 +9,7 @@
 
 #include "relief.h"
 #include "stereo/pixel_fit.h"
+#include "stereo/solve_parts.h"
 
 static const relief lambert = {.size = 48, .lights = 24, .channels = 1, .exposure = 1.8f};
 static const relief glossy = {.size = 64,
@@ -40,6 +41,45 @@ static void least_squares_is_exact_on_lambert(void **state)
         pst_surface_free(&s);
         capture_drop(&c);
     }
+}
+
+/* Damping keeps a millionth, which rounding to floats may move by a tenth: 6 degrees. */
+static void one_light_alone_makes_its_own_direction_the_normal(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 50; k++) {
+        vec3 l = relief_light(k, 50), b = vec3_scale(l, 0.7f);
+        float m[6] = {0};
+        pst_add_outer3(m, l, l);
+        assert_true(vec3_length(vec3_sub(pst_solve3(m, b), b)) < 0.1f * 0.7f);
+    }
+}
+
+/* As much of a ball's rim is under three lights. 8 degrees: as above. */
+static void least_squares_turn_what_one_light_reaches_toward_it(void **state)
+{
+    (void)state;
+    relief r = lambert;
+    r.lights = 3;
+    pst_capture c;
+    pst_surface s;
+    int checked = 0;
+    relief_capture(&r, &c);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+    for (int i = 0; i < c.width * c.height; i++) {
+        int lit = 0, count = 0;
+        for (int k = 0; k < c.count; k++)
+            if (c.picture[k][i] > 0) {
+                lit = k;
+                count++;
+            }
+        if (count != 1 || c.picture[lit][i] < 2000) continue;
+        assert_true(vec3_dot(vec3_of(s.normal.data + 3 * i), c.light[lit].direction) > 0.99f);
+        checked++;
+    }
+    assert_true(checked > 10);
+    pst_surface_free(&s);
+    capture_drop(&c);
 }
 
 static void intensities_are_divided_out(void **state)
@@ -383,6 +423,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(least_squares_is_exact_on_lambert),
+        cmocka_unit_test(one_light_alone_makes_its_own_direction_the_normal),
+        cmocka_unit_test(least_squares_turn_what_one_light_reaches_toward_it),
         cmocka_unit_test(intensities_are_divided_out),
         cmocka_unit_test(least_squares_does_not_mind_which_channel_is_bright),
         cmocka_unit_test(robust_sees_through_highlights_and_cast_shadows),
