@@ -5,6 +5,7 @@
  * Pictures are streamed: a block of pixels small enough for the cache is summed over all pictures (ls_sums.h), so that
  * every sample is read from memory once and working memory does not grow with the number of pictures. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -17,6 +18,7 @@ typedef struct ls_job {
     const pst_capture *capture;
     const ls_lights *lights;
     pst_surface *out;
+    float per_unit; /* albedo of what has 1 in the sums */
 } ls_job;
 
 /* What a block's sums say, a component after the other, so that pixels go through vector registers together. */
@@ -55,7 +57,7 @@ static inline vec3 right_side(const ls_sums *s, int channel, int i)
 /* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
  * iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are zero and change nothing.
  */
-static void answer(const ls_sums *restrict s, int count, answers *restrict out)
+static void answer(const ls_sums *restrict s, int count, float per_unit, answers *restrict out)
 {
 #pragma omp simd
     for (int i = 0; i < count; i++) {
@@ -75,9 +77,9 @@ static void answer(const ls_sums *restrict s, int count, answers *restrict out)
         out->normal[0][i] = n.x;
         out->normal[1][i] = n.y;
         out->normal[2][i] = n.z;
-        out->albedo[0][i] = red * share;
-        out->albedo[1][i] = green * share;
-        out->albedo[2][i] = blue * share;
+        out->albedo[0][i] = red * (share * per_unit);
+        out->albedo[1][i] = green * (share * per_unit);
+        out->albedo[2][i] = blue * (share * per_unit);
         float fits = explained > 0 ? 1.0f : 0.0f;
         out->residual[i] = fits * sqrtf(larger(s->square[i] - explained, 0) / larger(explained, 1e-37f));
     }
@@ -155,7 +157,7 @@ static void solve_block(const ls_job *job, size_t first, int count)
     ls_sums sums;
     answers found;
     ls_sums_add(job->lights, first, count, &sums);
-    answer(&sums, count, &found);
+    answer(&sums, count, job->per_unit, &found);
     store(&found, count, mask, job->out, first);
 }
 
@@ -200,15 +202,44 @@ static float chosen_shadow(const pst_capture *c)
     return (float)(0.01 * sum / (65535.0 * (double)count));
 }
 
+static double mean_intensity(const pst_problem *p)
+{
+    double sum = 0;
+    int count = p->capture->count, channels = p->capture->channels;
+    for (int k = 0; k < count; k++)
+        for (int ch = 0; ch < channels; ch++)
+            sum += (double)p->light[k].intensity[ch];
+    return sum / (count * channels);
+}
+
+/* Lights of mean intensity 1: a channel weighs by the third power of what is summed, which would leave the range of a
+ * float under lights of a million. */
+static status lights_in_unit(const pst_problem *p, ls_limits limits, double unit, ls_lights **out)
+{
+    size_t count = (size_t)p->capture->count;
+    pst_light *light = malloc(count * sizeof *light);
+    if (!light) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    memcpy(light, p->light, count * sizeof *light);
+    for (size_t k = 0; k < count; k++)
+        for (int ch = 0; ch < 3; ch++)
+            light[k].intensity[ch] = (float)((double)light[k].intensity[ch] / unit);
+    pst_problem same = *p;
+    same.light = light;
+    status s = ls_lights_new(&same, limits, out);
+    free(light);
+    return s;
+}
+
 status pst_solve_ls(const pst_problem *p, pst_surface *out)
 {
     const pst_capture *c = p->capture;
     ls_limits limits = {.low = (p->shadow > 0 ? p->shadow : chosen_shadow(c)) * 65535 * (float)c->channels,
                         .high = fminf(ceilf(p->saturation * 65535), 65535)};
     ls_lights *lights;
-    status s = ls_lights_new(p, limits, &lights);
+    double unit = mean_intensity(p);
+    status s = lights_in_unit(p, limits, unit, &lights);
     if (s != OK) return s;
-    ls_job job = {.capture = c, .lights = lights, .out = out};
+    ls_job job = {.capture = c, .lights = lights, .out = out, .per_unit = (float)(1 / unit)};
     size_t size = (size_t)c->width * (size_t)c->height;
     parallel_blocks((size + LS_BLOCK - 1) / LS_BLOCK, solve_blocks, &job);
     ls_lights_free(lights);

@@ -102,6 +102,24 @@ static void intensities_are_divided_out(void **state)
     capture_drop(&c);
 }
 
+static void intensities_may_be_in_any_unit(void **state)
+{
+    (void)state;
+    pst_capture c;
+    relief_capture(&lambert, &c);
+    for (float unit = 1e-9f; unit < 1e10f; unit *= 1e6f) {
+        for (int k = 0; k < c.count; k++)
+            c.light[k].intensity[0] = unit;
+        pst_surface s;
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+        assert_true(mean_angle(&c, &s.normal) < 0.1);
+        float expected = 1.8f / BRDF_PI * (0.5f + 0.2f * sinf(0.1f)); /* as above */
+        assert_true(fabsf(s.albedo.data[24 * 48 + 24] * unit - expected) < 1e-3f);
+        pst_surface_free(&s);
+    }
+    capture_drop(&c);
+}
+
 /* The bar is a public implementation's 3.38 degrees where least squares has 18.47. */
 /* One channel ten times as bright as the others, on a black level that no shadow is below. */
 static void least_squares_does_not_mind_which_channel_is_bright(void **state)
@@ -426,6 +444,7 @@ int main(void)
         cmocka_unit_test(one_light_alone_makes_its_own_direction_the_normal),
         cmocka_unit_test(least_squares_turn_what_one_light_reaches_toward_it),
         cmocka_unit_test(intensities_are_divided_out),
+        cmocka_unit_test(intensities_may_be_in_any_unit),
         cmocka_unit_test(least_squares_does_not_mind_which_channel_is_bright),
         cmocka_unit_test(robust_sees_through_highlights_and_cast_shadows),
         cmocka_unit_test(robust_on_few_poor_lights_is_no_worse_than_least_squares),
