@@ -28,18 +28,39 @@ const char *pst_method_name(pst_method m)
     return (int)m >= 0 && (int)m < (int)METHOD_COUNT ? method_names[m] : "unknown";
 }
 
+static void add_square(vec3 v, const double about[3], double m[9])
+{
+    double d[3] = {v.x - about[0], v.y - about[1], v.z - about[2]};
+    for (int j = 0; j < 9; j++)
+        m[j] += d[j / 3] * d[j % 3];
+}
+
 status pst_check_directions(const pst_light *light, int count)
 {
     if (count < 3) return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
     double m[9] = {0}, eigenvalue[3];
-    for (int i = 0; i < count; i++) {
-        double d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
-        for (int j = 0; j < 9; j++)
-            m[j] += d[j / 3] * d[j % 3];
-    }
+    for (int i = 0; i < count; i++)
+        add_square(light[i].direction, (const double[3]){0}, m);
     if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
+    return OK;
+}
+
+/* From any point, lights on a line have their directions in a plane, too. */
+static status check_positions(const pst_light *light, int count)
+{
+    double m[9] = {0}, eigenvalue[3], mean[3] = {0};
+    for (int i = 0; i < count; i++) {
+        mean[0] += (double)light[i].position.x / count;
+        mean[1] += (double)light[i].position.y / count;
+        mean[2] += (double)light[i].position.z / count;
+    }
+    for (int i = 0; i < count; i++)
+        add_square(light[i].position, mean, m);
+    if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light positions are not numbers");
+    if (!(eigenvalue[1] > flattest_lights * flattest_lights * eigenvalue[2]))
+        return fail(ERROR_INPUT, "the %d light positions lie on one line; light the object from a third side", count);
     return OK;
 }
 
@@ -68,6 +89,7 @@ static status check_method(const pst_capture *c, pst_method m)
     if (c->count > PST_MAX_LIGHTS && m != PST_LS)
         return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
                     pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
+    if (m == PST_NEAR_LIGHTS) return check_positions(c->light, c->count);
     return distant ? pst_check_directions(c->light, c->count) : OK;
 }
 

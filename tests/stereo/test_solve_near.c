@@ -152,6 +152,22 @@ static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
     capture_drop(&c);
 }
 
+/* A bar of LEDs, bent by a hundredth of its half: what it does not light from leaves normals 30 degrees off. */
+static void near_lights_on_a_line_are_refused(void **state)
+{
+    (void)state;
+    pst_capture c;
+    pst_surface s;
+    ball_capture(&c, 0);
+    for (int k = 0; k < LIGHTS; k++) {
+        float along = 2 * (float)k / (LIGHTS - 1) - 1;
+        c.light[k].position = vec3_make(300 * along, 200, -100 + 3 * (float)(k % 2));
+    }
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "on one line"));
+    capture_drop(&c);
+}
+
 static void a_near_capture_without_focal_length_is_refused(void **state)
 {
     (void)state;
@@ -171,6 +187,7 @@ int main(void)
         cmocka_unit_test(near_lights_see_through_highlights),
         cmocka_unit_test(near_lights_give_the_distance_too),
         cmocka_unit_test(a_lone_pixel_is_fitted_again_from_its_neighbours),
+        cmocka_unit_test(near_lights_on_a_line_are_refused),
         cmocka_unit_test(a_near_capture_without_focal_length_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
