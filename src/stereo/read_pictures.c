@@ -14,6 +14,9 @@ static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
 /* Unclipped floats are stored so that their brightest stays below what solvers take for saturated. */
 static const float FLOAT_CEILING = 0.97f;
 
+/* Floats that are all below have a full scale of their own: in 16 bits dim ones would be a few codes, and black. */
+static const float FLOAT_DIM = 0.1f;
+
 static bool has_stem(const char *name, const char *stem)
 {
     size_t n = strlen(stem);
@@ -150,7 +153,8 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
     return OK;
 }
 
-/* The factor that brings the brightest float of all pictures below the ceiling; 1 if they fit. Reads only floats. */
+/* The factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. Reads only
+ * floats. */
 static status measure_scale(reading *r, const pst_capture *c)
 {
     float most = 0;
@@ -165,7 +169,7 @@ static status measure_scale(reading *r, const pst_capture *c)
         img_free(&picture);
         if (bits != 32) break;
     }
-    r->scale = most > FLOAT_CEILING ? FLOAT_CEILING / most : 1;
+    r->scale = most > FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? FLOAT_CEILING / most : 1;
     return OK;
 }
 

@@ -76,10 +76,8 @@ static void ambient_light_is_subtracted_and_clipping_stays(void **state)
     assert_refused(&PLAIN, "ambient.png is 5 x 4");
 }
 
-static void floats_share_one_scale_below_saturation(void **state)
+static void three_float_pictures(const float value[3])
 {
-    (void)state;
-    static const float value[] = {0.5f, 8, 2};
     for (int i = 0; i < 3; i++) {
         img p;
         char name[] = "0.exr";
@@ -92,13 +90,23 @@ static void floats_share_one_scale_below_saturation(void **state)
         img_free(&p);
     }
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
-    pst_capture c;
-    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
-    assert_true(c.picture[1][0] < 0.98 * 65535);
-    /* rounding to codes of at most half a unit in 4000 */
-    assert_float_equal((double)c.picture[1][0] / c.picture[0][0], 16, 0.01);
-    assert_float_equal((double)c.picture[2][0] / c.picture[0][0], 4, 0.01);
-    pst_capture_free(&c);
+}
+
+/* Of 0.5, 8 and 2, brighter or dimmer. */
+static void floats_share_one_scale_below_saturation(void **state)
+{
+    (void)state;
+    for (float gain = 0.0001f; gain < 2; gain *= 100) {
+        three_float_pictures((const float[]){0.5f * gain, 8 * gain, 2 * gain});
+        pst_capture c;
+        assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+        assert_true(c.picture[1][0] < 0.98 * 65535);
+        /* rounding to codes of at most half a unit in 300, and to half floats */
+        assert_float_equal((double)c.picture[1][0] / c.picture[0][0], 16, 0.04);
+        assert_float_equal((double)c.picture[2][0] / c.picture[0][0], 4, 0.01);
+        assert_float_equal(*img_at(&c.mask, 2, 2), 1, 0);
+        pst_capture_free(&c);
+    }
 }
 
 static void an_lp_file_says_which_picture_has_which_light(void **state)
