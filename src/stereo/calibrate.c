@@ -25,6 +25,14 @@ static float grey(const uint16_t *pixel, int channels)
     return sum / (65535 * (float)channels);
 }
 
+/* Clipped as a whole where one channel is: the mean of the others and of what is left of it is no shading. */
+static float shading(const uint16_t *pixel, int channels)
+{
+    for (int k = 0; k < channels; k++)
+        if ((float)pixel[k] >= PST_SATURATED * 65535) return 1;
+    return grey(pixel, channels);
+}
+
 static size_t pixels_of(const pst_capture *c)
 {
     return (size_t)c->width * (size_t)c->height;
@@ -112,9 +120,11 @@ static status find_light(const pst_capture *c, int i, const img *constant, pst_c
     img picture;
     status s = img_new(&picture, c->width, c->height, 1);
     if (s != OK) return s;
-    for (size_t p = 0; p < pixels_of(c); p++)
-        picture.data[p] = grey(c->picture[i] + p * (size_t)c->channels, c->channels) -
-                          (out->ball == PST_CHROME ? constant->data[p] : 0);
+    for (size_t p = 0; p < pixels_of(c); p++) {
+        const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
+        picture.data[p] =
+            out->ball == PST_CHROME ? grey(pixel, c->channels) - constant->data[p] : shading(pixel, c->channels);
+    }
     s = out->ball == PST_CHROME ? ball_mirror_light(&picture, &view, &out->highlight[i], &out->direction[i])
                                 : ball_shading_light(&picture, &view, &out->residual[i], &out->direction[i]);
     img_free(&picture);

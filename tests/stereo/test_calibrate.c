@@ -106,6 +106,31 @@ static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
     assert_lights_found(PST_MATTE, true, 0.5f, 2);
 }
 
+/* Red twice as strong as what a picture holds, blue weak. */
+static void write_red_balls(void)
+{
+    static const float tint[] = {3.2f, 0.8f, 0.4f};
+    img p;
+    assert_int_equal(img_new(&p, SIZE, SIZE, 3), OK);
+    for (int i = 0; i < LIGHTS; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%02d.png", i);
+        for (int k = 0; k < SIZE * SIZE; k++)
+            for (int ch = 0; ch < 3; ch++)
+                p.data[3 * k + ch] = fminf(tint[ch] * ball_pixel(k % SIZE, k / SIZE, light(i), matte), 1);
+        assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
+    }
+    img_free(&p);
+}
+
+static void what_one_channel_clips_is_no_shading(void **state)
+{
+    (void)state;
+    write_red_balls();
+    write_mask();
+    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+}
+
 static void what_was_found_is_written(void **state)
 {
     (void)state;
@@ -255,6 +280,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         in_scratch(a_chrome_ball_tells_its_lights),
         in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
+        in_scratch(what_one_channel_clips_is_no_shading),
         in_scratch(what_was_found_is_written),
         in_scratch(pictures_without_a_ball_or_its_light_are_refused),
         cmocka_unit_test(real_balls_agree_with_their_published_lights),
