@@ -184,8 +184,8 @@ static status announce(const request *r, const char *output, const stereo_result
             r->input);
     if (!r->quiet && result->strengths_unsure)
         fprintf(stderr,
-                "merlin stereo: %s: the object is too flat to tell how strong the lights are, and normals may be many "
-                "degrees off: state the strengths in light_intensities.txt\n",
+                "merlin stereo: %s: the object is too flat or the pictures are too few to tell how strong the lights "
+                "are, and normals may be many degrees off: state the strengths in light_intensities.txt\n",
                 r->input);
     return s;
 }

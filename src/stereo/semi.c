@@ -14,6 +14,9 @@
 
 enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
 
+/* With three every strength is right: each pixel has a surface for it. */
+enum { FEWEST_LIGHTS = 4 };
+
 /* Of the loss of equal intensities: what others must bring it down to. */
 static const double worth_intensities = 0.8;
 static const float likely_terminator = 0.1f;
@@ -213,23 +216,30 @@ static void job_free(semi_job *job)
     free(job->best);
 }
 
-status pst_solve_semi(const pst_problem *p, pst_surface *out)
+/* Into the surface's lights, which are the problem's. */
+static status find_strengths(const pst_problem *p, pst_surface *out)
 {
     int count = p->capture->count;
     semi_job job = {0};
     double told = 0, *e = calloc(3 * (size_t)count, sizeof *e);
-    out->light = malloc((size_t)count * sizeof *out->light);
-    status s = e && out->light ? OK : fail(ERROR_MEMORY, "no memory for %d lights", count);
-    if (s == OK) {
-        memcpy(out->light, p->light, (size_t)count * sizeof *out->light);
-        s = job_new(p, out->light, &job);
-    }
+    status s = e ? job_new(p, out->light, &job) : fail(ERROR_MEMORY, "no memory for %d lights", count);
     if (s == OK) s = pst_intensities_find(p, SAMPLE, e, &told);
     if (s == OK) s = settle(&job, p->iterations > 0 ? p->iterations : ITERATIONS, e);
     if (s == OK && !job.equal && p->capture->channels == 3) find_colours(&job, e);
     out->strengths_unsure = s == OK && !job.equal && told < well_told;
     free(e);
     job_free(&job);
+    return s;
+}
+
+status pst_solve_semi(const pst_problem *p, pst_surface *out)
+{
+    size_t count = (size_t)p->capture->count;
+    out->light = malloc(count * sizeof *out->light);
+    if (!out->light) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    memcpy(out->light, p->light, count * sizeof *out->light);
+    out->strengths_unsure = count < FEWEST_LIGHTS;
+    status s = out->strengths_unsure ? OK : find_strengths(p, out);
     pst_problem known = *p;
     known.light = out->light;
     return s == OK ? pst_solve_robust(&known, out) : s;

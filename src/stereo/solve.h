@@ -31,7 +31,8 @@ typedef struct pst_surface {
     img residual;          /* 1, root mean square over the images used, relative to the fit */
     pst_method method;     /* the one used */
     pst_light *light;      /* semi, uncalibrated: what was found (count entries); else NULL */
-    bool strengths_unsure; /* semi: the object is so flat that others than what was found explain the pictures, too */
+    bool strengths_unsure; /* semi: others than what was found explain the pictures, too: the object is too flat, or
+                            * there are 3 of them, which any do and equal ones were taken for */
     bool lights_near;      /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
 } pst_surface;
 

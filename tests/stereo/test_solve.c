@@ -256,6 +256,28 @@ static void strengths_about_a_flat_object_are_unsure_unless_equal(void **state)
     capture_drop(&c);
 }
 
+/* Any strengths explain three pictures: the equal ones are no worse, and known to be a guess. */
+static void strengths_of_three_lights_are_taken_for_equal(void **state)
+{
+    (void)state;
+    relief r = lambert;
+    r.lights = 3;
+    pst_capture c;
+    pst_surface s;
+    relief_capture(&r, &c);
+    double known = solve_angle(&c, PST_ROBUST);
+    for (int weak = 0; weak < 2; weak++) {
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
+        assert_true(s.strengths_unsure);
+        for (int k = 0; k < 3; k++)
+            assert_true(s.light[k].intensity[0] == 1);
+        assert_true(weak || mean_angle(&c, &s.normal) == known);
+        pst_surface_free(&s);
+        weaken_lights(&c);
+    }
+    capture_drop(&c);
+}
+
 /* To 5 percent: by so much a light that is 11 percent redder and 6 percent less blue than another is stronger in grey
  * on the white half than on the one without red, and has one strength in grey for both. */
 static void colours_of_lights_are_told_from_those_of_the_object(void **state)
@@ -451,6 +473,7 @@ int main(void)
         cmocka_unit_test(a_raised_black_level_is_found),
         cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
         cmocka_unit_test(strengths_about_a_flat_object_are_unsure_unless_equal),
+        cmocka_unit_test(strengths_of_three_lights_are_taken_for_equal),
         cmocka_unit_test(colours_of_lights_are_told_from_those_of_the_object),
         cmocka_unit_test(equal_strengths_are_recognized),
         cmocka_unit_test(unknown_lights_of_equal_strength_are_found),
