@@ -8,14 +8,16 @@
 
 enum { TEXT_MOST = 1 << 22 };
 
-/* One file name a line, no blanks around it, no folders: a list may not lead out of its folder. */
+/* One file name a line, blanks around it left out, no folders: a list may not lead out of its folder. */
 static status take_names(char *text, const char *path, const char *folder, pst_capture *c)
 {
     char *rest = NULL;
     int count = 0;
     for (char *name = strtok_r(text, "\r\n", &rest); name; name = strtok_r(NULL, "\r\n", &rest)) {
         name += strspn(name, " \t");
-        name[strcspn(name, " \t")] = 0;
+        size_t length = strlen(name);
+        while (length > 0 && strchr(" \t", name[length - 1]))
+            name[--length] = 0;
         if (!*name) continue;
         if (strchr(name, '/')) return fail(ERROR_INPUT, "%s: \"%.80s\" is not a plain file name", path, name);
         if (count < c->count) {

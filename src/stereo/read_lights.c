@@ -145,6 +145,7 @@ static status read_intensities(const char *path, pst_capture *c)
     int count = 0;
     bool found = true;
     while (s == OK && (s = text_numbers_next(&t, &found)) == OK && found) {
+        if (t.count == 0 && count == 0) continue; /* words before the numbers */
         if (count < c->count) s = set_one_intensity(&t, c->light[count].intensity);
         count++;
     }

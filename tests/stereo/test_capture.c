@@ -219,6 +219,12 @@ static void given_intensities_are_kept(void **state)
     assert_float_equal(c.light[0].intensity[2], 3, 0);
     assert_float_equal(vec3_length(c.light[0].direction), 0, 0);
     pst_capture_free(&c);
+    write_text("light_intensities.txt", "# in volts\n\n7\n7\n9\n");
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_float_equal(c.light[2].intensity[0], 9, 0);
+    pst_capture_free(&c);
+    write_text("light_intensities.txt", "1\nx\n1\n");
+    assert_refused(&PLAIN, "light_intensities.txt:2");
     write_text("light_intensities.txt", "1\n0\n1\n");
     assert_refused(&PLAIN, "light_intensities.txt:2");
     write_text("light_intensities.txt", "1\n1\n");
