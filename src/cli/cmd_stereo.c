@@ -109,7 +109,9 @@ static status check(request *r)
 {
     const pst_read_options *o = &r->folder.read;
     if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
-    if (o->lights && o->unknown_lights) return fail(ERROR_USAGE, "--method uncalibrated takes no --lights");
+    if ((o->lights || o->near) && o->unknown_lights)
+        return fail(ERROR_USAGE,
+                    "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
     r->maps = !o->lights && holds_maps(r->input);
     if (file_exists(r->input) && !is_capture(r) &&
         (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))

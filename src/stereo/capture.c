@@ -121,6 +121,9 @@ bool pst_is_of_data_set(const char *folder)
 
 static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
 {
+    if (kind == LAYOUT_DILIGENT && options->near && !options->unknown_lights)
+        return fail(ERROR_USAGE, "the lights of %s/light_directions.txt are no positions; give a list of these",
+                    folder);
     if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
     if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
     return pst_read_plain(folder, options, c);

@@ -84,6 +84,7 @@ refuses 2 'is the folder of the pictures' stereo dome --method ls -o ./dome/
 refuses 2 'for a folder' stereo disc.hdr --near
 refuses 2 'for a folder' stereo disc.hdr --fov 40
 refuses 2 '--fov' stereo dome --fov 200
+refuses 2 'takes no --lights and no --near' stereo dome --method uncalibrated --near
 refuses 2 '--dome' "$MERLIN" relight disc.merlin --dome 1
 refuses 2 '--lp' "$MERLIN" relight disc.merlin --orbit 4 --lp
 
@@ -121,6 +122,7 @@ refuses 1 'empty' stereo calibrate --sphere chrome empty -o none
 refuses 1 'dome_002.png' stereo calibrate --sphere matte broken -o none
 copy_of diligent && printf '0 0 1\n0 1 1\n1 0 1\n' >diligent/light_directions.txt
 (cd diligent && printf '%s\n' dome_00[0-3].png >filenames.txt)
+refuses 2 'no positions' stereo diligent --near -o none
 refuses 1 'filenames.txt names 4 pictures' stereo diligent -o none
 head -3 diligent/filenames.txt >three && mv three diligent/filenames.txt
 echo "1 1 x" >diligent/light_intensities.txt
