@@ -35,6 +35,17 @@ static status check_mask(const char *path, pst_capture *c)
     return inside ? OK : fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
 }
 
+static status find_mask(const char *folder, pst_capture *c)
+{
+    status s = pst_capture_find_mask(c);
+    size_t pixels = (size_t)c->width * (size_t)c->height;
+    for (size_t p = 0; p < pixels && s == OK; p++)
+        if (c->mask.data[p] > 0) return OK;
+    if (s != OK) return s;
+    return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask", folder,
+                (double)(100 * BLACK));
+}
+
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)
 {
     char *path;
@@ -44,7 +55,7 @@ status pst_read_mask(const char *folder, const pst_read_options *options, pst_ca
         s = img_read_mask(path, &c->mask);
         if (s == OK) s = check_mask(path, c);
     } else {
-        s = pst_capture_find_mask(c);
+        s = find_mask(folder, c);
     }
     free(path);
     return s;

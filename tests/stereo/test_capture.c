@@ -247,6 +247,19 @@ static void a_mask_is_read_and_must_fit(void **state)
     assert_refused(&(pst_read_options){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
 }
 
+static void black_pictures_are_called_black(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        write_flat((const char *[]){"a.png", "b.png", "c.png"}[i], 6, 4, 3, 0.003f, IMG_LINEAR16);
+    write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
+    assert_refused(&PLAIN, "are black");
+    write_flat("mask.png", 6, 4, 1, 1, IMG_LINEAR8);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    pst_capture_free(&c);
+}
+
 static void what_does_not_fit_is_refused_in_one_line(void **state)
 {
     (void)state;
@@ -289,6 +302,7 @@ int main(void)
         in_scratch(unknown_lights_need_no_list),
         in_scratch(given_intensities_are_kept),
         in_scratch(a_mask_is_read_and_must_fit),
+        in_scratch(black_pictures_are_called_black),
         in_scratch(what_does_not_fit_is_refused_in_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
