@@ -99,8 +99,8 @@ typedef struct merlin_surface {
     merlin_light
         *lights; /* light_count, one a picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED found them; else NULL */
     int light_count;
-    int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat, or with 3 pictures, to tell how strong lights are:
-                             normals may be far off */
+    int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat, or with too few pictures (3), to tell how strong
+                             lights are: normals may be far off */
 } merlin_surface;
 
 /* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on. */
