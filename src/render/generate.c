@@ -17,6 +17,7 @@ typedef struct run {
     trace_device *device;
     environment_folder maps;
     scn_textures textures;
+    scn_model *model; /* NULL: procedural objects */
     render_stats *stats;
     progress bar;
     status failed;
@@ -41,8 +42,8 @@ static status make_environment(const run *r, uint64_t index, environment *out)
 static status make_object(const run *r, uint64_t index, scn_object *out)
 {
     const render_options *o = r->options;
-    status s = o->mesh ? scn_object_from_mesh(o->mesh, o->seed, index, o->image.fov, out)
-                       : scn_object_generate(o->seed, index, o->image.fov, out);
+    status s = r->model ? scn_object_from_model(r->model, o->seed, index, o->image.fov, out)
+                        : scn_object_generate(o->seed, index, o->image.fov, out);
     if (s == OK && r->textures.count) scn_object_wear(out, &r->textures, o->seed, index);
     return s;
 }
@@ -186,6 +187,7 @@ static status check_options(const render_options *o)
 
 static void close_run(run *r)
 {
+    scn_model_free(r->model);
     scn_textures_free(&r->textures);
     environment_folder_free(&r->maps);
     trace_device_free(r->device);
@@ -199,6 +201,7 @@ static status open_run(const render_options *o, run *r)
     if (s == OK && o->environment && o->environment_folder)
         s = environment_folder_read(o->environment_folder, &r->maps);
     if (s == OK && o->material_folder) s = scn_textures_read(o->material_folder, &r->textures);
+    if (s == OK && o->mesh) s = scn_model_read(o->mesh, &r->model);
     if (s != OK) close_run(r);
     return s;
 }
@@ -207,7 +210,7 @@ static status open_run(const render_options *o, run *r)
 static status check_mesh(const run *r)
 {
     scn_object object;
-    if (!r->options->mesh) return OK;
+    if (!r->model) return OK;
     status s = make_object(r, r->options->first, &object);
     if (s == OK) scn_object_free(&object);
     return s;

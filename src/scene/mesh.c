@@ -16,6 +16,26 @@ void mesh_free(scn_mesh *mesh)
     *mesh = (scn_mesh){0};
 }
 
+static void *copy_of(const void *array, size_t size)
+{
+    void *copy = array ? malloc(size ? size : 1) : NULL;
+    return copy ? memcpy(copy, array, size) : NULL;
+}
+
+void mesh_copy(const scn_mesh *mesh, scn_mesh *out)
+{
+    size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
+    *out = *mesh;
+    out->vertex_capacity = mesh->vertex_count;
+    out->triangle_capacity = mesh->triangle_count;
+    out->position = copy_of(mesh->position, vertices * sizeof *mesh->position);
+    out->reference = copy_of(mesh->reference, vertices * sizeof *mesh->reference);
+    out->normal = copy_of(mesh->normal, vertices * sizeof *mesh->normal);
+    out->triangle = copy_of(mesh->triangle, triangles * sizeof *mesh->triangle);
+    out->part = copy_of(mesh->part, triangles * sizeof *mesh->part);
+    out->failed |= !out->position || !out->reference || !out->triangle || !out->part || (mesh->normal && !out->normal);
+}
+
 static bool grow(void **array, size_t count, size_t size)
 {
     void *larger = realloc(*array, count * size);

@@ -41,6 +41,7 @@ typedef struct scn_mesh {
 } scn_mesh;
 
 void mesh_free(scn_mesh *mesh);
+void mesh_copy(const scn_mesh *mesh, scn_mesh *out);
 uint32_t mesh_add_vertex(scn_mesh *mesh, vec3 position); /* its reference is its position */
 void mesh_add_triangle(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8_t part);
 void mesh_add_quad(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint8_t part);

@@ -1,5 +1,6 @@
 /* Objects put together: shape, pose, material. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "scene/material.h"
 #include "scene/mesh_file.h"
@@ -62,17 +63,48 @@ status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object 
     return s;
 }
 
-status scn_object_from_mesh(const char *path, uint64_t seed, uint64_t index, float fov, scn_object *out)
+struct scn_model {
+    scn_mesh mesh;
+    int parts;
+    char *path;
+};
+
+status scn_model_read(const char *path, scn_model **out)
+{
+    scn_model *m = calloc(1, sizeof *m);
+    *out = NULL;
+    if (!m || !(m->path = strdup(path))) {
+        free(m);
+        return fail(ERROR_MEMORY, "no memory for the mesh %s", path);
+    }
+    status s = mesh_read(path, &m->mesh, &m->parts);
+    if (s != OK) {
+        scn_model_free(m);
+        return fail_in(s, "%s", path);
+    }
+    *out = m;
+    return OK;
+}
+
+void scn_model_free(scn_model *model)
+{
+    if (!model) return;
+    mesh_free(&model->mesh);
+    free(model->path);
+    free(model);
+}
+
+status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
 {
     *out = (scn_object){0};
     status s = check_fov(fov);
     if (s != OK) return s;
-    scn_mesh mesh = {0};
-    shape_traits traits = {.name = "mesh", .upright = true, .crease_cosine = 0.6f, .parts = 1};
-    s = mesh_read(path, &mesh, &traits.parts);
-    if (s == OK) s = complete(&mesh, &traits, seed, index, fov, out);
+    scn_mesh mesh;
+    const shape_traits traits = {.name = "mesh", .upright = true, .crease_cosine = 0.6f, .parts = model->parts};
+    mesh_copy(&model->mesh, &mesh);
+    s = complete(&mesh, &traits, seed, index, fov, out);
     mesh_free(&mesh);
-    return s == OK ? OK : fail_in(s, "%s", path);
+    return s == OK ? OK : fail_in(s, "%s", model->path);
 }
 
 void scn_object_wear(scn_object *object, const scn_textures *textures, uint64_t seed, uint64_t index)

@@ -41,9 +41,14 @@ typedef struct scn_surface {
  * a square frame, now and then near its edge. Deterministic from (seed, index). */
 status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out);
 
-/* The mesh in an OBJ, PLY or glTF file, scaled and posed at random from (seed, index) like a generated object, with a
- * procedural material. */
-status scn_object_from_mesh(const char *path, uint64_t seed, uint64_t index, float fov, scn_object *out);
+/* The mesh of an OBJ, PLY or glTF file, read once for any number of objects and threads. ERROR_INPUT, with its path, as
+ * of mesh_read. */
+typedef struct scn_model scn_model;
+status scn_model_read(const char *path, scn_model **out);
+void scn_model_free(scn_model *model);
+
+/* The model, scaled and posed at random from (seed, index) like a generated object, with a procedural material. */
+status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out);
 
 void scn_object_free(scn_object *object);
 

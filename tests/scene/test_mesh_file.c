@@ -27,11 +27,20 @@ static const char INSIDE_OUT[] = CUBE_VERTICES "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\
 static const char PLY_HEAD[] = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                                "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
 
+static status object_of(const char *path, uint64_t seed, uint64_t index, scn_object *out)
+{
+    scn_model *model;
+    status s = scn_model_read(path, &model);
+    if (s == OK) s = scn_object_from_model(model, seed, index, 60, out);
+    scn_model_free(model);
+    return s;
+}
+
 static status load(const char *name, const void *data, size_t size, scn_object *out)
 {
     const char *path = scratch_path(name);
     assert_int_equal(file_write(path, data, size), OK);
-    return scn_object_from_mesh(path, 1, 2, 60, out);
+    return object_of(path, 1, 2, out);
 }
 
 static double signed_volume(const scn_object *o)
@@ -260,7 +269,7 @@ static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **sta
     assert_refused("junk.glb", "glTFnot really");
     assert_refused("photo.jpg", "anything");
     scn_object o;
-    assert_int_equal(scn_object_from_mesh("/nowhere/cow.obj", 1, 1, 60, &o), ERROR_INPUT);
+    assert_int_equal(object_of("/nowhere/cow.obj", 1, 1, &o), ERROR_INPUT);
     assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
 }
 
@@ -273,10 +282,32 @@ static void folders_and_pipes_are_refused_without_waiting(void **state)
     assert_int_equal(mkfifo(scratch_path(NAMES[1]), 0600), 0);
     alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(scn_object_from_mesh(scratch_path(NAMES[i]), 1, 1, 60, &o), ERROR_INPUT);
+        assert_int_equal(object_of(scratch_path(NAMES[i]), 1, 1, &o), ERROR_INPUT);
         assert_non_null(strstr(status_message(), "not a plain file"));
     }
     alarm(0);
+}
+
+static void a_mesh_is_read_once_for_many_objects(void **state)
+{
+    (void)state;
+    const char *path = scratch_path("once.obj");
+    assert_int_equal(file_write(path, INSIDE_OUT, sizeof INSIDE_OUT - 1), OK);
+    scn_model *model;
+    scn_object first, other, again;
+    assert_int_equal(scn_model_read(path, &model), OK);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(scn_object_from_model(model, 1, 2, 60, &first), OK);
+    assert_int_equal(scn_object_from_model(model, 1, 3, 60, &other), OK);
+    assert_int_equal(scn_object_from_model(model, 1, 2, 60, &again), OK);
+    check_cube(&again);
+    assert_int_equal(first.vertex_count, again.vertex_count);
+    assert_memory_equal(first.position, again.position, first.vertex_count * sizeof *first.position);
+    assert_memory_not_equal(first.position, other.position, first.vertex_count * sizeof *first.position);
+    scn_object_free(&first);
+    scn_object_free(&other);
+    scn_object_free(&again);
+    scn_model_free(model);
 }
 
 /* Meshes with normals and thousands of faces, where a folder of them is at hand. */
@@ -294,7 +325,7 @@ static void meshes_of_the_world_are_posed_before_the_camera(void **state)
     assert_int_equal(file_list(where, ENDINGS, &names, &count), OK);
     for (size_t i = 0; i < count; i++) {
         scn_object o;
-        assert_int_equal(scn_object_from_mesh(names[i], 3, i, 60, &o), OK);
+        assert_int_equal(object_of(names[i], 3, i, &o), OK);
         for (uint32_t v = 0; v < o.vertex_count; v++) {
             assert_true(-o.position[v].z > 0.4f);
             assert_float_equal(vec3_length(o.normal[v]), 1, 1e-5f);
@@ -319,6 +350,7 @@ int main(void)
         cmocka_unit_test(gltf_is_read),
         cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
         cmocka_unit_test(folders_and_pipes_are_refused_without_waiting),
+        cmocka_unit_test(a_mesh_is_read_once_for_many_objects),
         cmocka_unit_test(meshes_of_the_world_are_posed_before_the_camera),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
