@@ -1,4 +1,5 @@
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -105,9 +106,23 @@ static status names_from_list(const char *folder, const char *lights, const ligh
     return s;
 }
 
+/* Distant lights' directions, which were meant for no --near: as positions, all are as far from the camera, and some
+ * behind it. */
+static bool are_directions(const light_list *list)
+{
+    bool behind = false;
+    for (size_t i = 0; i < list->count; i++) {
+        if (fabsf(vec3_length(list->at[i]) - 1) > 1e-3f) return false;
+        behind |= list->at[i].z > 0.1f;
+    }
+    return behind;
+}
+
 static status set_lights(const char *path, const light_list *list, bool near, pst_capture *c)
 {
     c->lighting = near ? PST_NEAR : PST_DISTANT;
+    if (near && are_directions(list))
+        return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
     c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
     for (size_t i = 0; i < list->count; i++) {
         vec3 at = list->at[i];

@@ -169,6 +169,8 @@ static void near_lights_have_positions_and_a_camera(void **state)
     assert_float_equal(c.camera.focal, 5.19615, 1e-4);
     assert_float_equal(c.camera.center_y, 2, 0);
     pst_capture_free(&c);
+    write_text("lights.txt", "0 0 1\n0 0.6 0.8\n1 0 0\n");
+    assert_refused(&options, "lists directions");
 }
 
 static void a_field_of_view_makes_a_camera_without_lights(void **state)
