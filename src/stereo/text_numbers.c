@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/plain_locale.h"
+
 enum { LINE_MOST = 1024 };
 
 static status copy_line(text_numbers *t, char line[LINE_MOST])
@@ -22,7 +24,7 @@ static status copy_line(text_numbers *t, char line[LINE_MOST])
 static bool is_number(const char *word, double *value)
 {
     char *end;
-    *value = strtod(word, &end);
+    *value = strtod_l(word, &end, plain_locale());
     return end != word && *end == 0;
 }
 

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include "capture_files.h"
+#include "comma.h"
 #include "stereo/array_file.h"
 #include "stereo/capture.h"
 #include "stereo/luces.h"
@@ -374,6 +375,23 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     assert_says("names 1 pictures");
 }
 
+static void programs_with_decimal_commas_read_intensities(void **state)
+{
+    (void)state;
+    pst_capture c;
+    write_flat("001.png", 5, 4, 3, 0.5f, IMG_LINEAR16);
+    write_flat("002.png", 5, 4, 3, 0.25f, IMG_LINEAR16);
+    write_text("filenames.txt", "001.png\n002.png\n");
+    write_text("light_directions.txt", "0 0 1\n0.6 0 0.8\n");
+    write_text("light_intensities.txt", "1.5 2 3\n4 5 6\n");
+    if (!comma_begin(scratch)) return;
+    status s = pst_capture_read(scratch, NULL, &c);
+    comma_end();
+    assert_int_equal(s, OK);
+    assert_float_equal(c.light[0].intensity[0], 1.5, 0);
+    pst_capture_free(&c);
+}
+
 static void a_diligent_folder_needs_no_list_of_names(void **state)
 {
     (void)state;
@@ -413,6 +431,7 @@ int main(void)
         in_scratch(luces_normals_face_the_camera_whatever_their_axes),
         in_scratch(raw_mosaics_of_luces_are_refused),
         in_scratch(a_diligent_folder_is_read_with_its_truth),
+        in_scratch(programs_with_decimal_commas_read_intensities),
         in_scratch(a_diligent_folder_needs_no_list_of_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
