@@ -152,7 +152,8 @@ void eval_print_table(const eval_report *report, FILE *stream)
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
     if (report->white > 1)
         fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
-    if (environments(report)) fprintf(stream, "relit by environments: the first %zu samples\n\n", environments(report));
+    size_t relit = environments(report);
+    if (relit) fprintf(stream, "relit by environments: the first %zu sample%s\n\n", relit, relit == 1 ? "" : "s");
     print_rows(&report->all, stream);
     print_groups(report, stream);
     fprintf(stream, "\n%.1f s\n", report->seconds);
