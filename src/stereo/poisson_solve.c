@@ -5,7 +5,9 @@
 
 #include "stereo/poisson_level.h"
 
-enum { MOST_LEVELS = 16, MOST_STEPS = 300 };
+enum { MOST_LEVELS = 16, MOST_STEPS = 100 };
+/* Tolerances that may be left after the last step. */
+static const double MOST_ASTRAY = 100;
 /* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
  * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of
  * second order". */
@@ -194,7 +196,8 @@ static double apply(poisson_solver *s, const poisson_grid *g)
     return dot(s->p, s->product, g->count);
 }
 
-static status conjugate_gradients(poisson_solver *s, double tolerance, double *x)
+/* *astray: how many times the tolerance is left when no more steps are allowed, or below 1. */
+static status conjugate_gradients(poisson_solver *s, double tolerance, double *x, double *astray)
 {
     const poisson_grid *g = s->levels[0].grid;
     int n = g->count;
@@ -215,7 +218,28 @@ static status conjugate_gradients(poisson_solver *s, double tolerance, double *x
             s->r[i] -= length * s->product[i];
         }
     }
+    *astray = sqrt(dot(s->r, s->r, n) / fmax(enough, 1e-300));
     return OK;
+}
+
+/* The whole of it, whatever memory that takes. */
+static status factorize(const poisson_solver *s, double *x)
+{
+    poisson_factor *whole;
+    status result = poisson_factor_new(s->levels[0].grid, &whole);
+    if (result != OK) return result;
+    result = poisson_factor_update(whole);
+    if (result == OK) result = poisson_factor_solve(whole, s->b, x);
+    poisson_factor_free(whole);
+    return result;
+}
+
+/* Coarser grids join what narrow slits part, and then are no help. */
+static status iterate(poisson_solver *s, double tolerance, double *x)
+{
+    double astray = 0;
+    status result = conjugate_gradients(s, tolerance, x, &astray);
+    return result == OK && astray > MOST_ASTRAY ? factorize(s, x) : result;
 }
 
 status poisson_solve(poisson_solver *s, double tolerance, double *x)
@@ -225,5 +249,5 @@ status poisson_solve(poisson_solver *s, double tolerance, double *x)
     status result = poisson_factor_update(s->factor);
     if (result != OK) return result;
     right_hand_side(s->levels[0].grid, s->b);
-    return s->depth == 1 ? poisson_factor_solve(s->factor, s->b, x) : conjugate_gradients(s, tolerance, x);
+    return s->depth == 1 ? poisson_factor_solve(s->factor, s->b, x) : iterate(s, tolerance, x);
 }
