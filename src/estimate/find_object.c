@@ -74,14 +74,14 @@ static status search_new(const img *photo, search *s)
     status result = img_resize(photo, s->width, s->height, &s->color);
     if (result == OK) result = img_new(&s->probability, s->width, s->height, 1);
     if (result != OK) return result;
-    s->exposure = exposure_of(s);
-    for (size_t i = 0; i < 3 * s->count; i++)
-        s->color.data[i] = sqrtf(fminf(fmaxf(s->exposure * s->color.data[i], 0), 1));
     s->prior = calloc(s->count, sizeof *s->prior);
     s->object = calloc(s->count, 1);
     s->ring = calloc(s->count, 1);
     s->stack = malloc(s->count * sizeof *s->stack);
     if (!s->prior || !s->object || !s->ring || !s->stack) return fail(ERROR_MEMORY, "no memory to look for the object");
+    s->exposure = exposure_of(s);
+    for (size_t i = 0; i < 3 * s->count; i++)
+        s->color.data[i] = sqrtf(fminf(fmaxf(s->exposure * s->color.data[i], 0), 1));
     mark_ring(s);
     return OK;
 }

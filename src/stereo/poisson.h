@@ -12,8 +12,9 @@
  *
  * Up to POISSON_DIRECT unknowns by sparse Cholesky factorization (CHOLMOD, ordered by AMD or METIS); above it by
  * conjugate gradients preconditioned with a W-cycle over masks of half the size, whose pieces stay apart, the coarsest
- * one factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB) and 0.3 GB at most for the factor. Where that
- * does not converge, as on one piece with many narrow slits, all unknowns are factorized, in about a kilobyte each. */
+ * one factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB) and 0.3 GB at most for the factor. Where
+ * that does not converge, as on one piece with many narrow slits, all unknowns are factorized, in about a kilobyte
+ * each. */
 #ifndef MERLIN_STEREO_POISSON_H
 #define MERLIN_STEREO_POISSON_H
 
