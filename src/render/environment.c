@@ -137,54 +137,66 @@ void environment_free(environment *env)
     *env = (environment){0};
 }
 
-/* At a place in texels. */
-static vec3 radiance_at(const environment *env, float x, float y)
+/* The four texels around a place in texels, and their shares in it. */
+typedef struct neighbours {
+    int x[2], y[2];
+    float share[2][2]; /* of row and column */
+} neighbours;
+
+static neighbours around(const environment *env, float x, float y)
 {
     int w = env->map.width, h = env->map.height;
     x -= 0.5f;
     y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
-    int x0 = (int)floorf(x), y0 = (int)y, y1 = y0 + 1 < h ? y0 + 1 : y0;
+    int x0 = (int)floorf(x), y0 = (int)y;
     float fx = x - (float)x0, fy = y - (float)y0;
-    int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w, right = left + 1 < w ? left + 1 : 0;
-    const float *a = img_at(&env->map, left, y0), *b = img_at(&env->map, right, y0);
-    const float *c = img_at(&env->map, left, y1), *e = img_at(&env->map, right, y1);
-    float out[3];
-    for (int i = 0; i < 3; i++)
-        out[i] = (1 - fy) * ((1 - fx) * a[i] + fx * b[i]) + fy * ((1 - fx) * c[i] + fx * e[i]);
+    int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w;
+    return (neighbours){.x = {left, left + 1 < w ? left + 1 : 0},
+                        .y = {y0, y0 + 1 < h ? y0 + 1 : y0},
+                        .share = {{(1 - fy) * (1 - fx), (1 - fy) * fx}, {fy * (1 - fx), fy * fx}}};
+}
+
+static vec3 radiance_of(const environment *env, const neighbours *n)
+{
+    float out[3] = {0};
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++)
+            for (int c = 0; c < 3; c++)
+                out[c] += n->share[j][i] * img_at(&env->map, n->x[i], n->y[j])[c];
     return vec3_of(out);
 }
 
-/* Probability of the texel per solid angle; directions within a texel are spread evenly over its u and cosθ. */
-static float texel_pdf(const environment *env, int x, int y)
+static vec3 radiance_at(const environment *env, float x, float y)
+{
+    neighbours n = around(env, x, y);
+    return radiance_of(env, &n);
+}
+
+static float texel_probability(const environment *env, int x, int y)
 {
     const float *row = env->columns + (size_t)y * (size_t)(env->map.width + 1);
-    return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]) / texel_solid_angle(env, y);
+    return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]);
 }
 
-/* Probability of a texel. */
-static float share_of(const environment *env, int x, int y)
+/* Per solid angle; directions within a texel are spread evenly over its u and cosθ. */
+static float texel_pdf(const environment *env, int x, int y)
 {
-    return texel_pdf(env, x, y) * texel_solid_angle(env, y);
+    return texel_probability(env, x, y) / texel_solid_angle(env, y);
 }
 
-/* The same interpolated as radiance is, per solid angle: what drawing within tents leads to. */
-static float tents_pdf(const environment *env, float x, float y)
+/* Interpolated as radiance is, per solid angle at height y: what drawing within tents leads to. */
+static float tents_pdf(const environment *env, const neighbours *n, float y)
 {
-    int w = env->map.width, h = env->map.height;
-    float pixel = 2 * pi * pi / ((float)w * (float)h) * fmaxf(1e-6f, sinf(pi * y / (float)h));
-    x -= 0.5f;
-    y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
-    int x0 = (int)floorf(x), y0 = (int)y, y1 = y0 + 1 < h ? y0 + 1 : y0;
-    float fx = x - (float)x0, fy = y - (float)y0;
-    int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w, right = left + 1 < w ? left + 1 : 0;
-    float above = (1 - fx) * share_of(env, left, y0) + fx * share_of(env, right, y0);
-    float below = (1 - fx) * share_of(env, left, y1) + fx * share_of(env, right, y1);
-    return ((1 - fy) * above + fy * below) / pixel;
+    float w = (float)env->map.width, h = (float)env->map.height, probability = 0;
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++)
+            probability += n->share[j][i] * texel_probability(env, n->x[i], n->y[j]);
+    return probability * w * h / (2 * pi * pi * fmaxf(1e-6f, sinf(pi * y / h)));
 }
 
-static float pdf_at(const environment *env, float x, float y)
+/* Where texels are drawn within their borders. */
+static float even_pdf(const environment *env, float x, float y)
 {
-    if (env->tents) return tents_pdf(env, x, y);
     int i = (int)x, j = (int)y;
     if (i >= env->map.width) i = env->map.width - 1;
     if (j >= env->map.height) j = env->map.height - 1;
@@ -195,8 +207,9 @@ vec3 environment_look(const environment *env, vec3 d, real *pdf)
 {
     float x, y;
     place_of(env, d, &x, &y);
-    *pdf = pdf_at(env, x, y);
-    return radiance_at(env, x, y);
+    neighbours n = around(env, x, y);
+    *pdf = env->tents ? tents_pdf(env, &n, y) : even_pdf(env, x, y);
+    return radiance_of(env, &n);
 }
 
 /* Where numbers fall in cumulative sums: in which interval, and how far into it. */
@@ -245,8 +258,9 @@ static void place_in_tents(const environment *env, const falls *across, const fa
         x = x < 0 ? x + w : x < w ? x : x - w;
         y = y < h ? y : 2 * h - y;
         lanes_put(&out->direction, i, latlong_direction(x / w, y / h));
-        lanes_put(&out->radiance, i, radiance_at(env, x, y));
-        out->pdf[i] = tents_pdf(env, x, y);
+        neighbours n = around(env, x, y);
+        lanes_put(&out->radiance, i, radiance_of(env, &n));
+        out->pdf[i] = tents_pdf(env, &n, y);
     }
 }
 

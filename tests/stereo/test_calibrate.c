@@ -46,18 +46,25 @@ static float ball_pixel(int x, int y, vec3 l, float shade(vec3, vec3))
     return sum / 16;
 }
 
-static void write_balls(float shade(vec3, vec3), img_encoding encoding)
+/* Channels are tinted: each is as strong as tint says, as far as a picture holds that. */
+static void write_tinted_balls(float shade(vec3, vec3), const float *tint, int channels, img_encoding encoding)
 {
     img p;
-    assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
+    assert_int_equal(img_new(&p, SIZE, SIZE, channels), OK);
     for (int i = 0; i < LIGHTS; i++) {
         char name[16];
         snprintf(name, sizeof name, "%02d.png", i);
         for (int k = 0; k < SIZE * SIZE; k++)
-            p.data[k] = ball_pixel(k % SIZE, k / SIZE, light(i), shade);
+            for (int ch = 0; ch < channels; ch++)
+                p.data[channels * k + ch] = fminf(tint[ch] * ball_pixel(k % SIZE, k / SIZE, light(i), shade), 1);
         assert_int_equal(img_write_png(scratch_path(name), &p, encoding), OK);
     }
     img_free(&p);
+}
+
+static void write_balls(float shade(vec3, vec3), img_encoding encoding)
+{
+    write_tinted_balls(shade, (const float[]){1}, 1, encoding);
 }
 
 static void write_mask(void)
@@ -106,27 +113,11 @@ static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
     assert_lights_found(PST_MATTE, true, 0.5f, 2);
 }
 
-/* Red twice as strong as what a picture holds, blue weak. */
-static void write_red_balls(void)
-{
-    static const float tint[] = {3.2f, 0.8f, 0.4f};
-    img p;
-    assert_int_equal(img_new(&p, SIZE, SIZE, 3), OK);
-    for (int i = 0; i < LIGHTS; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "%02d.png", i);
-        for (int k = 0; k < SIZE * SIZE; k++)
-            for (int ch = 0; ch < 3; ch++)
-                p.data[3 * k + ch] = fminf(tint[ch] * ball_pixel(k % SIZE, k / SIZE, light(i), matte), 1);
-        assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
-    }
-    img_free(&p);
-}
-
 static void what_one_channel_clips_is_no_shading(void **state)
 {
     (void)state;
-    write_red_balls();
+    /* red twice as strong as what a picture holds, blue weak */
+    write_tinted_balls(matte, (const float[]){3.2f, 0.8f, 0.4f}, 3, IMG_LINEAR16);
     write_mask();
     assert_lights_found(PST_MATTE, true, 0.5f, 2);
 }
