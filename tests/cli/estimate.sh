@@ -117,7 +117,6 @@ refuses 1 'mesh/mesh.glb: a folder is in the way' estimate disc.hdr --size 64 --
 [ "$(ls -A mesh)" = mesh.glb ] || complain "mesh has $(ls -A mesh)"
 
 echo "a disk that fills up leaves nothing"
-limited() { (ulimit -f "$1" && shift && "$@"); }
 for blocks in 1 8 24; do
     refuses 1 'cannot write' limited $blocks "$MERLIN" estimate disc.hdr --size 64 --mesh -o full.merlin
     absent full.merlin
@@ -149,10 +148,7 @@ mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
 "$MERLIN" estimate many --size 64 -o interrupted --json >out 2>err &
 pid=$!
-for _ in {1..600}; do
-    [ -e interrupted/101/report.json ] && break
-    sleep 0.1
-done
+await interrupted/101/report.json
 grep -q '"input":"many/100.hdr".*}$' out || complain "the first report of a batch waits for others: $(cat out)"
 kill -INT $pid
 wait $pid
@@ -168,10 +164,7 @@ if [ -z "$(trap -p HUP)" ]; then # else this was started by nohup
     echo "one whose terminal is closed does, too"
     "$MERLIN" estimate many --size 64 -o closed >out 2>err &
     pid=$!
-    for _ in {1..600}; do
-        [ -e closed/100/report.json ] && break
-        sleep 0.1
-    done
+    await closed/100/report.json
     kill -HUP $pid
     wait $pid
     code=$?
@@ -179,10 +172,7 @@ if [ -z "$(trap -p HUP)" ]; then # else this was started by nohup
     [ -z "$(find closed -name '.*')" ] || complain "a closed terminal leaves $(find closed -name '.*')"
     (trap '' HUP && exec "$MERLIN" estimate many/10?.hdr --size 64 -o on --quiet) &
     pid=$!
-    for _ in {1..600}; do
-        [ -e on/100/report.json ] && break
-        sleep 0.1
-    done
+    await on/100/report.json
     kill -HUP $pid
     wait $pid || complain "nohup does not keep it"
     present on/109/report.json

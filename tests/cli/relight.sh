@@ -129,17 +129,13 @@ absent none
 
 echo "places that cannot be written, disks that fill up"
 refuses 1 '/proc/merlin' relight disc.merlin --light 0,0,0 -o /proc/merlin
-limited() { (ulimit -f "$1" && shift && "$@"); }
 refuses 1 'cannot write' limited 1 "$MERLIN" relight disc.merlin --orbit 4 -o full/deep
 absent full
 
 echo "an interrupted orbit leaves nothing"
 "$MERLIN" relight disc.merlin --orbit 240 -o interrupted/deep --quiet >out 2>err &
 pid=$!
-for _ in {1..600}; do
-    [ -e interrupted/deep ] && break
-    sleep 0.1
-done
+await interrupted/deep
 kill -INT $pid
 wait $pid
 code=$?

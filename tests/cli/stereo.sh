@@ -142,7 +142,6 @@ refuses 1 'maps/depth.obj.*the map depth.png' stereo dome --method ls --mesh map
 refuses 1 'dome/dome_000.obj.*dome_000.png' stereo dome --method ls --mesh dome/dome_000.obj -o none
 refuses 1 'dome/cup.obj.*among what is read' stereo dome --method ls --mesh dome/cup.obj -o none
 absent none maps dome/cup.{obj,mtl,png} first.obj first.mtl first.png second.ply
-limited() { (ulimit -f "$1" && shift && "$@"); }
 for blocks in 1 8 60; do # on a disk that is full soon, later, and only when the meshes come
     refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls -o none
     refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls --mesh third.ply --mesh third.obj -o none

@@ -1,4 +1,5 @@
-# For the scripts about photographs, beside check.bash: input made from nothing, and what must or must not lie in a folder.
+# For the scripts about photographs, beside check.bash: input made from nothing, what must or must not lie in a folder, and
+# what stands in the way of writing there.
 
 # absent PATH...: nothing may be there.
 absent() {
@@ -8,6 +9,17 @@ absent() {
 present() {
     for path in "$@"; do [ -s "$path" ] || complain "$path is missing or empty"; done
 }
+
+# await PATH: until it is there, for a minute at most.
+await() {
+    for _ in {1..600}; do
+        [ -e "$1" ] && break
+        sleep 0.1
+    done
+}
+
+# limited BLOCKS COMMAND...: no file may be longer.
+limited() { (ulimit -f "$1" && shift && "$@"); }
 
 # radiance FILE SIDE RADIUS [WIDTH]: a Radiance HDR picture of a bright disc before black, SIDE high and as wide or WIDTH.
 radiance() {
