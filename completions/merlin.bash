@@ -5,7 +5,7 @@ _merlin() {
     local -A options=(
         [estimate]="--mask --output --model --size --views --exposure --mesh --json --quiet --help"
         [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --views --exposure --json --quiet --help"
-        [stereo]="--lights --near --fov --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
+        [stereo]="--lights --near --fov --distance --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
             --json --quiet --help"
         ["stereo calibrate"]="--sphere --mask --linear --fov --output --json --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths

@@ -46,6 +46,7 @@ typedef struct merlin_capture_files {
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB */
     float field_of_view; /* horizontal, degrees; 0: not known */
+    float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known */
 } merlin_capture_files;
 
 /* PNG, JPEG, TIFF or EXR pictures and the lights they were taken under. files NULL: the usual case. */
@@ -101,6 +102,8 @@ typedef struct merlin_surface {
     int light_count;
     int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat, or with too few pictures (3), to tell how strong
                              lights are: normals may be far off */
+    int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance, and with too few lights, or lights too much
+                             alike, to tell it: normals may be far off */
 } merlin_surface;
 
 /* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on. */

@@ -30,6 +30,8 @@ static const char help[] =
     "                       unless DIR has a light_intensities.txt with one or three numbers a line\n"
     "      --near           the lights are positions, with the camera at 0,0,0 looking along -z, not directions\n"
     "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
+    "      --distance D     from the camera to the object, on average, in the unit of the lights' positions (default:\n"
+    "                       with --near as the lights tell, else 1); depth is in it\n"
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
     "                       near for positions, uncalibrated without lights; auto (default): near with --near, ls\n"
     "                       with fewer than 8 pictures, else robust\n"
@@ -68,6 +70,15 @@ static status take_method(const char *name, void *into)
         return fail(ERROR_USAGE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
     *method = (pst_method)m;
     return OK;
+}
+
+static status take_distance(const char *text, void *into)
+{
+    double distance;
+    status s = cli_float("--distance", text, 0, 1e9, &distance);
+    if (s == OK && !(distance > 0)) s = fail(ERROR_USAGE, "--distance wants a number above 0, not \"%s\"", text);
+    if (s == OK) *(float *)into = (float)distance;
+    return s;
 }
 
 static status take_integration(const char *name, void *into)
@@ -114,8 +125,9 @@ static status check(request *r)
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
     r->maps = !o->lights && holds_maps(r->input);
     if (file_exists(r->input) && !is_capture(r) &&
-        (o->lights || o->near || o->field_of_view > 0 || o->ambient || o->linear))
-        return fail(ERROR_USAGE, "--lights, --near, --fov, --ambient and --linear are for a folder of pictures");
+        (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
+        return fail(ERROR_USAGE,
+                    "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
     if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");
@@ -128,6 +140,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"lights", .text = &r->folder.read.lights},
         {"near", .flag = &r->folder.read.near},
         {"fov", .real = &r->folder.read.field_of_view, .low = 1, .high = 170},
+        {"distance", .take = take_distance, .into = &r->folder.read.distance},
         {"method", .take = take_method, .into = &r->folder.method},
         {"mask", .text = &r->folder.read.mask},
         {"ambient", .text = &r->folder.read.ambient},
@@ -188,6 +201,11 @@ static status announce(const request *r, const char *output, const stereo_result
         fprintf(stderr,
                 "merlin stereo: %s: the object is too flat or the pictures are too few to tell how strong the lights "
                 "are, and normals may be many degrees off: state the strengths in light_intensities.txt\n",
+                r->input);
+    if (!r->quiet && result->distance_unsure)
+        fprintf(stderr,
+                "merlin stereo: %s: these lights do not tell how far the object is, and normals may be many degrees "
+                "off: state it by --distance, or take more lights, at different heights\n",
                 r->input);
     return s;
 }

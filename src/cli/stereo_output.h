@@ -16,6 +16,7 @@ typedef struct stereo_result {
     float error_white;               /* shown as white */
     pst_camera camera;
     bool strengths_unsure; /* as in solve.h */
+    bool distance_unsure;
     bool lights_in_order;  /* as in capture.h */
 } stereo_result;
 

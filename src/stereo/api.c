@@ -25,10 +25,14 @@ struct merlin_capture {
 
 /* ---- pictures and lights ---- */
 
-static status check_field_of_view(float degrees)
+static status check_camera(float field_of_view, float distance)
 {
-    if (degrees >= 0 && degrees <= 170) return OK;
-    return fail(ERROR_USAGE, "a capture's field of view is 0 (not known) to 170 degrees, not %g", (double)degrees);
+    if (!(field_of_view >= 0 && field_of_view <= 170))
+        return fail(ERROR_USAGE, "a capture's field of view is 0 (not known) to 170 degrees, not %g",
+                    (double)field_of_view);
+    if (!(distance >= 0 && isfinite(distance)))
+        return fail(ERROR_USAGE, "a capture's distance is 0 (not known) or above, not %g", (double)distance);
+    return OK;
 }
 
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out)
@@ -37,7 +41,7 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
     if (out) *out = NULL;
     status s = api_needs(__func__, folder && out);
     if (!files) files = &usual;
-    if (s == OK) s = check_field_of_view(files->field_of_view);
+    if (s == OK) s = check_camera(files->field_of_view, files->distance);
     if (s != OK) return result_of(s);
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return result_of(fail(ERROR_MEMORY, "no memory for a capture"));
@@ -47,7 +51,8 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
                                       .near = files->near_lights != 0,
                                       .unknown_lights = files->unknown_lights != 0,
                                       .linear = files->linear != 0,
-                                      .field_of_view = files->field_of_view};
+                                      .field_of_view = files->field_of_view,
+                                      .distance = files->distance};
     s = pst_capture_read(folder, &options, &c->inside);
     if (s != OK)
         free(c);
@@ -60,9 +65,7 @@ static status check_params(const merlin_capture_params *p)
 {
     if (p->lighting < MERLIN_DISTANT_LIGHTS || p->lighting > MERLIN_UNKNOWN_LIGHTS)
         return fail(ERROR_USAGE, "no lighting has the number %d", (int)p->lighting);
-    if (!(p->distance >= 0 && isfinite(p->distance)))
-        return fail(ERROR_USAGE, "a capture's distance is 0 (not known) or above, not %g", (double)p->distance);
-    return check_field_of_view(p->field_of_view);
+    return check_camera(p->field_of_view, p->distance);
 }
 
 static status take_mask(const merlin_image *mask, pst_capture *c)
@@ -208,7 +211,8 @@ static status take_surface(const pst_capture *c, pst_surface *from, merlin_surfa
                            .method = (merlin_stereo_method)from->method,
                            .lights = lights,
                            .light_count = lights ? c->count : 0,
-                           .strengths_unsure = from->strengths_unsure};
+                           .strengths_unsure = from->strengths_unsure,
+                           .distance_unsure = from->distance_unsure};
     if (!c->camera.perspective) return OK;
     to->camera.focal = c->camera.focal;
     to->camera.x = c->camera.center_x;

@@ -159,18 +159,9 @@ void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
     static const float NEAR_FIELD_OF_VIEW = 60;
     bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
     float degrees = field_of_view > 0 ? field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
-    if (!(degrees > 0)) return;
-    c->camera = pst_camera_of(c->width, c->height, degrees);
-    c->camera.mean_distance = mean_distance;
-}
-
-/* What the user says of the camera wins. */
-static void settle_camera(const pst_read_options *options, pst_capture *c)
-{
-    if (options->camera.focal > 0)
-        c->camera = options->camera;
-    else
-        pst_capture_see(c, options->field_of_view, options->camera.mean_distance);
+    float distance = mean_distance > 0 ? mean_distance : c->camera.mean_distance;
+    if (degrees > 0) c->camera = pst_camera_of(c->width, c->height, degrees);
+    c->camera.mean_distance = distance;
 }
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
@@ -188,7 +179,11 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
         pst_capture_free(out);
         return s;
     }
-    settle_camera(options, out);
+    pst_capture_see(out, options->field_of_view, options->distance);
+    if (options->distance > 0 && !out->camera.perspective) {
+        pst_capture_free(out);
+        return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
+    }
     if (options->unknown_lights) pst_capture_forget_lights(out);
     return OK;
 }

@@ -64,8 +64,8 @@ typedef struct pst_read_options {
     bool near;           /* lights.txt holds positions */
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
-    pst_camera camera;   /* focal 0: by the field of view, else from the layout, else 60 degrees when near */
-    float field_of_view; /* horizontal, degrees; 0: not known */
+    float field_of_view; /* horizontal, degrees; 0: from the layout, else 60 when near */
+    float distance;      /* mean, from the camera to the object; 0: from the layout, or not known */
 } pst_read_options;
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
@@ -79,8 +79,8 @@ status pst_capture_add(pst_capture *c, const img *picture, const pst_light *ligh
 status pst_capture_find_mask(pst_capture *c);
 void pst_capture_free(pst_capture *c);
 
-/* Seen by a camera of this horizontal field of view in degrees, from this mean distance. 0: not known, and the camera
- * stays what it is, but with near lights it has the project's 60 degrees if there is none. */
+/* Seen by a camera of this horizontal field of view in degrees, from this mean distance. 0: not known, and what is
+ * known of either stays, but with near lights the camera has the project's 60 degrees if there is none. */
 void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance);
 /* The lights become unknown, but for their intensities, which are measured apart. */
 void pst_capture_forget_lights(pst_capture *c);

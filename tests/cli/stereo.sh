@@ -28,6 +28,16 @@ for i in {0..5}; do cp "dome/dome_00$i.png" "other/bust$i.png"; done
 succeeds '"lights_in_order":true' stereo other --lights dome/dome.lp --method ls --json
 grep -q "in the order of the pictures' names" stderr || complain "stderr: $(cat stderr)"
 
+echo "three near lights do not tell the distance, and that is said"
+printf '0.5 0 -0.3\n-0.3 0.5 -0.3\n-0.3 -0.5 -0.3\n' >near.txt
+"$MERLIN" relight disc.merlin --lights near.txt -o near --quiet || complain "no pictures under near lights"
+mkdir leds
+cp near/relit_00?.png disc.merlin/mask.png leds
+succeeds '"distance_unsure":true' stereo leds --lights near.txt --near --json
+grep -q 'how far the object is' stderr || complain "stderr: $(cat stderr)"
+succeeds '"distance_unsure":false' stereo leds --lights near.txt --near --distance 1 --json
+[ -s stderr ] && complain "stderr: $(cat stderr)"
+
 echo "meshes by name, depth that may jump"
 echo "a surface can be relit"
 succeeds surface-relit "$MERLIN" relight dome/stereo --light 0.7,0.2,-0.4 --light -0.7,0.2,-0.4 --light 0,0,-9 -o surface-relit
@@ -84,6 +94,8 @@ refuses 2 'is the folder of the pictures' stereo dome --method ls -o ./dome/
 refuses 2 'for a folder' stereo disc.hdr --near
 refuses 2 'for a folder' stereo disc.hdr --fov 40
 refuses 2 '--fov' stereo dome --fov 200
+refuses 2 'field of view' stereo dome --distance 3 -o none
+refuses 2 '--distance' stereo dome --fov 40 --distance 0
 refuses 2 'takes no --lights and no --near' stereo dome --method uncalibrated --near
 refuses 2 '--dome' "$MERLIN" relight disc.merlin --dome 1
 refuses 2 '--lp' "$MERLIN" relight disc.merlin --orbit 4 --lp

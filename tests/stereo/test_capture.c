@@ -187,6 +187,21 @@ static void a_field_of_view_makes_a_camera_without_lights(void **state)
     assert_int_equal(c.lighting, PST_UNKNOWN_LIGHT);
     assert_true(c.camera.perspective);
     assert_float_equal(c.camera.focal, 3, 1e-5); /* half of 6 pixels */
+    assert_float_equal(c.camera.mean_distance, 0, 0);
+    pst_capture_free(&c);
+}
+
+static void a_distance_is_of_a_camera_that_is_known(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    pst_capture c;
+    pst_read_options options = {.distance = 450};
+    assert_int_equal(pst_capture_read(scratch, &options, &c), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "field of view is known"));
+    options.field_of_view = 90;
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_float_equal(c.camera.mean_distance, 450, 0);
     pst_capture_free(&c);
 }
 
@@ -301,6 +316,7 @@ int main(void)
         in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),
         in_scratch(a_field_of_view_makes_a_camera_without_lights),
+        in_scratch(a_distance_is_of_a_camera_that_is_known),
         in_scratch(unknown_lights_need_no_list),
         in_scratch(given_intensities_are_kept),
         in_scratch(a_mask_is_read_and_must_fit),

@@ -230,6 +230,7 @@ static void folder_becomes_a_mesh(void **state)
     for (int i = 0; i < 3; i++)
         assert_int_equal(merlin_capture_read(scratch, &(merlin_capture_files){.field_of_view = no_view[i]}, &capture),
                          MERLIN_WRONG_USE);
+    assert_int_equal(merlin_capture_read(scratch, &(merlin_capture_files){.distance = -1}, &capture), MERLIN_WRONG_USE);
     assert_null(capture);
 }
 
