@@ -161,6 +161,7 @@ typedef struct reader {
     const source *sources;
     size_t count, pixel_bytes;
     exr_decode_pipeline_t decoder;
+    exr_result_t (*decompress)(exr_decode_pipeline_t *decoder);
     bool started;
 } reader;
 
@@ -173,6 +174,7 @@ static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
     exr_result_t code = exr_decoding_initialize(context, 0, chunk, &r->decoder);
     if (code == EXR_ERR_SUCCESS) code = exr_decoding_choose_default_routines(context, 0, &r->decoder);
     r->decoder.unpack_and_convert_fn = NULL;
+    r->decompress = r->decoder.decompress_fn;
     return code;
 }
 
@@ -181,9 +183,13 @@ static exr_result_t read_chunk(reader *r, const exr_chunk_info_t *chunk, int x, 
 {
     exr_decode_pipeline_t *d = &r->decoder;
     exr_result_t code = aim_decoder(r, chunk);
+    /* what packing did not make smaller is stored as it was, which OpenEXR 3.1.5 unpacks all the same in a file of B44
+     */
+    bool as_it_was = chunk->packed_size == chunk->unpacked_size;
+    d->decompress_fn = as_it_was ? NULL : r->decompress;
     if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(r->file->context, 0, d);
     if (code != EXR_ERR_SUCCESS) return code;
-    const uint8_t *bytes = d->unpacked_buffer ? d->unpacked_buffer : d->packed_buffer;
+    const uint8_t *bytes = as_it_was ? d->packed_buffer : d->unpacked_buffer;
     size_t width = (size_t)chunk->width, line_bytes = width * r->pixel_bytes;
     if (!bytes || chunk->unpacked_size != line_bytes * (size_t)chunk->height) return EXR_ERR_CORRUPT_CHUNK;
     for (size_t t = 0; t < r->count; t++) {
