@@ -83,6 +83,12 @@ status file_read(const char *path, size_t limit, char **data, size_t *size)
     return s;
 }
 
+size_t file_text_mark(const char *text, size_t size)
+{
+    static const char mark[] = {'\xef', '\xbb', '\xbf'};
+    return size >= sizeof mark && memcmp(text, mark, sizeof mark) == 0 ? sizeof mark : 0;
+}
+
 static status map_open(int descriptor, const char *path, size_t limit, file_view *out)
 {
     size_t size;

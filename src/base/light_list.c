@@ -227,11 +227,8 @@ static status parse_lines(reader *r, light_list *out)
 
 status light_list_parse(const char *text, size_t size, const char *where, light_list *out)
 {
-    static const char byte_order_mark[] = "\xef\xbb\xbf"; /* as Windows puts before a text */
-    size_t mark = sizeof byte_order_mark - 1;
     *out = (light_list){0};
-    reader r = {.text = text, .end = text + size, .where = where};
-    if (size >= mark && memcmp(text, byte_order_mark, mark) == 0) r.text += mark;
+    reader r = {.text = text + file_text_mark(text, size), .end = text + size, .where = where};
     status s = parse_lines(&r, out);
     if (s != OK) light_list_free(out);
     return s;

@@ -38,7 +38,7 @@ static status read_names(const char *path, const char *folder, pst_capture *c)
     size_t size;
     status s = file_read(path, TEXT_MOST, &text, &size);
     if (s != OK) return s;
-    s = take_names(text, path, folder, c);
+    s = take_names(text + file_text_mark(text, size), path, folder, c);
     free(text);
     return s;
 }

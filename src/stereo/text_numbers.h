@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/file.h"
 #include "base/status.h"
 
 enum { TEXT_NUMBERS_MOST = 16 };
@@ -23,7 +24,7 @@ typedef struct text_numbers {
 
 static inline text_numbers text_numbers_at(const char *text, size_t size, const char *where)
 {
-    return (text_numbers){.text = text, .end = text + size, .where = where};
+    return (text_numbers){.text = text + file_text_mark(text, size), .end = text + size, .where = where};
 }
 
 /* The next line that is not empty; *found is false at the end. A line that begins with a number must hold finite

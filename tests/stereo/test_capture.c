@@ -240,6 +240,10 @@ static void given_intensities_are_kept(void **state)
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_float_equal(c.light[2].intensity[0], 9, 0);
     pst_capture_free(&c);
+    write_text("light_intensities.txt", "\xef\xbb\xbf" /* as Windows puts before a text */ "2\r\n3\r\n4\r\n");
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_float_equal(c.light[0].intensity[0], 2, 0);
+    pst_capture_free(&c);
     write_text("light_intensities.txt", "1\nx\n1\n");
     assert_refused(&PLAIN, "light_intensities.txt:2");
     write_text("light_intensities.txt", "1\n0\n1\n");

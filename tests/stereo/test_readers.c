@@ -364,6 +364,10 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     assert_float_equal(c.light[1].intensity[1], 5, 0);
     assert_float_equal(img_at(&c.normal_true, 1, 3)[2], 213, 0);
     pst_capture_free(&c);
+    write_text("filenames.txt", "\xef\xbb\xbf" /* as Windows puts before a text */ "001.png\r\nsecond light.png\r\n");
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
+    assert_string_equal(c.name[0], "001.png");
+    pst_capture_free(&c);
     write_text("filenames.txt", "001.png\n003.png\n");
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
     assert_says("names 003.png");
