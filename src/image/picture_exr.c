@@ -41,25 +41,29 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     return 0;
 }
 
-/* The channel that says where there is anything, but for that of the colour itself; NULL if none. mask.A is that of
- * maps and samples. */
-static const char *find_alpha(const exr_file *f, const char *colour)
+/* The channel that says where there is anything, but for that of the colour itself; false if none. A layer may have its
+ * own, mask.A is that of maps and samples. */
+static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha)
 {
-    static const char *const known[] = {"A", "mask.A"};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (exr_has_channel(f, known[i]) && strcmp(colour, known[i]) != 0) return known[i];
-    return NULL;
+    channel_name own;
+    snprintf(own, sizeof own, "%.*sA", (int)strlen(colour) - 1, colour);
+    const char *const known[] = {own, "A", "mask.A"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (!exr_has_channel(f, known[i]) || strcmp(colour, known[i]) == 0) continue;
+        snprintf(alpha, NAME_SIZE, "%s", known[i]);
+        return true;
+    }
+    return false;
 }
 
 static status read_open(exr_file *f, const char *path, img *color, img *alpha)
 {
-    channel_name names[3];
+    channel_name names[3], opacity;
     int channels = choose_channels(f, names);
     if (!channels)
         return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
     status s = img_new(color, exr_width(f), exr_height(f), channels);
-    const char *opacity = find_alpha(f, names[0]);
-    if (s == OK && alpha && opacity) s = img_new(alpha, exr_width(f), exr_height(f), 1);
+    if (s == OK && alpha && find_alpha(f, names[0], opacity)) s = img_new(alpha, exr_width(f), exr_height(f), 1);
     if (s != OK) return s;
     exr_target targets[4];
     for (int c = 0; c < channels; c++)

@@ -299,6 +299,18 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     assert_int_equal(img_read(scratch_path("layer.exr"), &color, &alpha), OK);
     assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     img_free(&color);
+    const exr_channel own[] = {{"view.R", picture.data, 3, false},
+                               {"view.G", picture.data + 1, 3, false},
+                               {"view.B", picture.data + 2, 3, false},
+                               {"view.A", picture.data, 1, false},
+                               {"mask.A", picture.data + 1, 1, false}};
+    assert_int_equal(exr_write(scratch_path("own.exr"), 5, 3, own, 5, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("own.exr"), &color, &alpha), OK);
+    assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
+    assert_non_null(alpha.data);
+    assert_true(alpha.data[3] == picture.data[3]);
+    img_free(&color);
+    img_free(&alpha);
     const exr_channel grey[] = {{"Y", picture.data, 1, false}, {"A", picture.data, 1, false}};
     assert_int_equal(exr_write(scratch_path("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("grey.exr"), &color, &alpha), OK);
