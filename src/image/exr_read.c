@@ -24,6 +24,10 @@ typedef struct source {
 
 static status fail_reading(const exr_file *f, exr_result_t code)
 {
+    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED) /* DWAA and DWAB, in OpenEXR 3.1 */
+        return fail(ERROR_INPUT,
+                    "cannot read %s: the OpenEXR installed here does not know its compression; save it with ZIP or PIZ",
+                    f->path);
     return exr_fail(ERROR_INPUT, "read", f->path, code);
 }
 
@@ -42,7 +46,8 @@ static status check_layout(const exr_file *f)
         return fail(ERROR_INPUT, "cannot read %s: deep EXR files are not supported, flatten it first", f->path);
     for (int i = 0; i < f->channels->num_channels; i++)
         if (f->channels->entries[i].x_sampling != 1 || f->channels->entries[i].y_sampling != 1)
-            return fail(ERROR_INPUT, "cannot read %s: its channel %s is subsampled, which is not supported", f->path,
+            return fail(ERROR_INPUT,
+                        "cannot read %s: its channel %s is subsampled, which is not supported; save it as RGB", f->path,
                         f->channels->entries[i].name.str);
     return OK;
 }
