@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/library.h"
+#include "scene/mesh_gltf.h"
 #include "scene/mesh_ply.h"
 
 enum { TRIANGLE_LIMIT = 5000000 };
@@ -111,7 +112,8 @@ static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts
 
 static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
 {
-    status s = library_need(&libassimp);
+    status s = file_ends_in(path, ".obj") ? OK : mesh_check_gltf(path);
+    if (s == OK) s = library_need(&libassimp);
     if (s != OK) return s;
     struct aiPropertyStore *settings = assimp.create_settings();
     if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");

@@ -253,6 +253,32 @@ static void assert_refused(const char *name, const char *text)
     assert_null(strchr(status_message(), '\n'));
 }
 
+/* The tetrahedron again, its positions in 16 bits. */
+static void gltf_of_an_extension_that_moves_its_vertices_is_refused(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"buffers\":[{\"byteLength\":56,\"uri\":\"data:application/octet-stream;base64,"
+        "gD+AP4A/gD+AQIA/gD+AP4A/gECAP4A/gD+AP4BAgD8AAAIAAQAAAAEAAwAAAAMAAgABAAIAAwA=\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":32,\"byteStride\":8},"
+        "{\"buffer\":0,\"byteOffset\":32,\"byteLength\":24}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":4,\"type\":\"VEC3\","
+        "\"min\":[16256,16256,16256],\"max\":[16512,16512,16512]},"
+        "{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
+    assert_refused("t.gltf", TEXT);
+    assert_non_null(strstr(status_message(), "KHR_mesh_quantization"));
+    char binary[sizeof TEXT + 20];
+    const uint32_t head[] = {0x46546c67, 2, sizeof binary, sizeof TEXT - 1, 0x4e4f534a};
+    memcpy(binary, head, sizeof head);
+    memcpy(binary + sizeof head, TEXT, sizeof TEXT);
+    scn_object o;
+    assert_int_equal(load("t.glb", binary, sizeof binary, &o), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "KHR_mesh_quantization"));
+}
+
 static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **state)
 {
     (void)state;
@@ -348,6 +374,7 @@ int main(void)
         cmocka_unit_test(triangles_that_wind_against_their_normals_are_turned),
         cmocka_unit_test(binary_ply_is_read),
         cmocka_unit_test(gltf_is_read),
+        cmocka_unit_test(gltf_of_an_extension_that_moves_its_vertices_is_refused),
         cmocka_unit_test(broken_meshes_are_refused_in_one_line_that_names_the_file),
         cmocka_unit_test(folders_and_pipes_are_refused_without_waiting),
         cmocka_unit_test(a_mesh_is_read_once_for_many_objects),
