@@ -9,7 +9,7 @@
 
 /* How colour samples become linear light; alpha is linear always. */
 typedef enum picture_colour {
-    PICTURE_LINEARIZE, /* integers are sRGB (or by their profile), floats are linear */
+    PICTURE_LINEARIZE, /* integers are sRGB (or by their profile or gamma), floats are linear */
     PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and nothing else */
 } picture_colour;
 

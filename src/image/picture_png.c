@@ -1,3 +1,4 @@
+#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdint.h>
@@ -14,6 +15,7 @@ typedef struct reader {
     png_infop info;
     int width, height, bands;
     bool wide, plain;
+    float exponent; /* from code to light, where the file says another than sRGB's; else 0 */
     uint8_t *codes; /* height × width × bands, of 8 or 16 bits */
     png_bytep *rows;
     char words[128];
@@ -48,6 +50,16 @@ static bool reader_open(reader *r, const char *path)
     return r->file && r->info;
 }
 
+/* What is near the gamma of screens means sRGB (as the PNG specification has it), whose curve is no power; ImageMagick
+ * keeps linear pictures as PNGs of gamma 1. */
+static float exponent_of(const reader *r)
+{
+    double gamma = 0;
+    bool known = png_get_gAMA(r->png, r->info, &gamma) && !png_get_valid(r->png, r->info, PNG_INFO_sRGB);
+    if (!known || !(gamma >= 0.1 && gamma <= 10) || fabs(gamma * 2.2 - 1) < 0.05) return 0;
+    return (float)(1 / gamma);
+}
+
 /* All that there is becomes grey or RGB, with alpha or without, of 8 or 16 bits. */
 static bool read_head(reader *r)
 {
@@ -58,6 +70,7 @@ static bool read_head(reader *r)
     r->width = (int)png_get_image_width(r->png, r->info);
     r->height = (int)png_get_image_height(r->png, r->info);
     r->plain = !png_get_valid(r->png, r->info, PNG_INFO_iCCP | PNG_INFO_eXIf);
+    r->exponent = exponent_of(r);
     png_set_expand(r->png);
     png_set_swap(r->png); /* of 16 bits, the largest first in the file */
     (void)png_set_interlace_handling(r->png);
@@ -85,12 +98,21 @@ static status read_codes(reader *r, const char *path)
     return read_rows(r) ? OK : fail(ERROR_INPUT, "cannot read %s: %s", path, r->words);
 }
 
+static void apply_exponent(float exponent, img *color)
+{
+    size_t count = (size_t)color->width * (size_t)color->height * (size_t)color->channels;
+    for (size_t i = 0; i < count; i++)
+        color->data[i] = powf(color->data[i], exponent);
+}
+
 static status take(const reader *r, picture_colour how, img *color, img *alpha)
 {
     int channels = r->bands < 3 ? 1 : 3;
     status s = img_new(color, r->width, r->height, channels);
     if (s != OK) return s;
-    picture_take_codes(r->codes, r->wide, r->bands, 0, how == PICTURE_LINEARIZE, color);
+    bool decode = how == PICTURE_LINEARIZE;
+    picture_take_codes(r->codes, r->wide, r->bands, 0, decode && r->exponent == 0, color);
+    if (decode && r->exponent > 0 && r->exponent != 1) apply_exponent(r->exponent, color);
     if (!alpha || r->bands == channels) return OK;
     s = img_new(alpha, r->width, r->height, 1);
     if (s == OK) picture_take_codes(r->codes, r->wide, r->bands, channels, false, alpha);

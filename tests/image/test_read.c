@@ -1,4 +1,5 @@
 #include <math.h>
+#include <png.h>
 #include <pthread.h>
 #include <vips/vips.h>
 
@@ -173,6 +174,45 @@ static void pngs_of_every_layout_show_the_same(void **state)
     assert_true(color.data[0] == 1 && color.data[4] == 0 && color.data[8] == 1);
     img_free(&color);
     img_free(&plain);
+}
+
+static void write_png_of_gamma(const char *path, const uint8_t codes[3], double gamma)
+{
+    FILE *f = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    assert_non_null(f);
+    assert_non_null(info);
+    png_init_io(png, f);
+    png_set_IHDR(png, info, 3, 1, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_gAMA(png, info, gamma);
+    png_write_info(png, info);
+    png_write_row(png, codes);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    assert_int_equal(fclose(f), 0);
+}
+
+static void the_gamma_of_a_png_is_honoured(void **state)
+{
+    (void)state;
+    static const uint8_t codes[3] = {0, 51, 255}; /* 51 is 0.2 */
+    static const struct {
+        double gamma, light;
+    } told[] = {{1, 0.2}, {1 / 1.8, 0.0551892}, {0.45455, 0.0331048}};
+    for (int i = 0; i < 3; i++) {
+        img color = {0}, mask = {0};
+        write_png_of_gamma(scratch_path("gamma.png"), codes, told[i].gamma);
+        assert_int_equal(img_read(scratch_path("gamma.png"), &color, NULL), OK);
+        /* a file keeps five digits of its gamma: 5e-6 of 1 / 1.8 are 1.4e-6 of 0.2 to the 1.8th */
+        assert_float_equal(color.data[3], told[i].light, 2e-6);
+        assert_true(color.data[0] == 0 && color.data[6] == 1);
+        assert_int_equal(img_read_mask(scratch_path("gamma.png"), &mask), OK);
+        assert_float_equal(mask.data[1], 0.2, 1e-6);
+        img_free(&color);
+        img_free(&mask);
+    }
 }
 
 static void exif_orientation_turns_the_picture(void **state)
@@ -569,6 +609,7 @@ int main(void)
         cmocka_unit_test(linear_png_round_trips_within_half_a_code),
         cmocka_unit_test(every_photograph_format_is_read),
         cmocka_unit_test(pngs_of_every_layout_show_the_same),
+        cmocka_unit_test(the_gamma_of_a_png_is_honoured),
         cmocka_unit_test(exif_orientation_turns_the_picture),
         cmocka_unit_test(alpha_is_split_off_unchanged),
         cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
