@@ -54,6 +54,8 @@ status exr_write(const char *path, int width, int height, const exr_channel *cha
 
 typedef struct exr_file exr_file;
 status exr_open(const char *path, exr_file **out);
+/* Of a file of several parts the first is open at first; this goes on to the next one, if there is one. */
+status exr_next_part(exr_file *f, bool *found);
 void exr_close(exr_file *f);
 int exr_width(const exr_file *f);
 int exr_height(const exr_file *f);

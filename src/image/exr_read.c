@@ -11,6 +11,7 @@
 struct exr_file {
     char *path;
     exr_context_t context;
+    int part, parts; /* what follows is of this one */
     exr_attr_box2i_t window;
     const exr_attr_chlist_t *channels;
     exr_storage_t storage;
@@ -52,14 +53,20 @@ static status check_layout(const exr_file *f)
     return OK;
 }
 
+static status open_part(exr_file *f)
+{
+    exr_result_t r = exr_get_storage(f->context, f->part, &f->storage);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, f->part, &f->window);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_channels(f->context, f->part, &f->channels);
+    return r == EXR_ERR_SUCCESS ? check_layout(f) : fail_reading(f, r);
+}
+
 static status open_file(exr_file *f)
 {
     exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
-    if (r == EXR_ERR_SUCCESS) r = exr_get_storage(f->context, 0, &f->storage);
-    if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, 0, &f->window);
-    if (r == EXR_ERR_SUCCESS) r = exr_get_channels(f->context, 0, &f->channels);
-    return r == EXR_ERR_SUCCESS ? check_layout(f) : fail_reading(f, r);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_count(f->context, &f->parts);
+    return r == EXR_ERR_SUCCESS ? open_part(f) : fail_reading(f, r);
 }
 
 status exr_open(const char *path, exr_file **out)
@@ -78,6 +85,14 @@ status exr_open(const char *path, exr_file **out)
     }
     *out = f;
     return OK;
+}
+
+status exr_next_part(exr_file *f, bool *found)
+{
+    *found = f->part + 1 < f->parts;
+    if (!*found) return OK;
+    f->part++;
+    return open_part(f);
 }
 
 void exr_close(exr_file *f)
@@ -174,10 +189,10 @@ typedef struct reader {
 static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
 {
     exr_context_t context = r->file->context;
-    if (r->started) return exr_decoding_update(context, 0, chunk, &r->decoder);
+    if (r->started) return exr_decoding_update(context, r->file->part, chunk, &r->decoder);
     r->started = true;
-    exr_result_t code = exr_decoding_initialize(context, 0, chunk, &r->decoder);
-    if (code == EXR_ERR_SUCCESS) code = exr_decoding_choose_default_routines(context, 0, &r->decoder);
+    exr_result_t code = exr_decoding_initialize(context, r->file->part, chunk, &r->decoder);
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_choose_default_routines(context, r->file->part, &r->decoder);
     r->decoder.unpack_and_convert_fn = NULL;
     r->decompress = r->decoder.decompress_fn;
     return code;
@@ -192,7 +207,7 @@ static exr_result_t read_chunk(reader *r, const exr_chunk_info_t *chunk, int x, 
      */
     bool as_it_was = chunk->packed_size == chunk->unpacked_size;
     d->decompress_fn = as_it_was ? NULL : r->decompress;
-    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(r->file->context, 0, d);
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(r->file->context, r->file->part, d);
     if (code != EXR_ERR_SUCCESS) return code;
     const uint8_t *bytes = as_it_was ? d->packed_buffer : d->unpacked_buffer;
     size_t width = (size_t)chunk->width, line_bytes = width * r->pixel_bytes;
@@ -213,10 +228,10 @@ static exr_result_t read_scanlines(reader *r)
 {
     const exr_file *f = r->file;
     int32_t lines = 0;
-    exr_result_t code = exr_get_scanlines_per_chunk(f->context, 0, &lines);
+    exr_result_t code = exr_get_scanlines_per_chunk(f->context, f->part, &lines);
     for (int y = 0; code == EXR_ERR_SUCCESS && y < exr_height(f); y += lines) {
         exr_chunk_info_t chunk;
-        code = exr_read_scanline_chunk_info(f->context, 0, f->window.min.y + y, &chunk);
+        code = exr_read_scanline_chunk_info(f->context, f->part, f->window.min.y + y, &chunk);
         if (code == EXR_ERR_SUCCESS && (chunk.width != exr_width(f) || chunk.height > exr_height(f) - y))
             code = EXR_ERR_CORRUPT_CHUNK;
         if (code == EXR_ERR_SUCCESS) code = read_chunk(r, &chunk, 0, y);
@@ -228,12 +243,12 @@ static exr_result_t read_tiles(reader *r)
 {
     const exr_file *f = r->file;
     int32_t width = 0, height = 0;
-    exr_result_t code = exr_get_tile_sizes(f->context, 0, 0, 0, &width, &height);
+    exr_result_t code = exr_get_tile_sizes(f->context, f->part, 0, 0, &width, &height);
     if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1)) code = EXR_ERR_CORRUPT_CHUNK;
     for (int y = 0; code == EXR_ERR_SUCCESS && y < exr_height(f); y += height) {
         for (int x = 0; code == EXR_ERR_SUCCESS && x < exr_width(f); x += width) {
             exr_chunk_info_t chunk;
-            code = exr_read_tile_chunk_info(f->context, 0, x / width, y / height, 0, 0, &chunk);
+            code = exr_read_tile_chunk_info(f->context, f->part, x / width, y / height, 0, 0, &chunk);
             if (code == EXR_ERR_SUCCESS && (chunk.width > exr_width(f) - x || chunk.height > exr_height(f) - y))
                 code = EXR_ERR_CORRUPT_CHUNK;
             if (code == EXR_ERR_SUCCESS) code = read_chunk(r, &chunk, x, y);
@@ -264,7 +279,7 @@ status exr_read(exr_file *f, const exr_target *targets, size_t count)
 bool exr_get_numbers(const exr_file *f, const char *name, float *values, int count)
 {
     const exr_attribute_t *a = NULL;
-    if (exr_get_attribute_by_name(f->context, 0, name, &a) != EXR_ERR_SUCCESS) return false;
+    if (exr_get_attribute_by_name(f->context, f->part, name, &a) != EXR_ERR_SUCCESS) return false;
     bool one = a->type == EXR_ATTR_FLOAT && count == 1;
     if (!one && (a->type != EXR_ATTR_FLOAT_VECTOR || a->floatvector->length != count)) return false;
     const float *found = one ? &a->f : a->floatvector->arr;
@@ -277,6 +292,6 @@ bool exr_get_numbers(const exr_file *f, const char *name, float *values, int cou
 const char *exr_get_text(const exr_file *f, const char *name)
 {
     const exr_attribute_t *a = NULL;
-    if (exr_get_attribute_by_name(f->context, 0, name, &a) != EXR_ERR_SUCCESS) return NULL;
+    if (exr_get_attribute_by_name(f->context, f->part, name, &a) != EXR_ERR_SUCCESS) return NULL;
     return a->type == EXR_ATTR_STRING ? a->string->str : NULL;
 }

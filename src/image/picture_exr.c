@@ -56,12 +56,26 @@ static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha
     return false;
 }
 
-static status read_open(exr_file *f, const char *path, img *color, img *alpha)
+/* Opens the first part that has a picture. */
+static status open_picture(const char *path, exr_file **out, channel_name names[3], int *channels)
 {
-    channel_name names[3], opacity;
-    int channels = choose_channels(f, names);
-    if (!channels)
-        return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    exr_file *f = NULL;
+    bool found = true;
+    status s = exr_open(path, &f);
+    while (s == OK && (*channels = choose_channels(f, names)) == 0 && found)
+        s = exr_next_part(f, &found);
+    if (s == OK && *channels == 0)
+        s = fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    if (s == OK)
+        *out = f;
+    else
+        exr_close(f);
+    return s;
+}
+
+static status read_channels(exr_file *f, channel_name names[3], int channels, img *color, img *alpha)
+{
+    channel_name opacity;
     status s = img_new(color, exr_width(f), exr_height(f), channels);
     if (s == OK && alpha && find_alpha(f, names[0], opacity)) s = img_new(alpha, exr_width(f), exr_height(f), 1);
     if (s != OK) return s;
@@ -75,7 +89,9 @@ static status read_open(exr_file *f, const char *path, img *color, img *alpha)
 status picture_look_exr(const char *path, picture_head *head)
 {
     exr_file *f = NULL;
-    status s = exr_open(path, &f);
+    channel_name names[3];
+    int channels;
+    status s = open_picture(path, &f, names, &channels);
     if (s != OK) return s;
     *head = (picture_head){.width = exr_width(f), .height = exr_height(f), .bits = 32};
     exr_close(f);
@@ -85,9 +101,11 @@ status picture_look_exr(const char *path, picture_head *head)
 status picture_read_exr(const char *path, img *color, img *alpha)
 {
     exr_file *f = NULL;
-    status s = exr_open(path, &f);
+    channel_name names[3];
+    int channels;
+    status s = open_picture(path, &f, names, &channels);
     if (s != OK) return s;
-    s = read_open(f, path, color, alpha);
+    s = read_channels(f, names, channels, color, alpha);
     exr_close(f);
     return s;
 }

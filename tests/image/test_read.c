@@ -1,3 +1,4 @@
+#include <OpenEXR/openexr.h>
 #include <math.h>
 #include <png.h>
 #include <pthread.h>
@@ -363,6 +364,60 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     img_free(&picture);
 }
 
+/* One line of floats, uncompressed. */
+static void write_part(exr_context_t file, int part, int channels, const float *line, int width)
+{
+    exr_encode_pipeline_t e = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_chunk_info_t chunk;
+    assert_int_equal(exr_write_scanline_chunk_info(file, part, 0, &chunk), 0);
+    assert_int_equal(exr_encoding_initialize(file, part, &chunk, &e), 0);
+    for (int i = 0; i < channels; i++) {
+        e.channels[i].encode_from_ptr = (const uint8_t *)(line + i * width);
+        e.channels[i].user_pixel_stride = 4;
+        e.channels[i].user_line_stride = 4 * width;
+    }
+    assert_int_equal(exr_encoding_choose_default_routines(file, part, &e), 0);
+    assert_int_equal(exr_encoding_run(file, part, &e), 0);
+    exr_encoding_destroy(file, &e);
+}
+
+static void add_part(exr_context_t file, const char *name, const char *channels, int width)
+{
+    int part = 0;
+    assert_int_equal(exr_add_part(file, name, EXR_STORAGE_SCANLINE, &part), 0);
+    assert_int_equal(exr_initialize_required_attr_simple(file, part, width, 1, EXR_COMPRESSION_NONE), 0);
+    for (; *channels; channels++) {
+        const char channel[] = {*channels, 0};
+        assert_int_equal(exr_add_channel(file, part, channel, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1), 0);
+    }
+}
+
+/* As renderers write them: a part a layer, sorted by whatever they sort them by. */
+static void an_exr_is_its_first_part_that_is_a_picture(void **state)
+{
+    (void)state;
+    static const float depth[3] = {7, 8, 9}, abgr[8] = {1, 0.25f, 3, 4, 5, 6, 7, 8};
+    exr_context_initializer_t quiet = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_t file;
+    img color = {0}, alpha = {0};
+    int width, height;
+    assert_int_equal(exr_start_write(&file, scratch_path("parts.exr"), EXR_WRITE_FILE_DIRECTLY, &quiet), 0);
+    add_part(file, "depth", "Z", 3);
+    add_part(file, "picture", "ABGR", 2);
+    assert_int_equal(exr_write_header(file), 0);
+    write_part(file, 0, 1, depth, 3);
+    write_part(file, 1, 4, abgr, 2);
+    assert_int_equal(exr_finish(&file), 0);
+    assert_int_equal(img_read_size(scratch_path("parts.exr"), &width, &height), OK);
+    assert_int_equal(width, 2);
+    assert_int_equal(img_read(scratch_path("parts.exr"), &color, &alpha), OK);
+    assert_true(color.data[0] == 7 && color.data[1] == 5 && color.data[2] == 3 && color.data[3] == 8);
+    assert_non_null(alpha.data);
+    assert_true(alpha.data[0] == 1 && alpha.data[1] == 0.25f);
+    img_free(&color);
+    img_free(&alpha);
+}
+
 /* As merlin estimate writes them. */
 static void the_mask_of_maps_is_their_alpha(void **state)
 {
@@ -616,6 +671,7 @@ int main(void)
         cmocka_unit_test(embedded_profile_is_honoured),
         cmocka_unit_test(radiance_files_are_linear),
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
+        cmocka_unit_test(an_exr_is_its_first_part_that_is_a_picture),
         cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
