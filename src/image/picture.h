@@ -40,6 +40,8 @@ status picture_decode(const char *path, picture_kind kind, picture_colour how, i
 status picture_look(const char *path, picture_kind kind, picture_head *head);
 /* Refuses Radiance pictures that would come out in wrong colours or turned. */
 status picture_check_hdr(const char *path);
+/* Whether a TIFF's colours are multiplied by its alpha, the only band beside them. */
+bool picture_tiff_is_premultiplied(const char *path);
 status picture_check_size(const char *path, int width, int height);
 /* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
  * they mean as sRGB, or else scaled to [0, 1]. */

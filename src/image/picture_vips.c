@@ -41,6 +41,16 @@ static loader *loader_of(picture_kind kind)
     return NULL;
 }
 
+/* libvips divides a TIFF's colours by an alpha of 0 to 255, of floats, too, whose alpha is 0 to 1 (8.14). That is
+ * undone by its inverse, whatever it took for the range, and then done by the range of floats. */
+static bool divide_by_alpha(VipsImage **image, const char *path)
+{
+    VipsImage *made = NULL;
+    if (vips()->image_get_format(*image) != VIPS_FORMAT_FLOAT || !picture_tiff_is_premultiplied(path)) return true;
+    return replace(image, &made, vips()->premultiply(*image, &made, NULL)) &&
+           replace(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
+}
+
 static status open_picture(const char *path, picture_kind kind, VipsImage **out)
 {
     VipsImage *image = NULL;
@@ -53,6 +63,7 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out)
         return vips_refusal(ERROR_INPUT, "read", path);
     int width = vips()->image_get_width(image), height = vips()->image_get_height(image);
     s = picture_check_size(path, width, height);
+    if (s == OK && kind == PICTURE_TIFF && !divide_by_alpha(&image, path)) s = vips_refusal(ERROR_INPUT, "read", path);
     if (s == OK)
         *out = image;
     else

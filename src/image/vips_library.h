@@ -45,11 +45,13 @@
     USE(interpretation_get_type)                                                                                       \
     USE(jpegload)                                                                                                      \
     USE(pngload)                                                                                                       \
+    USE(premultiply)                                                                                                   \
     USE(rad2float)                                                                                                     \
     USE(radload)                                                                                                       \
     USE(svgload_buffer)                                                                                                \
     USE(tiffload)                                                                                                      \
     USE(type_find)                                                                                                     \
+    USE(unpremultiply)                                                                                                 \
     USE(version)                                                                                                       \
     USE(webpload)                                                                                                      \
     USE(webpsave_buffer)

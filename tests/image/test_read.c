@@ -260,6 +260,52 @@ static void alpha_is_split_off_unchanged(void **state)
     img_free(&mask);
 }
 
+/* A TIFF of one line of two pixels, RGB and alpha in 32-bit floats; extra: what its alpha is. */
+static void write_tiff(const char *path, const float pixels[8], uint16_t extra)
+{
+    static const uint16_t LONG = 4, SHORT = 3;
+    const struct {
+        uint16_t tag, type;
+        uint32_t count, value;
+    } entries[] = {{256, LONG, 1, 2},  {257, LONG, 1, 1},      {258, SHORT, 4, 40}, {259, SHORT, 1, 1},
+                   {262, SHORT, 1, 2}, {273, LONG, 1, 8},      {277, SHORT, 1, 4},  {278, LONG, 1, 1},
+                   {279, LONG, 1, 32}, {338, SHORT, 1, extra}, {339, SHORT, 4, 48}};
+    static const uint16_t bits[4] = {32, 32, 32, 32}, floats[4] = {3, 3, 3, 3};
+    const uint32_t folder = 56, none = 0;
+    const uint16_t count = sizeof entries / sizeof *entries;
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    fwrite("II*", 1, 4, f);
+    fwrite(&folder, 4, 1, f);
+    fwrite(pixels, 4, 8, f);
+    fwrite(bits, 2, 4, f);
+    fwrite(floats, 2, 4, f);
+    fwrite(&count, 2, 1, f);
+    fwrite(entries, sizeof *entries, count, f);
+    fwrite(&none, 4, 1, f);
+    assert_int_equal(fclose(f), 0);
+}
+
+static void colours_that_a_tiff_multiplied_by_alpha_are_divided_by_it(void **state)
+{
+    (void)state;
+    static const float stored[8] = {0.25f, 0.5f, 1.5f, 0.5f, 0.25f, 4, 1, 1};
+    for (uint16_t extra = 1; extra <= 2; extra++) { /* associated, unassociated */
+        img color = {0}, alpha = {0};
+        float share = extra == 1 ? 0.5f : 1;
+        write_tiff(scratch_path("floats.tif"), stored, extra);
+        assert_int_equal(img_read(scratch_path("floats.tif"), &color, &alpha), OK);
+        for (int c = 0; c < 3; c++) {
+            assert_float_equal(color.data[c], stored[c] / share, 1e-6);
+            assert_float_equal(color.data[3 + c], stored[4 + c], 1e-6);
+        }
+        assert_non_null(alpha.data);
+        assert_true(alpha.data[0] == 0.5f && alpha.data[1] == 1);
+        img_free(&color);
+        img_free(&alpha);
+    }
+}
+
 static void grey_with_alpha_becomes_colour_and_alpha(void **state)
 {
     (void)state;
@@ -667,6 +713,7 @@ int main(void)
         cmocka_unit_test(the_gamma_of_a_png_is_honoured),
         cmocka_unit_test(exif_orientation_turns_the_picture),
         cmocka_unit_test(alpha_is_split_off_unchanged),
+        cmocka_unit_test(colours_that_a_tiff_multiplied_by_alpha_are_divided_by_it),
         cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
         cmocka_unit_test(embedded_profile_is_honoured),
         cmocka_unit_test(radiance_files_are_linear),
