@@ -28,7 +28,7 @@ typedef enum picture_kind {
 /* What a file's head alone says; bits of a sample: 8, 16 or 32. */
 typedef struct picture_head {
     int width, height, bits; /* as stored: an orientation may exchange width and height */
-    bool plain;              /* of PNG: without colour profile and orientation */
+    bool plain;              /* of PNG: without colour profile */
 } picture_head;
 
 /* A PNG as most are, head->plain; any other is left to picture_decode. color, alpha as below: either may be NULL. */
@@ -42,6 +42,10 @@ status picture_look(const char *path, picture_kind kind, picture_head *head);
 status picture_check_hdr(const char *path);
 /* Whether a TIFF's colours are multiplied by its alpha, the only band beside them. */
 bool picture_tiff_is_premultiplied(const char *path);
+/* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */
+int picture_exif_orientation(void *exif, size_t size);
+/* Turns a picture that lies so upright. */
+status picture_turn(img *image, int orientation);
 status picture_check_size(const char *path, int width, int height);
 /* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
  * they mean as sRGB, or else scaled to [0, 1]. */

@@ -69,7 +69,7 @@ static bool read_head(reader *r)
     png_read_info(r->png, r->info);
     r->width = (int)png_get_image_width(r->png, r->info);
     r->height = (int)png_get_image_height(r->png, r->info);
-    r->plain = !png_get_valid(r->png, r->info, PNG_INFO_iCCP | PNG_INFO_eXIf);
+    r->plain = !png_get_valid(r->png, r->info, PNG_INFO_iCCP);
     r->exponent = exponent_of(r);
     png_set_expand(r->png);
     png_set_swap(r->png); /* of 16 bits, the largest first in the file */
@@ -85,6 +85,16 @@ static bool read_rows(reader *r)
     if (setjmp(png_jmpbuf(r->png))) return false;
     png_read_image(r->png, r->rows);
     return true;
+}
+
+/* Some write the orientation behind the pixels (ImageMagick); what is damaged there does no harm. */
+static int read_orientation(reader *r)
+{
+    png_bytep exif = NULL;
+    png_uint_32 size = 0;
+    if (setjmp(png_jmpbuf(r->png)) == 0) png_read_end(r->png, r->info);
+    if (!png_get_eXIf_1(r->png, r->info, &size, &exif)) return 1;
+    return picture_exif_orientation(exif, size);
 }
 
 static status read_codes(reader *r, const char *path)
@@ -125,7 +135,10 @@ static status read_open(reader *r, const char *path, picture_colour how, img *co
     status s = picture_check_size(path, r->width, r->height);
     if (s != OK || !r->plain || !color) return s;
     s = read_codes(r, path);
-    return s == OK ? take(r, how, color, alpha) : s;
+    if (s == OK) s = take(r, how, color, alpha);
+    int orientation = s == OK ? read_orientation(r) : 1;
+    if (s == OK) s = picture_turn(color, orientation);
+    return s == OK && alpha && alpha->data ? picture_turn(alpha, orientation) : s;
 }
 
 status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head)

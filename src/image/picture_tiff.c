@@ -1,12 +1,12 @@
-/* What a TIFF's head says (TIFF 6.0 and BigTIFF) and libvips keeps to itself: whether its colours are multiplied by
- * their alpha. */
+/* What stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form, and libvips keeps to
+ * itself or does not find. */
 #include <stdint.h>
 #include <stdio.h>
 
 #include "base/file.h"
 #include "image/picture.h"
 
-enum { BIG_TIFF = 43, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
+enum { BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
 
 typedef struct tiff {
     FILE *file;
@@ -25,26 +25,36 @@ static uint64_t number_at(const tiff *t, uint64_t at, int bytes)
     return number;
 }
 
-static bool is_premultiplied(const tiff *t)
+/* The value of an entry that holds one number of 16 bits; 0 where there is none such. */
+static unsigned value_of(tiff *t, unsigned tag)
 {
+    t->big_endian = number_at(t, 0, 1) == 'M';
     bool wide = number_at(t, 2, 2) == BIG_TIFF;
     int offset = wide ? 8 : 4, entry = wide ? 20 : 12, counter = wide ? 8 : 2;
     uint64_t folder = number_at(t, (uint64_t)offset, offset), entries = number_at(t, folder, counter);
     for (uint64_t i = 0; i < entries && i <= UINT16_MAX; i++) {
         uint64_t at = folder + (uint64_t)counter + i * (uint64_t)entry;
-        if (number_at(t, at, 2) != EXTRA_SAMPLES) continue;
-        /* one value of 16 bits stands where otherwise its place does */
-        return number_at(t, at + 4, offset) == 1 && number_at(t, at + 4 + (uint64_t)offset, 2) == ASSOCIATED;
+        if (number_at(t, at, 2) != tag) continue;
+        if (number_at(t, at + 4, offset) != 1) return 0;
+        return (unsigned)number_at(t, at + 4 + (uint64_t)offset, 2);
     }
-    return false;
+    return 0;
 }
 
 bool picture_tiff_is_premultiplied(const char *path)
 {
     tiff t = {.file = file_open(path)};
     if (!t.file) return false;
-    t.big_endian = getc(t.file) == 'M';
-    bool premultiplied = is_premultiplied(&t);
+    unsigned extra = value_of(&t, EXTRA_SAMPLES);
     fclose(t.file);
-    return premultiplied;
+    return extra == ASSOCIATED;
+}
+
+int picture_exif_orientation(void *exif, size_t size)
+{
+    tiff t = {.file = fmemopen(exif, size, "rb")};
+    if (!t.file) return 1;
+    unsigned orientation = value_of(&t, ORIENTATION);
+    fclose(t.file);
+    return orientation >= 1 && orientation <= 8 ? (int)orientation : 1;
 }

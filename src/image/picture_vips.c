@@ -240,3 +240,37 @@ status picture_look(const char *path, picture_kind kind, picture_head *head)
 {
     return read_side_by_side(look, &(request){.path = path, .kind = kind, .head = head});
 }
+
+static status turn(VipsImage *image, img *out)
+{
+    VipsImage *made = NULL;
+    if (vips()->autorot(image, &made, NULL)) return vips_refusal(ERROR_INPUT, "turn", "a picture");
+    size_t size = 0;
+    void *samples = vips()->image_write_to_memory(made, &size);
+    int width = vips()->image_get_width(made), height = vips()->image_get_height(made);
+    vips()->g_object_unref(made);
+    if (!samples) return vips_refusal(ERROR_INPUT, "turn", "a picture");
+    status s = img_new(out, width, height, out->channels);
+    if (s == OK) memcpy(out->data, samples, size);
+    vips()->g_free(samples);
+    return s;
+}
+
+status picture_turn(img *image, int orientation)
+{
+    if (orientation == 1) return OK;
+    status s = vips_begin();
+    if (s != OK) return s;
+    size_t size = (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof *image->data;
+    VipsImage *lying = vips()->image_new_from_memory(image->data, size, image->width, image->height, image->channels,
+                                                     VIPS_FORMAT_FLOAT);
+    if (!lying) return vips_refusal(ERROR_INPUT, "turn", "a picture");
+    vips()->image_set_int(lying, VIPS_META_ORIENTATION, orientation);
+    img upright = {.channels = image->channels};
+    s = turn(lying, &upright);
+    vips()->g_object_unref(lying);
+    if (s != OK) return s;
+    img_free(image);
+    *image = upright;
+    return OK;
+}

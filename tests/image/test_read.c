@@ -177,7 +177,8 @@ static void pngs_of_every_layout_show_the_same(void **state)
     img_free(&plain);
 }
 
-static void write_png_of_gamma(const char *path, const uint8_t codes[3], double gamma)
+/* A line of three grey pixels; exif (NULL: none) stands behind them if it is late. */
+static void write_png(const char *path, const uint8_t codes[3], double gamma, uint8_t exif[26], bool late)
 {
     FILE *f = fopen(path, "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
@@ -188,8 +189,10 @@ static void write_png_of_gamma(const char *path, const uint8_t codes[3], double 
     png_set_IHDR(png, info, 3, 1, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     png_set_gAMA(png, info, gamma);
+    if (exif && !late) png_set_eXIf_1(png, info, 26, exif);
     png_write_info(png, info);
     png_write_row(png, codes);
+    if (exif && late) png_set_eXIf_1(png, info, 26, exif);
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
     assert_int_equal(fclose(f), 0);
@@ -204,7 +207,7 @@ static void the_gamma_of_a_png_is_honoured(void **state)
     } told[] = {{1, 0.2}, {1 / 1.8, 0.0551892}, {0.45455, 0.0331048}};
     for (int i = 0; i < 3; i++) {
         img color = {0}, mask = {0};
-        write_png_of_gamma(scratch_path("gamma.png"), codes, told[i].gamma);
+        write_png(scratch_path("gamma.png"), codes, told[i].gamma, NULL, false);
         assert_int_equal(img_read(scratch_path("gamma.png"), &color, NULL), OK);
         /* a file keeps five digits of its gamma: 5e-6 of 1 / 1.8 are 1.4e-6 of 0.2 to the 1.8th */
         assert_float_equal(color.data[3], told[i].light, 2e-6);
@@ -213,6 +216,23 @@ static void the_gamma_of_a_png_is_honoured(void **state)
         assert_float_equal(mask.data[1], 0.2, 1e-6);
         img_free(&color);
         img_free(&mask);
+    }
+}
+
+static void a_png_is_turned_wherever_its_exif_stands(void **state)
+{
+    (void)state;
+    static const uint8_t codes[3] = {0, 51, 255};
+    uint8_t exif[26] = "II*\0\10\0\0\0\1\0\22\1\3\0\1\0\0\0\10"; /* one entry: orientation 8 */
+    for (int late = 0; late < 2; late++) {
+        img color = {0};
+        write_png(scratch_path("turned.png"), codes, 1, exif, late);
+        assert_int_equal(img_read(scratch_path("turned.png"), &color, NULL), OK);
+        assert_int_equal(color.width, 1);
+        assert_int_equal(color.height, 3);
+        /* its first column is seen at the bottom, and its gamma is honoured, too */
+        assert_true(color.data[0] == 1 && color.data[3] == 0.2f && color.data[6] == 0);
+        img_free(&color);
     }
 }
 
@@ -712,6 +732,7 @@ int main(void)
         cmocka_unit_test(pngs_of_every_layout_show_the_same),
         cmocka_unit_test(the_gamma_of_a_png_is_honoured),
         cmocka_unit_test(exif_orientation_turns_the_picture),
+        cmocka_unit_test(a_png_is_turned_wherever_its_exif_stands),
         cmocka_unit_test(alpha_is_split_off_unchanged),
         cmocka_unit_test(colours_that_a_tiff_multiplied_by_alpha_are_divided_by_it),
         cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
