@@ -40,6 +40,8 @@ status picture_decode(const char *path, picture_kind kind, picture_colour how, i
 status picture_look(const char *path, picture_kind kind, picture_head *head);
 /* Refuses Radiance pictures that would come out in wrong colours or turned. */
 status picture_check_hdr(const char *path);
+/* Refuses TIFFs whose YCbCr would be taken for RGB. */
+status picture_check_tiff(const char *path);
 /* Whether a TIFF's colours are multiplied by its alpha, the only band beside them. */
 bool picture_tiff_is_premultiplied(const char *path);
 /* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */

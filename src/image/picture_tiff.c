@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "image/picture.h"
 
+enum { COMPRESSION = 259, JPEG = 7, PHOTOMETRIC = 262, YCBCR = 6 };
 enum { BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
 
 typedef struct tiff {
@@ -48,6 +49,16 @@ bool picture_tiff_is_premultiplied(const char *path)
     unsigned extra = value_of(&t, EXTRA_SAMPLES);
     fclose(t.file);
     return extra == ASSOCIATED;
+}
+
+status picture_check_tiff(const char *path)
+{
+    tiff t = {.file = file_open(path)};
+    if (!t.file) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    /* those of JPEG its decoder makes RGB */
+    bool ycbcr = value_of(&t, PHOTOMETRIC) == YCBCR && value_of(&t, COMPRESSION) != JPEG;
+    fclose(t.file);
+    return ycbcr ? fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path) : OK;
 }
 
 int picture_exif_orientation(void *exif, size_t size)

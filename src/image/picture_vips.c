@@ -56,7 +56,7 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out)
     VipsImage *image = NULL;
     loader *load = loader_of(kind);
     if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
-    status s = kind == PICTURE_HDR ? picture_check_hdr(path) : OK;
+    status s = kind == PICTURE_HDR ? picture_check_hdr(path) : kind == PICTURE_TIFF ? picture_check_tiff(path) : OK;
     if (s != OK) return s;
     /* what is read in sequence is not kept for the next time, when the file may be another */
     if (load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, NULL))

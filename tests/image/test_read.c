@@ -280,16 +280,19 @@ static void alpha_is_split_off_unchanged(void **state)
     img_free(&mask);
 }
 
-/* A TIFF of one line of two pixels, RGB and alpha in 32-bit floats; extra: what its alpha is. */
-static void write_tiff(const char *path, const float pixels[8], uint16_t extra)
+enum { PHOTOMETRIC_RGB = 2, PHOTOMETRIC_YCBCR = 6 };
+
+/* A TIFF of one line of two pixels, three colours and alpha in 32-bit floats; extra: what its alpha is. */
+static void write_tiff(const char *path, const float pixels[8], uint16_t extra, uint16_t photometric)
 {
     static const uint16_t LONG = 4, SHORT = 3;
     const struct {
         uint16_t tag, type;
         uint32_t count, value;
-    } entries[] = {{256, LONG, 1, 2},  {257, LONG, 1, 1},      {258, SHORT, 4, 40}, {259, SHORT, 1, 1},
-                   {262, SHORT, 1, 2}, {273, LONG, 1, 8},      {277, SHORT, 1, 4},  {278, LONG, 1, 1},
-                   {279, LONG, 1, 32}, {338, SHORT, 1, extra}, {339, SHORT, 4, 48}};
+    } entries[] = {
+        {256, LONG, 1, 2},  {257, LONG, 1, 1},  {258, SHORT, 4, 40}, {259, SHORT, 1, 1}, {262, SHORT, 1, photometric},
+        {273, LONG, 1, 8},  {277, SHORT, 1, 4}, {278, LONG, 1, 1},   {279, LONG, 1, 32}, {338, SHORT, 1, extra},
+        {339, SHORT, 4, 48}};
     static const uint16_t bits[4] = {32, 32, 32, 32}, floats[4] = {3, 3, 3, 3};
     const uint32_t folder = 56, none = 0;
     const uint16_t count = sizeof entries / sizeof *entries;
@@ -313,7 +316,7 @@ static void colours_that_a_tiff_multiplied_by_alpha_are_divided_by_it(void **sta
     for (uint16_t extra = 1; extra <= 2; extra++) { /* associated, unassociated */
         img color = {0}, alpha = {0};
         float share = extra == 1 ? 0.5f : 1;
-        write_tiff(scratch_path("floats.tif"), stored, extra);
+        write_tiff(scratch_path("floats.tif"), stored, extra, PHOTOMETRIC_RGB);
         assert_int_equal(img_read(scratch_path("floats.tif"), &color, &alpha), OK);
         for (int c = 0; c < 3; c++) {
             assert_float_equal(color.data[c], stored[c] / share, 1e-6);
@@ -551,6 +554,14 @@ static void what_is_no_picture_is_refused(void **state)
     assert_refused(scratch_path("drawing.svg"), "not a picture");
 }
 
+static void tiffs_of_luma_and_chroma_are_refused(void **state)
+{
+    (void)state;
+    static const float pixels[8] = {0.5f, 0.5f, 0.5f, 1, 0.5f, 0.5f, 0.5f, 1};
+    write_tiff(scratch_path("luma.tif"), pixels, 2, PHOTOMETRIC_YCBCR);
+    assert_refused(scratch_path("luma.tif"), "YCbCr");
+}
+
 static void put_radiance(const char *format, const char *size)
 {
     char file[256];
@@ -743,6 +754,7 @@ int main(void)
         cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(tiffs_of_luma_and_chroma_are_refused),
         cmocka_unit_test(radiance_files_of_other_colours_and_directions_are_refused),
         cmocka_unit_test(truncated_pictures_are_refused),
         cmocka_unit_test(every_thread_has_the_message_of_its_own_picture),
