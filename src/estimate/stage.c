@@ -45,6 +45,7 @@ static status crop_surface(const merlin_maps *maps, surface *out)
         img whole = img_of(from[i]);
         s = crop_take(&whole, crop_of(maps), &mask, to[i]);
     }
+    if (s == OK) surface_tidy(out); /* anybody may have edited the maps */
     return s;
 }
 

@@ -281,6 +281,29 @@ static void surroundings_without_light_are_refused(void **state)
     assert_int_equal(merlin_environment_read(f->surroundings, NAN, 0, &room), MERLIN_WRONG_USE);
 }
 
+/* Somebody's own maps, in the photograph's resolution. */
+static void normals_that_are_none_are_relit_as_some(void **state)
+{
+    fixture *f = *state;
+    const float light[3] = {0.5f, 0.3f, -0.4f}, none[] = {NAN, INFINITY, -3e38f, 3e38f};
+    merlin_environment *room;
+    merlin_image image;
+    merlin_maps edited = f->maps;
+    edited.normal = image_new(3);
+    assert_int_equal(edited.crop.side, SIDE);
+    assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
+    for (int k = 0; k < 4; k++) {
+        for (int i = 0; i < 3 * SIDE * SIDE; i++)
+            edited.normal.data[i] = none[k];
+        assert_int_equal(merlin_relight_environment(f->model, &edited, room, light, MERLIN_BY_BRDF, &image), MERLIN_OK);
+        for (int i = 0; i < 3 * SIDE * SIDE; i++)
+            assert_true(image.data[i] >= 0 && image.data[i] <= 1);
+        merlin_image_free(&image);
+    }
+    merlin_image_free(&edited.normal);
+    merlin_environment_free(room);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -292,6 +315,7 @@ int main(void)
         cmocka_unit_test(stage_outlives_its_maps_at_any_side),
         cmocka_unit_test(stage_says_what_it_misses),
         cmocka_unit_test(surroundings_without_light_are_refused),
+        cmocka_unit_test(normals_that_are_none_are_relit_as_some),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
