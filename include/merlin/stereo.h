@@ -30,7 +30,7 @@ typedef enum merlin_lighting {
 typedef struct merlin_light {
     float direction[3]; /* distant: from the object to the light. Near: where an LED points; 0, 0, 0: nowhere special */
     float position[3];  /* near: in the camera's space, any unit */
-    float intensity[3]; /* a channel each, the first alone for grey pictures; 0, 0, 0: 1 */
+    float intensity[3]; /* a channel each, the first alone for grey pictures, 1e-15 to 1e15; 0, 0, 0: 1 */
     float lobe;         /* near: the exponent of an LED's fall-off with the cosine of the angle to its direction */
 } merlin_light;
 

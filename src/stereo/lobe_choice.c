@@ -52,7 +52,7 @@ static void attempt(choice *c, double worth, bool anew)
     for (size_t i = 0; i < c->field.count; i++)
         c->field.shading[i] = pst_lobe_translate(&c->best, &c->trial, &c->kept[i]);
     c->status = anew ? pst_field_fit(&c->field, &cost) : pst_field_refine(&c->field, &cost);
-    if (c->status != OK || cost >= c->cost * (1 - worth)) return;
+    if (c->status != OK || !(cost < c->cost * (1 - worth))) return; /* nor is a cost that is no number less */
     c->cost = cost;
     c->best = c->trial;
     memcpy(c->kept, c->field.shading, bytes);

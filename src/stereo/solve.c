@@ -115,6 +115,9 @@ status pst_list_pixels(const pst_capture *c, pst_problem *p)
     return OK;
 }
 
+/* Beyond these, squares of albedos would leave the range of floats, or vanish beside what keeps a division from 0. */
+static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
+
 /* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
  * divide by zero. */
 static status list_lights(const pst_capture *c, pst_method method, pst_light *light)
@@ -126,8 +129,11 @@ static status list_lights(const pst_capture *c, pst_method method, pst_light *li
             method == PST_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
         for (int k = 0; k < 3; k++) {
             if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
-            if (!(e[k] > 0) || !isfinite(e[k]))
+            if (!(e[k] > 0))
                 return fail(ERROR_INPUT, "light %d has the intensity %g; it must be above 0", i + 1, (double)e[k]);
+            if (!(e[k] >= least_intensity && e[k] <= largest_intensity))
+                return fail(ERROR_INPUT, "light %d has the intensity %g; give all lights' in another unit, %g to %g",
+                            i + 1, (double)e[k], (double)least_intensity, (double)largest_intensity);
         }
     }
     return OK;

@@ -279,6 +279,34 @@ static void wrong_use_is_named(void **state)
     merlin_image_free(&grey);
 }
 
+/* Where squares of the albedo are no floats any more the search for a lobe found no end; strange units are fine. */
+static void lights_of_absurd_strengths_are_refused(void **state)
+{
+    (void)state;
+    static const float absurd[] = {1e-30f, 1e30f, 1e-12f, 1e12f};
+    for (int i = 0; i < 4; i++) {
+        merlin_capture *capture;
+        merlin_surface surface;
+        assert_int_equal(merlin_capture_new(NULL, NULL, &capture), MERLIN_OK);
+        for (int k = 0; k < LIGHTS; k++) {
+            merlin_light l = light_at(k);
+            merlin_image p = picture_under(l, 1);
+            l.intensity[0] *= absurd[i];
+            assert_int_equal(merlin_capture_add(capture, &p, &l), MERLIN_OK);
+            merlin_image_free(&p);
+        }
+        if (i < 2) {
+            assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_BAD_INPUT);
+            assert_says("light 1 has the intensity");
+        } else {
+            assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_OK);
+            assert_true(mean_error(&surface) < 0.5f);
+        }
+        merlin_surface_free(&surface);
+        merlin_capture_free(capture);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -288,6 +316,7 @@ int main(void)
         cmocka_unit_test(mask_says_what_is_solved),
         in_scratch(folder_becomes_a_mesh),
         cmocka_unit_test(wrong_use_is_named),
+        cmocka_unit_test(lights_of_absurd_strengths_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
