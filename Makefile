@@ -24,11 +24,13 @@ demo: build
 	@echo "the light going round:           $(OUT)/orbit/orbit.webp"
 	@echo "overview:                        $(OUT)/overview.png"
 
-# The command, libmerlin.so, its headers, the weights and the manual, under PREFIX.
+# The command, libmerlin.so, its headers, the weights and the manual, under PREFIX. In /usr/local the loader finds a new
+# library by its cache alone.
 PREFIX = /usr/local
 install: build
 	cmake --build --preset release --target libmerlin
 	cmake --install build/release --prefix $(PREFIX)
+	@if [ "$$(id -u)" = 0 ]; then ldconfig || true; fi
 
 test: setup-test
 	cmake --preset release -DBUILD_TESTING=ON
