@@ -47,7 +47,8 @@ static status lap(work *w, double *seconds)
 
 static status check_photo(const img *photo)
 {
-    if (photo->channels != 3 || !photo->data) return fail(ERROR_USAGE, "a photograph needs 3 channels");
+    if (!photo->data) return fail(ERROR_USAGE, "the photograph has no pixels");
+    if (photo->channels != 3) return fail(ERROR_USAGE, "a photograph has 3 channels, not %d", photo->channels);
     if (photo->width < LEAST_SIDE || photo->height < LEAST_SIDE)
         return fail(ERROR_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
                     photo->height, LEAST_SIDE, LEAST_SIDE);

@@ -71,8 +71,8 @@ static status check_params(const merlin_capture_params *p)
 static status take_mask(const merlin_image *mask, pst_capture *c)
 {
     if (!mask || !mask->data) return OK;
-    if (mask->channels != 1 || mask->width < 1 || mask->height < 1)
-        return fail(ERROR_USAGE, "a mask has 1 channel, not %d", mask->channels);
+    if (mask->width < 1 || mask->height < 1) return fail(ERROR_USAGE, "the mask has no pixels");
+    if (mask->channels != 1) return fail(ERROR_USAGE, "a mask has 1 channel, not %d", mask->channels);
     img from = img_of(mask);
     status s = img_copy(&c->mask, &from);
     for (size_t i = 0; s == OK && i < img_value_count(&c->mask); i++)
@@ -107,7 +107,8 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
 
 static status check_picture(const pst_capture *c, const merlin_image *p)
 {
-    if (!p->data || p->width < 1 || p->height < 1 || (p->channels != 1 && p->channels != 3))
+    if (!p->data || p->width < 1 || p->height < 1) return fail(ERROR_USAGE, "the picture has no pixels");
+    if (p->channels != 1 && p->channels != 3)
         return fail(ERROR_USAGE, "a capture's pictures have 1 or 3 channels, not %d", p->channels);
     if (c->width && (p->width != c->width || p->height != c->height))
         return fail(ERROR_USAGE, "a picture of %d x %d pixels does not fit a capture of %d x %d", p->width, p->height,

@@ -305,7 +305,9 @@ static void tiny_photographs_and_odd_parameters_are_refused(void **state)
     merlin_maps maps;
     merlin_image tiny = image_new(1, 1, 3);
     assert_int_equal(merlin_estimate(f->model, &tiny, NULL, NULL, &maps), MERLIN_BAD_INPUT);
-    merlin_image_free(&tiny);
+    merlin_image_free(&tiny); /* which empties it */
+    assert_int_equal(merlin_estimate(f->model, &tiny, NULL, NULL, &maps), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "no pixels"));
     merlin_params p = small();
     p.size = 100;
     assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_WRONG_USE);

@@ -259,6 +259,7 @@ static void wrong_use_is_named(void **state)
     assert_int_equal(merlin_capture_add(capture, &picture, &still), MERLIN_WRONG_USE);
     assert_int_equal(merlin_capture_add(capture, &two, &light), MERLIN_WRONG_USE);
     assert_int_equal(merlin_capture_add(capture, &none, &light), MERLIN_WRONG_USE);
+    assert_says("no pixels");
     assert_int_equal(merlin_capture_add(capture, &picture, &light), MERLIN_OK);
     assert_int_equal(merlin_capture_add(capture, &small, &light), MERLIN_WRONG_USE);
     assert_says("8 x 8");
