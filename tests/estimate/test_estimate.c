@@ -459,6 +459,28 @@ static void darker_photographs_are_brightened_to_the_same_maps(void **state)
     merlin_maps_free(&dark);
 }
 
+/* As of a file that counts electrons. */
+static void photographs_in_another_unit_are_exposed_for_it(void **state)
+{
+    fixture *f = *state;
+    const float units[] = {64, 4096, 65536};
+    const int count = WIDTH * HEIGHT * 3;
+    merlin_params p = small();
+    merlin_maps maps[3];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < count; i++)
+            f->photo.data[i] *= units[k];
+        assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps[k]), MERLIN_OK);
+        for (int i = 0; i < count; i++)
+            f->photo.data[i] /= units[k];
+        /* by powers of two: bit for bit */
+        assert_true(maps[k].gain * units[k] == maps[0].gain * units[0]);
+        assert_memory_equal(maps[k].albedo.data, maps[0].albedo.data, (size_t)count * sizeof(float));
+    }
+    for (int k = 0; k < 3; k++)
+        merlin_maps_free(&maps[k]);
+}
+
 static void written_maps_are_read_back(void **state)
 {
     const fixture *f = *state;
@@ -697,6 +719,7 @@ int main(void)
         cmocka_unit_test(empty_maps_are_neither_relit_nor_written),
         cmocka_unit_test(work_stops_when_told_to),
         cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
+        cmocka_unit_test(photographs_in_another_unit_are_exposed_for_it),
         cmocka_unit_test(written_maps_are_read_back),
         cmocka_unit_test(maps_of_the_farthest_exposures_are_read_back),
         cmocka_unit_test(a_folder_has_every_file_and_no_other),
