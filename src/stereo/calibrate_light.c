@@ -65,20 +65,57 @@ static blob grow(flood *f, int start)
     return b;
 }
 
-static status strongest_blob(const img *p, const ball_view *view, float level, blob *out)
+static float apart(const blob *a, const blob *b)
 {
+    return (float)hypot(a->x / a->sum - b->x / b->sum, a->y / a->sum - b->y / b->sum);
+}
+
+/* The patches of a ball that are above a level. */
+typedef struct blobs {
+    blob *at;
+    size_t count;
+} blobs;
+
+static const blob *strongest(const blobs *all)
+{
+    const blob *most = all->at;
+    for (size_t i = 1; i < all->count; i++)
+        if (all->at[i].sum > most->sum) most = &all->at[i];
+    return most;
+}
+
+/* The strongest patch's share of all that lie a good way from it and its own: panes of one lamp count as one. */
+static double share_of(const blob *b, const blobs *all, float away)
+{
+    double others = 0;
+    for (size_t i = 0; i < all->count; i++)
+        if (apart(b, &all->at[i]) > away) others += all->at[i].sum;
+    return b->sum / (b->sum + others);
+}
+
+static status list_blobs(const ball_view *view, flood *f, blobs *out)
+{
+    int w = f->left.width, h = f->left.height;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            int at = y * w + x;
+            if (!inside(view, x, y, INSIDE) || !(f->left.data[at] > f->level)) continue;
+            blob *larger = realloc(out->at, (out->count + 1) * sizeof *larger);
+            if (!larger) return fail(ERROR_MEMORY, "no memory for highlights");
+            out->at = larger;
+            out->at[out->count++] = grow(f, at);
+        }
+    return OK;
+}
+
+static status find_blobs(const img *p, const ball_view *view, float level, blobs *out)
+{
+    *out = (blobs){0};
     flood f = {.level = level};
     status s = img_copy(&f.left, p);
     if (s != OK) return s;
     f.stack = malloc((size_t)p->width * (size_t)p->height * sizeof *f.stack);
-    *out = (blob){0};
-    for (int y = 0; y < p->height && f.stack; y++)
-        for (int x = 0; x < p->width; x++) {
-            if (!inside(view, x, y, INSIDE)) continue;
-            blob b = grow(&f, y * p->width + x);
-            if (b.sum > out->sum) *out = b;
-        }
-    s = f.stack ? OK : fail(ERROR_MEMORY, "no memory for a highlight");
+    s = f.stack ? list_blobs(view, &f, out) : fail(ERROR_MEMORY, "no memory for a highlight");
     free(f.stack);
     img_free(&f.left);
     return s;
@@ -88,11 +125,20 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
 {
     static const float LEVEL = 0.5f;        /* of the peak */
     static const float LEAST_PEAK = 0.004f; /* of full scale: an 8-bit step */
+    static const float PANES = 0.2f;        /* of the radius: some 23 degrees between lights */
+    /* Noise, where the light failed or mirrors beside the picture, has 0.01 to 0.02; a second lamp as bright 0.5. */
+    static const double LEAST_SHARE = 0.55;
     float peak = brightest_inside(picture, view);
     if (!(peak > LEAST_PEAK)) return fail(ERROR_INPUT, "no highlight on the ball");
-    blob b;
-    status s = strongest_blob(picture, view, LEVEL * peak, &b);
+    blob b = {0};
+    blobs all;
+    status s = find_blobs(picture, view, LEVEL * peak, &all);
+    if (s == OK) b = *strongest(&all);
+    double share = s == OK ? share_of(&b, &all, PANES * view->circle.radius) : 0;
+    free(all.at);
     if (s != OK) return s;
+    if (share < LEAST_SHARE)
+        return fail(ERROR_INPUT, "no highlight on the ball stands out: was the light on, and the only one?");
     *highlight = (pst_circle){(float)(b.x / b.sum), (float)(b.y / b.sum), sqrtf((float)b.area / 3.14159265f)};
     if (highlight->radius > 0.5f * view->circle.radius)
         return fail(ERROR_INPUT, "what is bright covers more than a quarter of the ball: is it chrome?");

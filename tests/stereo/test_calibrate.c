@@ -1,5 +1,6 @@
 /* Balls rendered here under known lights, and the real ones where they are at hand. */
 #include "base/light_list.h"
+#include "base/rng.h"
 #include "capture_files.h"
 #include "stereo/calibrate.h"
 #include "stereo/solve.h"
@@ -168,6 +169,42 @@ static void pictures_without_a_ball_or_its_light_are_refused(void **state)
     assert_says("99.png: the ball is not lit");
 }
 
+/* As chrome, with a second lamp as bright across from it. */
+static float chrome_of_two_lamps(vec3 n, vec3 l)
+{
+    return fmaxf(chrome(n, l), chrome(n, vec3_make(-l.x, -l.y, l.z)));
+}
+
+/* The ball mirrors the surroundings alone, a little brighter here and there as noise makes it. */
+static void write_failed_flash(const char *name)
+{
+    rng r = rng_at(1, 0, 0);
+    img p;
+    assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
+    for (int k = 0; k < SIZE * SIZE; k++)
+        p.data[k] = ball_pixel(k % SIZE, k / SIZE, vec3_make(0, 0, -1), chrome) + 0.02f * rng_uniform(&r);
+    assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
+    img_free(&p);
+}
+
+static void a_highlight_that_does_not_stand_out_is_refused(void **state)
+{
+    (void)state;
+    pst_calibrate_options options = {.ball = PST_CHROME};
+    pst_calibration c;
+    write_balls(chrome, IMG_LINEAR16);
+    write_failed_flash("99.png");
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_says("99.png");
+    assert_says("no highlight on the ball stands out");
+    scratch_close(state);
+    scratch_open(state);
+    write_balls(chrome_of_two_lamps, IMG_LINEAR16);
+    write_mask();
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_says("no highlight on the ball stands out");
+}
+
 static int ascending(const void *a, const void *b)
 {
     float x = *(const float *)a, y = *(const float *)b;
@@ -274,6 +311,7 @@ int main(void)
         in_scratch(what_one_channel_clips_is_no_shading),
         in_scratch(what_was_found_is_written),
         in_scratch(pictures_without_a_ball_or_its_light_are_refused),
+        in_scratch(a_highlight_that_does_not_stand_out_is_refused),
         cmocka_unit_test(real_balls_agree_with_their_published_lights),
         in_scratch(a_real_matte_ball_comes_out_round),
     };
