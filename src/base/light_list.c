@@ -10,7 +10,7 @@
 #include "base/plain_locale.h"
 
 enum { LINE_MAX_LENGTH = 1024, FILE_MAX_SIZE = 1 << 22 };
-static const float LARGEST = 1000.0f;
+static const float LARGEST = 1e6f; /* a kilometre of millimetres, squared well within a float */
 
 typedef struct reader {
     const char *text, *end, *where;

@@ -27,7 +27,7 @@ typedef struct light_list {
     size_t count;
 } light_list;
 
-/* Refuses values that are no numbers, not finite or beyond ±1000, a count that does not fit, no lights and more than
+/* Refuses values that are no numbers, not finite or beyond ±1e6, a count that does not fit, no lights and more than
  * LIGHT_LIST_MAX; messages carry the line's number. */
 status light_list_read(const char *path, light_list *out);
 /* The same from bytes (need not end in a zero); `where` is put in front of messages. */

@@ -133,7 +133,17 @@ static void values_that_are_no_finite_numbers_are_refused(void **state)
     assert_refused("0 0 1e99\n", "finite");
     assert_refused("0 0 left\n", "left");
     assert_refused("0 0 1x\n", "1x");
-    assert_refused("0 0 5000\n", "range");
+    assert_refused("0 0 5e6\n", "range");
+}
+
+static void positions_may_be_in_millimetres(void **state)
+{
+    (void)state;
+    light_list lights;
+    assert_int_equal(parse("0 0 0\n-1262.5 850 -1400\n", &lights), OK);
+    assert_float_equal(lights.at[1].x, -1262.5, 0);
+    assert_float_equal(lights.at[1].z, -1400, 0);
+    light_list_free(&lights);
 }
 
 static void lines_of_another_shape_are_refused(void **state)
@@ -204,6 +214,7 @@ int main(void)
         cmocka_unit_test(a_mark_of_windows_before_the_text_is_skipped),
         cmocka_unit_test(a_list_may_have_one_light),
         cmocka_unit_test(values_that_are_no_finite_numbers_are_refused),
+        cmocka_unit_test(positions_may_be_in_millimetres),
         cmocka_unit_test(lines_of_another_shape_are_refused),
         cmocka_unit_test(counts_that_do_not_fit_are_refused),
         cmocka_unit_test(empty_lists_are_refused),
