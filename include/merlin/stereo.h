@@ -71,7 +71,7 @@ void merlin_capture_free(merlin_capture *capture);
 /* ---- the surface ---- */
 
 typedef enum merlin_stereo_method {
-    MERLIN_STEREO_AUTO,         /* by what is known of the lights, and their number */
+    MERLIN_STEREO_AUTO,         /* by what is known of the lights: near, robust, semi or uncalibrated */
     MERLIN_STEREO_LS,           /* distant: Lambertian least squares (Woodham 1980) without shadows and saturation */
     MERLIN_STEREO_ROBUST,       /* distant: for gloss and cast shadows */
     MERLIN_STEREO_NEAR,         /* near: depth and normals by turns */

@@ -68,9 +68,7 @@ static pst_method choose(const pst_capture *c)
 {
     if (c->lighting == PST_UNKNOWN_LIGHT) return PST_UNCALIBRATED;
     if (c->lighting == PST_NEAR) return PST_NEAR_LIGHTS;
-    if (!c->intensities_known) return PST_SEMI;
-    /* with fewer no observation can be spared as an outlier */
-    return c->count < 8 ? PST_LS : PST_ROBUST;
+    return c->intensities_known ? PST_ROBUST : PST_SEMI;
 }
 
 static status check_method(const pst_capture *c, pst_method m)

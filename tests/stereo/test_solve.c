@@ -186,6 +186,28 @@ static void robust_on_few_poor_lights_is_no_worse_than_least_squares(void **stat
         }
 }
 
+/* Shadow takes some of few lights from many pixels; what the others leave open, that it is shadow tells. Four lights
+ * are too few to tell a strong highlight. */
+static void few_lights_are_left_to_robust(void **state)
+{
+    (void)state;
+    for (int count = 3; count <= 7; count++) {
+        relief r = glossy;
+        r.lights = count;
+        if (count <= 4) r.specular = 0.2f;
+        pst_capture c;
+        relief_capture(&r, &c);
+        pst_surface s;
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
+        assert_int_equal(s.method, PST_ROBUST);
+        double ls = solve_angle(&c, PST_LS), found = mean_angle(&c, &s.normal);
+        print_message("%d lights, gloss of %.1f: ls %.2f, auto %.2f degrees\n", count, (double)r.specular, ls, found);
+        assert_true(found < ls);
+        pst_surface_free(&s);
+        capture_drop(&c);
+    }
+}
+
 static void a_raised_black_level_is_found(void **state)
 {
     (void)state;
@@ -470,6 +492,7 @@ int main(void)
         cmocka_unit_test(least_squares_does_not_mind_which_channel_is_bright),
         cmocka_unit_test(robust_sees_through_highlights_and_cast_shadows),
         cmocka_unit_test(robust_on_few_poor_lights_is_no_worse_than_least_squares),
+        cmocka_unit_test(few_lights_are_left_to_robust),
         cmocka_unit_test(a_raised_black_level_is_found),
         cmocka_unit_test(lights_of_unknown_strength_are_found_despite_highlights),
         cmocka_unit_test(strengths_about_a_flat_object_are_unsure_unless_equal),
