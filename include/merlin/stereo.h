@@ -44,12 +44,13 @@ typedef struct merlin_capture_files {
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
     int near_lights;     /* 1: lights.txt holds positions */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
-    int linear;          /* 1: 8-bit pictures are linear, not sRGB */
+    int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
     float field_of_view; /* horizontal, degrees; 0: not known */
     float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known */
 } merlin_capture_files;
 
-/* PNG, JPEG, TIFF or EXR pictures and the lights they were taken under. files NULL: the usual case. */
+/* PNG, JPEG, TIFF or EXR pictures and the lights they were taken under; 16-bit ones are linear unless a colour profile
+ * says otherwise. files NULL: the usual case. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 
 /* What holds for all pictures that are added from memory. */

@@ -29,6 +29,7 @@ typedef enum picture_kind {
 typedef struct picture_head {
     int width, height, bits; /* as stored: an orientation may exchange width and height */
     bool plain;              /* of PNG: without colour profile */
+    bool profile;            /* a colour profile says what the samples mean */
 } picture_head;
 
 /* A PNG as most are, head->plain; any other is left to picture_decode. color, alpha as below: either may be NULL. */

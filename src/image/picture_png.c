@@ -146,7 +146,7 @@ status picture_read_png(const char *path, picture_colour how, img *color, img *a
     reader r;
     status s = reader_open(&r, path) ? OK : fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
     if (s == OK) s = read_open(&r, path, how, color, alpha);
-    *head = (picture_head){r.width, r.height, r.wide ? 16 : 8, r.plain};
+    *head = (picture_head){.width = r.width, .height = r.height, .bits = r.wide ? 16 : 8, .plain = r.plain};
     reader_free(&r);
     return s;
 }

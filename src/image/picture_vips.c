@@ -206,7 +206,8 @@ static status look(const request *r)
                               .height = vips()->image_get_height(image),
                               .bits = format == VIPS_FORMAT_UCHAR    ? 8
                                       : format == VIPS_FORMAT_USHORT ? 16
-                                                                     : 32};
+                                                                     : 32,
+                              .profile = vips()->image_get_typeof(image, VIPS_META_ICC_NAME) != 0};
     vips()->g_object_unref(image);
     return OK;
 }

@@ -168,12 +168,13 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
-static picture_colour colour_of_samples(int bits, bool decode_8_bit)
+/* Without a profile 16 bits are a measurement's; with one they were developed by a program that makes photographs. */
+static picture_colour colour_of_samples(const picture_head *head, bool decode)
 {
-    return bits == 8 && decode_8_bit ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
+    return decode && (head->bits == 8 || head->profile) ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
 }
 
-static status read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
+static status read_samples(const char *path, bool decode, img *color, int *bits)
 {
     picture_kind kind;
     picture_head head;
@@ -181,15 +182,15 @@ static status read_samples(const char *path, bool decode_8_bit, img *color, int 
     if (s == OK) s = look_into(path, kind, &head);
     if (s != OK) return s;
     *bits = head.bits;
-    picture_colour how = colour_of_samples(head.bits, decode_8_bit);
+    picture_colour how = colour_of_samples(&head, decode);
     if (kind == PICTURE_EXR) return picture_read_exr(path, color, NULL);
     return head.plain ? picture_read_png(path, how, color, NULL, &head) : picture_decode(path, kind, how, color, NULL);
 }
 
-status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits)
+status img_read_samples(const char *path, bool decode, img *color, int *bits)
 {
     *color = (img){0};
-    status s = read_samples(path, decode_8_bit, color, bits);
+    status s = read_samples(path, decode, color, bits);
     if (s == OK) s = check_finite(path, color);
     if (s != OK) img_free(color);
     return s;

@@ -20,9 +20,10 @@ status img_read_size(const char *path, int *width, int *height);
 /* img_read of an environment, a latitude-longitude picture: twice as wide as high and 8×4 pixels at least. Mirror
  * balls' and cubes' pictures, which would be bent around the object, are refused. */
 status img_read_latlong(const char *path, img *color);
-/* A measurement rather than a photograph: 1 or 3 channels as the file has them, 16-bit and float samples as they are
- * and 8-bit samples decoded from sRGB only if asked. *bits: 8, 16 or 32 (floats). */
-status img_read_samples(const char *path, bool decode_8_bit, img *color, int *bits);
+/* A measurement rather than a photograph: 1 or 3 channels as the file has them. Decoded to linear only if asked are
+ * samples that were encoded: 8-bit ones, from sRGB, and what has a colour profile; others are as they are. *bits: 8, 16
+ * or 32 (floats). */
+status img_read_samples(const char *path, bool decode, img *color, int *bits);
 /* One channel in [0, 1] without colour decoding: a mask. */
 status img_read_mask(const char *path, img *mask);
 

@@ -41,8 +41,9 @@ pst_camera pst_camera_of(int width, int height, float field_of_view);
 /* A value from here on, as a share of full scale, may be less than the light was. */
 #define PST_SATURATED 0.98f
 
-/* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (sRGB decoded for 8-bit sources, ambient
- * subtracted; division by light intensities is left to the solvers so that saturation stays visible at 65535). */
+/* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (8-bit sources and those with a profile
+ * decoded, ambient subtracted; division by light intensities is left to the solvers so that saturation stays visible at
+ * 65535). */
 typedef struct pst_capture {
     int width, height, channels, count; /* channels 1 or 3 */
     uint16_t **picture;                 /* count planes of height × width × channels */

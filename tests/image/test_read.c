@@ -370,6 +370,34 @@ static void embedded_profile_is_honoured(void **state)
     img_free(&untagged);
 }
 
+/* A measurement's 16 bits are linear; those that an editor developed say by their profile that they are not. */
+static void samples_of_16_bits_mean_what_their_profile_says(void **state)
+{
+    (void)state;
+    uint16_t codes[2][3] = {{40000, 20000, 10000}, {32768, 32768, 32768}};
+    const char *const names[] = {"bare.png", "developed.png", "developed.tif"};
+    for (int i = 0; i < 3; i++) {
+        VipsImage *picture = fixture(codes, 2, 1, 3, VIPS_INTERPRETATION_RGB16), *developed = NULL;
+        int failed = i ? vips_icc_transform(picture, &developed, "srgb", "input_profile", "srgb", "depth", 16, NULL)
+                       : vips_copy(picture, &developed, NULL);
+        g_object_unref(picture);
+        assert_int_equal(failed, 0);
+        const char *path = save(developed, names[i]);
+        for (int decode = 0; decode < 2; decode++) {
+            img samples;
+            int bits;
+            assert_int_equal(img_read_samples(path, decode, &samples, &bits), OK);
+            assert_int_equal(bits, 16);
+            for (int c = 0; c < 3; c++) {
+                double value = codes[0][c] / 65535.0;
+                /* to the profile's space and back, each in 16 bits and by tables */
+                assert_float_equal(samples.data[c], i && decode ? exact(value) : value, 0.002);
+            }
+            img_free(&samples);
+        }
+    }
+}
+
 static void radiance_files_are_linear(void **state)
 {
     (void)state;
@@ -748,6 +776,7 @@ int main(void)
         cmocka_unit_test(colours_that_a_tiff_multiplied_by_alpha_are_divided_by_it),
         cmocka_unit_test(grey_with_alpha_becomes_colour_and_alpha),
         cmocka_unit_test(embedded_profile_is_honoured),
+        cmocka_unit_test(samples_of_16_bits_mean_what_their_profile_says),
         cmocka_unit_test(radiance_files_are_linear),
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
         cmocka_unit_test(an_exr_is_its_first_part_that_is_a_picture),
