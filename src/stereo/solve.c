@@ -47,6 +47,19 @@ status pst_check_directions(const pst_light *light, int count)
     return OK;
 }
 
+/* Listed with z away from the camera, lights would be taken as they are, for a surface that hardly faces any. */
+static status check_known_directions(const pst_light *light, int count)
+{
+    int behind = 0;
+    for (int i = 0; i < count; i++)
+        behind += light[i].direction.z <= 0;
+    if (behind == count)
+        return fail(ERROR_INPUT,
+                    "all %d lights stand behind the object; z of a direction to a light points toward the camera",
+                    count);
+    return pst_check_directions(light, count);
+}
+
 /* From any point, lights on a line have their directions in a plane, too. */
 static status check_positions(const pst_light *light, int count)
 {
@@ -88,7 +101,7 @@ static status check_method(const pst_capture *c, pst_method m)
         return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
                     pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
     if (m == PST_NEAR_LIGHTS) return check_positions(c->light, c->count);
-    return distant ? pst_check_directions(c->light, c->count) : OK;
+    return distant ? check_known_directions(c->light, c->count) : OK;
 }
 
 static status check_mask(const pst_capture *c)

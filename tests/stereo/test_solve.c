@@ -464,6 +464,9 @@ static void impossible_captures_are_refused_in_one_line(void **state)
     refused(&c, PST_ROBUST, "light 4");
     c.light[3].intensity[0] = kept;
     for (int k = 0; k < c.count; k++)
+        c.light[k].direction.z *= -1;
+    refused(&c, PST_ROBUST, "z of a direction to a light points toward the camera");
+    for (int k = 0; k < c.count; k++)
         c.light[k].direction = vec3_normalize(vec3_make((float)k, 0, 5));
     refused(&c, PST_ROBUST, "one plane");
     c.lighting = PST_UNKNOWN_LIGHT;
