@@ -83,7 +83,7 @@ static status outline_picture(const img *brightest, img *out)
 }
 
 static status find_circle(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
-                          pst_calibration *out)
+                          pst_calibration *out, vec3 *center)
 {
     char *mask;
     status s = pst_find_mask(folder, options->mask, &mask);
@@ -94,6 +94,7 @@ static status find_circle(const char *folder, const pst_calibrate_options *optio
     s = mask ? img_copy(&picture, &c->mask) : outline_picture(&out->brightest, &picture);
     if (s == OK && mask) s = smooth(&picture);
     if (s == OK) s = ball_find(&picture, &out->circle, &found);
+    if (s == OK && found && c->camera.focal > 0) s = ball_center(&picture, &c->camera, &out->circle, center);
     if (s == OK && !found && mask) s = fail(ERROR_INPUT, "the mask %s is not round", mask);
     if (s == OK && !found)
         s = fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline with --mask", folder);
@@ -114,9 +115,8 @@ static status find_constant(const pst_capture *c, img *out)
     return s;
 }
 
-static status find_light(const pst_capture *c, int i, const img *constant, pst_calibration *out)
+static status find_light(const pst_capture *c, int i, const img *constant, const ball_view *view, pst_calibration *out)
 {
-    ball_view view = {out->circle, c->camera};
     img picture;
     status s = img_new(&picture, c->width, c->height, 1);
     if (s != OK) return s;
@@ -125,8 +125,8 @@ static status find_light(const pst_capture *c, int i, const img *constant, pst_c
         picture.data[p] =
             out->ball == PST_CHROME ? grey(pixel, c->channels) - constant->data[p] : shading(pixel, c->channels);
     }
-    s = out->ball == PST_CHROME ? ball_mirror_light(&picture, &view, &out->highlight[i], &out->direction[i])
-                                : ball_shading_light(&picture, &view, &out->residual[i], &out->direction[i]);
+    s = out->ball == PST_CHROME ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
+                                : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
     img_free(&picture);
     if (s == ERROR_INPUT && !out->from_mask)
         s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
@@ -151,12 +151,14 @@ static status reserve(pst_capture *c, pst_calibration *out)
 static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
 {
     img constant = {0};
+    ball_view view = {.camera = c->camera};
     status s = find_brightest(c, &out->brightest);
-    if (s == OK) s = find_circle(folder, options, c, out);
+    if (s == OK) s = find_circle(folder, options, c, out, &view.center);
+    view.circle = out->circle;
     if (s == OK) s = find_constant(c, &constant);
     if (s == OK) s = reserve(c, out);
     for (int i = 0; i < c->count && s == OK; i++)
-        s = find_light(c, i, &constant, out);
+        s = find_light(c, i, &constant, &view, out);
     img_free(&constant);
     return s;
 }

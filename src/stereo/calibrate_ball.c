@@ -145,6 +145,12 @@ static void refine_once(const edges *e, float width, pst_circle *c)
     c->radius += (float)((k * v[0] + q * v[1] + r * v[2]) / det);
 }
 
+static void refine(const edges *e, pst_circle *c)
+{
+    for (int i = 0; i < REFINEMENTS; i++)
+        refine_once(e, i < REFINEMENTS / 2 ? 2 * NEAR_CIRCLE : NEAR_CIRCLE, c);
+}
+
 static float sample_circles(const edges *e, const img *picture, pst_circle *best)
 {
     float most = 0, largest = (float)(picture->width > picture->height ? picture->width : picture->height);
@@ -170,8 +176,7 @@ status ball_find(const img *picture, pst_circle *circle, bool *found)
     status s = find_edges(picture, &e);
     if (s != OK) return s;
     if (e.count > 8 && sample_circles(&e, picture, circle) > 0.5f * LEAST_SEEN) {
-        for (int i = 0; i < REFINEMENTS; i++)
-            refine_once(&e, i < REFINEMENTS / 2 ? 2 * NEAR_CIRCLE : NEAR_CIRCLE, circle);
+        refine(&e, circle);
         *found = share_seen(&e, circle) >= LEAST_SEEN;
     }
     free(e.at);
@@ -192,14 +197,82 @@ static vec3 pixel_ray(const pst_camera *k, float x, float y)
     return vec3_normalize(vec3_make((x - k->center_x) / k->focal, (k->center_y - y) / k->focal, -1));
 }
 
-/* A ball of radius 1 whose distance gives the circle's size on the axis. */
+/* A camera in the same place that looks along another axis. */
+typedef struct turn {
+    const pst_camera *camera;
+    vec3 right, up, back;
+} turn;
+
+static turn turn_to(const pst_camera *camera, vec3 axis)
+{
+    vec3 back = vec3_scale(axis, -1), right = vec3_normalize(vec3_cross(vec3_make(0, 1, 0), back));
+    return (turn){camera, right, vec3_cross(back, right), back};
+}
+
+static vec3 turn_back(const turn *t, vec3 v)
+{
+    return vec3_fma(vec3_fma(vec3_scale(t->back, v.z), v.y, t->up), v.x, t->right);
+}
+
+static void turned_point(const turn *t, float *x, float *y)
+{
+    vec3 ray = pixel_ray(t->camera, *x, *y);
+    float scale = t->camera->focal / -vec3_dot(ray, t->back);
+    *x = t->camera->center_x + scale * vec3_dot(ray, t->right);
+    *y = t->camera->center_y - scale * vec3_dot(ray, t->up);
+}
+
+static edge turned_edge(const turn *t, const edge *from)
+{
+    edge e = *from;
+    float x = e.x + e.nx, y = e.y + e.ny;
+    turned_point(t, &e.x, &e.y);
+    turned_point(t, &x, &y);
+    float length = hypotf(x - e.x, y - e.y);
+    e.nx = (x - e.x) / length;
+    e.ny = (y - e.y) / length;
+    return e;
+}
+
+/* Beside the axis the outline is an ellipse, and not about the ball's center; a camera turned to that sees a circle. */
+static vec3 center_of(const edges *e, edges *turned, const pst_camera *camera, const pst_circle *circle)
+{
+    enum { ROUNDS = 4 };
+    vec3 axis = pixel_ray(camera, circle->x, circle->y);
+    float radius = -axis.z * circle->radius;
+    for (int i = 0; i < ROUNDS; i++) {
+        turn t = turn_to(camera, axis);
+        for (turned->count = 0; turned->count < e->count; turned->count++)
+            turned->at[turned->count] = turned_edge(&t, &e->at[turned->count]);
+        pst_circle seen = {camera->center_x, camera->center_y, radius};
+        refine(turned, &seen);
+        axis = turn_back(&t, pixel_ray(camera, seen.x, seen.y));
+        radius = seen.radius;
+    }
+    return vec3_scale(axis, hypotf(camera->focal, radius) / radius);
+}
+
+status ball_center(const img *picture, const pst_camera *camera, const pst_circle *circle, vec3 *center)
+{
+    edges e;
+    status s = find_edges(picture, &e);
+    if (s != OK) return s;
+    edges turned = {malloc(MOST_EDGES * sizeof *turned.at), 0};
+    if (turned.at)
+        *center = center_of(&e, &turned, camera, circle);
+    else
+        s = fail(ERROR_MEMORY, "no memory for edges");
+    free(turned.at);
+    free(e.at);
+    return s;
+}
+
 bool ball_point(const ball_view *view, float x, float y, vec3 *normal, vec3 *to_camera)
 {
     const pst_circle *c = &view->circle;
     if (!(view->camera.focal > 0)) return orthographic_point(c, x, y, normal, to_camera);
-    float distance = hypotf(view->camera.focal, c->radius) / c->radius;
-    vec3 center = vec3_scale(pixel_ray(&view->camera, c->x, c->y), distance), ray = pixel_ray(&view->camera, x, y);
-    float along = vec3_dot(center, ray), rest = along * along - distance * distance + 1;
+    vec3 center = view->center, ray = pixel_ray(&view->camera, x, y);
+    float along = vec3_dot(center, ray), rest = along * along - vec3_dot(center, center) + 1;
     if (!(rest > 0)) return false;
     *normal = vec3_normalize(vec3_sub(vec3_scale(ray, along - sqrtf(rest)), center));
     *to_camera = vec3_scale(ray, -1);

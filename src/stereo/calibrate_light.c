@@ -16,8 +16,8 @@ typedef struct blob {
 
 static bool inside(const ball_view *view, int x, int y, float share)
 {
-    const pst_circle *c = &view->circle;
-    return hypotf((float)x + 0.5f - c->x, (float)y + 0.5f - c->y) < share * c->radius;
+    vec3 n, v;
+    return ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v) && vec3_dot(n, v) > sqrtf(1 - share * share);
 }
 
 static float brightest_inside(const img *p, const ball_view *view)

@@ -11,7 +11,11 @@ status ball_find(const img *picture, pst_circle *circle, bool *found);
 typedef struct ball_view {
     pst_circle circle;
     pst_camera camera;
+    vec3 center; /* of a ball of radius 1, in the space of a camera that is near */
 } ball_view;
+
+/* The center of the ball that a circle was found of, from the same picture; camera: near. */
+status ball_center(const img *picture, const pst_camera *camera, const pst_circle *circle, vec3 *center);
 
 /* The unit normal of the ball and the unit direction to the camera at a pixel position; false beside the ball. */
 bool ball_point(const ball_view *view, float x, float y, vec3 *normal, vec3 *to_camera);

@@ -123,6 +123,48 @@ static void what_one_channel_clips_is_no_shading(void **state)
     assert_lights_found(PST_MATTE, true, 0.5f, 2);
 }
 
+/* A matte ball in the corner of a wide picture, where it looks like an egg: 1.06 times as long as wide. */
+static float corner_pixel(const pst_camera *camera, float x, float y, vec3 l)
+{
+    vec3 center = vec3_scale(vec3_normalize(vec3_make(-0.29f, 0.26f, -1)), 8);
+    vec3 ray =
+        vec3_normalize(vec3_make((x - camera->center_x) / camera->focal, (camera->center_y - y) / camera->focal, -1));
+    float along = vec3_dot(center, ray), rest = along * along - vec3_dot(center, center) + 1;
+    if (!(rest > 0)) return 0.02f;
+    vec3 n = vec3_sub(vec3_scale(ray, along - sqrtf(rest)), center);
+    return 0.6f * fmaxf(vec3_dot(n, l), 0);
+}
+
+static void a_ball_beside_the_axis_tells_its_lights(void **state)
+{
+    (void)state;
+    enum { SIDE = 300 };
+    const pst_camera camera = pst_camera_of(SIDE, SIDE, 50);
+    img p;
+    assert_int_equal(img_new(&p, SIDE, SIDE, 1), OK);
+    for (int i = 0; i < LIGHTS; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%02d.png", i);
+        for (int k = 0; k < SIDE * SIDE; k++) {
+            p.data[k] = 0;
+            for (int j = 0; j < 16; j++)
+                p.data[k] += corner_pixel(&camera, (float)(k % SIDE) + (0.5f + (float)(j % 4)) / 4,
+                                          (float)(k / SIDE) + (0.5f + (float)(j / 4)) / 4, light(i)) /
+                             16;
+        }
+        assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
+    }
+    img_free(&p);
+    pst_calibration c;
+    assert_int_equal(
+        pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = PST_MATTE, .field_of_view = 50}, &c), OK);
+    for (int i = 0; i < LIGHTS; i++)
+        /* half a pixel of its radius of 40; 2 to 4 as a circle about the ball's center */
+        if (degrees(c.direction[i], light(i)) > 0.7f)
+            fail_msg("light %d is off by %.2f degrees", i, (double)degrees(c.direction[i], light(i)));
+    pst_calibration_free(&c);
+}
+
 static void what_was_found_is_written(void **state)
 {
     (void)state;
@@ -309,6 +351,7 @@ int main(void)
         in_scratch(a_chrome_ball_tells_its_lights),
         in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
         in_scratch(what_one_channel_clips_is_no_shading),
+        in_scratch(a_ball_beside_the_axis_tells_its_lights),
         in_scratch(what_was_found_is_written),
         in_scratch(pictures_without_a_ball_or_its_light_are_refused),
         in_scratch(a_highlight_that_does_not_stand_out_is_refused),
