@@ -115,6 +115,39 @@ static status check_mask(const pst_capture *c)
     return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
 }
 
+/* Mean over the object, as if the light were of intensity 1. */
+static double mean_seen(const pst_problem *p, int k)
+{
+    const pst_capture *c = p->capture;
+    size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels, inside = 0;
+    double sum = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!(c->mask.data[i] > 0.5f)) continue;
+        for (size_t ch = 0; ch < channels; ch++)
+            sum += (double)c->picture[k][i * channels + ch] / (double)p->light[k].intensity[ch];
+        inside++;
+    }
+    return sum / (double)inside;
+}
+
+/* Few pictures cannot spare one: a flash that failed would be taken for shadow everywhere, and normals turned away from
+ * its light. */
+static status check_lit(const pst_problem *p)
+{
+    enum { FEW = 8 };
+    static const double BLACK = 0.02; /* of the brightest picture; noise alone is less, the least of lights more */
+    const pst_capture *c = p->capture;
+    if (c->count >= FEW) return OK;
+    double mean[FEW], most = 0;
+    for (int k = 0; k < c->count; k++)
+        most = fmax(most, mean[k] = mean_seen(p, k));
+    for (int k = 0; k < c->count; k++)
+        if (mean[k] < BLACK * most)
+            return fail(ERROR_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out", k + 1,
+                        c->name ? ", " : "", c->name ? c->name[k] : "");
+    return OK;
+}
+
 status pst_list_pixels(const pst_capture *c, pst_problem *p)
 {
     size_t size = (size_t)c->width * (size_t)c->height, n = 0;
@@ -199,6 +232,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .iterations = options->iterations};
     s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
+    if (s == OK && out->method != PST_SEMI && out->method != PST_UNCALIBRATED) s = check_lit(&p);
     if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);

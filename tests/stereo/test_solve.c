@@ -476,6 +476,26 @@ static void impossible_captures_are_refused_in_one_line(void **state)
     capture_drop(&c);
 }
 
+static void one_black_picture_of_few_is_refused(void **state)
+{
+    (void)state;
+    for (int count = 4; count <= 8; count += 4) {
+        relief r = lambert;
+        r.lights = count;
+        pst_capture c;
+        relief_capture(&r, &c);
+        for (int i = 0; i < c.width * c.height * c.channels; i++)
+            c.picture[2][i] = (uint16_t)(i * 7 % 200); /* noise */
+        if (count < 8) {
+            refused(&c, PST_LS, "picture 3");
+            refused(&c, PST_AUTO, "is black");
+        } else {
+            assert_true(solve_angle(&c, PST_AUTO) < 1);
+        }
+        capture_drop(&c);
+    }
+}
+
 static void methods_are_named(void **state)
 {
     (void)state;
@@ -506,6 +526,7 @@ int main(void)
         cmocka_unit_test(unknown_lights_of_unequal_strength_need_one_albedo),
         cmocka_unit_test(darkness_and_saturation_leave_numbers),
         cmocka_unit_test(impossible_captures_are_refused_in_one_line),
+        cmocka_unit_test(one_black_picture_of_few_is_refused),
         cmocka_unit_test(methods_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
