@@ -80,8 +80,8 @@ const char *merlin_model_name(const merlin_model *model); /* as long as the mode
 typedef struct merlin_params {
     int size;          /* side of the square the network sees: a multiple of 32, from 64 to 1024; trained at 256 */
     int views;         /* in how many of the square's eight orientations the network sees it; the mean is taken */
-    int auto_exposure; /* 1: bring a photograph that is too dark (up to 64 times) or too bright (in another unit, up to
-                        * a million times) to the brightness of the training data */
+    int auto_exposure; /* 1: bring a photograph that is too dark or too bright, up to a million times (floats may be in
+                        * any unit), to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
 } merlin_params;

@@ -4,15 +4,13 @@
 
 #include "image/color.h"
 
-enum { BINS = 1408 };
-/* Luminance from 2^-24 to 2^20, 32 bins a stop. */
+enum { BINS = 1536 };
+/* Luminance from 2^-24 to 2^24, 32 bins a stop. */
 static const float LOWEST_STOP = -24.0f, BINS_PER_STOP = 32.0f;
 static const float PERCENTILE = 0.95f;
 /* The span of that percentile in the training data: its 10th percentile over samples, and what the brightest white
  * leaves of its 90th. */
 static const float DARK_END = 0.34f, BRIGHT_END = 2.2f;
-/* The dark of a photograph is noise beyond this; large values are only another unit's. */
-static const float MOST_BRIGHTENED = 64.0f;
 
 static float bright_luminance(const img *color, const img *mask)
 {
@@ -35,7 +33,8 @@ float exposure_gain(const img *color, const img *mask)
     float bright = EXPOSURE_WHITE * bright_luminance(color, mask), change = 1;
     if (bright > 1e-6f && bright < DARK_END) change = DARK_END / bright;
     if (bright > BRIGHT_END) change = BRIGHT_END / bright;
-    return fmaxf(EXPOSURE_WHITE * fminf(change, MOST_BRIGHTENED), exposure_from_ev(-EXPOSURE_MOST_EV));
+    float most = exp2f(EXPOSURE_MOST_EV);
+    return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / most), most);
 }
 
 float exposure_white(const img *photo, float gain)

@@ -15,8 +15,8 @@
 /* The middle of the training data's whites, e^0.45. */
 #define EXPOSURE_WHITE 1.568f
 
-/* Radiance per value. color: 3 channels, linear; mask: 1 channel, the object from 0.5 on. A black photograph gets
- * EXPOSURE_WHITE, no other more than 64 times that, nor less than a sound exposure has. */
+/* Radiance per value. color: 3 channels, linear; mask: 1 channel, the object from 0.5 on. Within EXPOSURE_MOST_EV stops
+ * of EXPOSURE_WHITE, which a black photograph gets: floats may be in any unit, candela a square metre, too. */
 float exposure_gain(const img *color, const img *mask);
 
 /* The radiance that becomes 1 in new pictures of a photograph's object: the photograph's own white, unless it has
