@@ -41,19 +41,34 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     return 0;
 }
 
+/* Of maps and samples, whose colour is not times it. */
+static const char maps_mask[] = "mask.A";
+
 /* The channel that says where there is anything, but for that of the colour itself; false if none. A layer may have its
- * own, mask.A is that of maps and samples. */
+ * own. */
 static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha)
 {
     channel_name own;
     snprintf(own, sizeof own, "%.*sA", (int)strlen(colour) - 1, colour);
-    const char *const known[] = {own, "A", "mask.A"};
+    const char *const known[] = {own, "A", maps_mask};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         if (!exr_has_channel(f, known[i]) || strcmp(colour, known[i]) == 0) continue;
         snprintf(alpha, NAME_SIZE, "%s", known[i]);
         return true;
     }
     return false;
+}
+
+/* By OpenEXR's convention colour is what is seen over black: times alpha. Here it is the object's own, as in the other
+ * kinds. */
+static void divide_by_alpha(const img *alpha, img *color)
+{
+    const float least = 1e-6f; /* less is nothing, and what is divided by it would be noise */
+    size_t count = (size_t)color->width * (size_t)color->height * (size_t)color->channels;
+    for (size_t i = 0; i < count; i++) {
+        float cover = alpha->data[i / (size_t)color->channels];
+        if (cover > least && cover < 1) color->data[i] /= cover;
+    }
 }
 
 /* Opens the first part that has a picture. */
@@ -83,7 +98,9 @@ static status read_channels(exr_file *f, channel_name names[3], int channels, im
     for (int c = 0; c < channels; c++)
         targets[c] = (exr_target){names[c], color->data + c, channels};
     if (alpha && alpha->data) targets[channels++] = (exr_target){opacity, alpha->data, 1};
-    return exr_read(f, targets, (size_t)channels);
+    s = exr_read(f, targets, (size_t)channels);
+    if (s == OK && alpha && alpha->data && strcmp(opacity, maps_mask) != 0) divide_by_alpha(alpha, color);
+    return s;
 }
 
 status picture_look_exr(const char *path, picture_head *head)

@@ -444,15 +444,16 @@ static void exr_pictures_are_found_by_their_channels(void **state)
                                {"mask.A", picture.data + 1, 1, false}};
     assert_int_equal(exr_write(scratch_path("own.exr"), 5, 3, own, 5, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("own.exr"), &color, &alpha), OK);
-    assert_memory_equal(color.data, picture.data, 45 * sizeof(float));
     assert_non_null(alpha.data);
     assert_true(alpha.data[3] == picture.data[3]);
+    for (int i = 0; i < 45; i++) /* as below */
+        assert_true(color.data[i] == picture.data[i] / (i < 3 || i >= 24 ? 1 : picture.data[i / 3]));
     img_free(&color);
     img_free(&alpha);
     const exr_channel grey[] = {{"Y", picture.data, 1, false}, {"A", picture.data, 1, false}};
     assert_int_equal(exr_write(scratch_path("grey.exr"), 5, 3, grey, 2, NULL, 0), OK);
     assert_int_equal(img_read(scratch_path("grey.exr"), &color, &alpha), OK);
-    assert_true(color.data[3] == picture.data[1] && color.data[5] == picture.data[1]);
+    assert_true(color.data[27] == picture.data[9] && color.data[29] == picture.data[9]);
     assert_true(alpha.data[3] == picture.data[3] && alpha.data[14] == 1);
     img_free(&color);
     img_free(&alpha);
@@ -508,11 +509,33 @@ static void an_exr_is_its_first_part_that_is_a_picture(void **state)
     assert_int_equal(img_read_size(scratch_path("parts.exr"), &width, &height), OK);
     assert_int_equal(width, 2);
     assert_int_equal(img_read(scratch_path("parts.exr"), &color, &alpha), OK);
-    assert_true(color.data[0] == 7 && color.data[1] == 5 && color.data[2] == 3 && color.data[3] == 8);
+    assert_true(color.data[0] == 7 && color.data[1] == 5 && color.data[2] == 3 && color.data[3] == 32);
     assert_non_null(alpha.data);
     assert_true(alpha.data[0] == 1 && alpha.data[1] == 0.25f);
     img_free(&color);
     img_free(&alpha);
+}
+
+/* As OpenEXR's convention wants it, and Blender writes it. */
+static void colour_of_an_exr_is_not_times_its_alpha(void **state)
+{
+    (void)state;
+    float rgba[16] = {2, 1, 0.5f, 1, 1, 0.5f, 0.25f, 0.5f, 0.5f, 0.25f, 0.125f, 0.25f, 3, 3, 3, 0};
+    const float own[12] = {2, 1, 0.5f, 2, 1, 0.5f, 2, 1, 0.5f, 3, 3, 3};
+    const exr_channel channels[] = {
+        {"R", rgba, 4, false}, {"G", rgba + 1, 4, false}, {"B", rgba + 2, 4, false}, {"A", rgba + 3, 4, false}};
+    img color = {0}, alpha = {0};
+    assert_int_equal(exr_write(scratch_path("rgba.exr"), 4, 1, channels, 4, NULL, 0), OK);
+    assert_int_equal(img_read(scratch_path("rgba.exr"), &color, &alpha), OK);
+    assert_memory_equal(color.data, own, sizeof own);
+    for (int i = 0; i < 4; i++)
+        assert_true(alpha.data[i] == rgba[4 * i + 3]);
+    img_free(&color);
+    img_free(&alpha);
+    /* who does not ask for alpha sees it over black */
+    assert_int_equal(img_read(scratch_path("rgba.exr"), &color, NULL), OK);
+    assert_true(color.data[3] == 1);
+    img_free(&color);
 }
 
 /* As merlin estimate writes them. */
@@ -780,6 +803,7 @@ int main(void)
         cmocka_unit_test(radiance_files_are_linear),
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
         cmocka_unit_test(an_exr_is_its_first_part_that_is_a_picture),
+        cmocka_unit_test(colour_of_an_exr_is_not_times_its_alpha),
         cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
