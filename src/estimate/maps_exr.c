@@ -9,7 +9,7 @@
 #include "estimate/exposure.h"
 #include "image/exr.h"
 
-enum { CHANNELS = 12 };
+enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
 
 /* Name, image's place in maps_images, channel. */
 typedef struct layer {
@@ -18,24 +18,35 @@ typedef struct layer {
 } layer;
 
 static const layer layers[CHANNELS] = {
-    {"albedo.R", 0, 0}, {"albedo.G", 0, 1}, {"albedo.B", 0, 2},    {"normal.X", 1, 0},
-    {"normal.Y", 1, 1}, {"normal.Z", 1, 2}, {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},
-    {"mask.A", 4, 0},   {"photo.R", 5, 0},  {"photo.G", 5, 1},     {"photo.B", 5, 2},
+    {"albedo.R", 0, 0}, {"albedo.G", 0, 1},    {"albedo.B", 0, 2},    {"normal.X", 1, 0},
+    {"normal.Y", 1, 1}, {"normal.Z", 1, 2},    {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},
+    {"mask.A", 4, 0},   {"photo.R", PHOTO, 0}, {"photo.G", PHOTO, 1}, {"photo.B", PHOTO, 2},
 };
 
-enum { IMAGES = 6 };
 static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
 /* What photometric stereo does not find. */
-static const bool of_photographs[IMAGES] = {[2] = true, [5] = true};
+static const bool of_photographs[IMAGES] = {[2] = true, [PHOTO] = true};
+
+/* A photograph of floats may be in a unit that half has no room or no digits for. */
+static bool outgrows_half(const merlin_image *photo)
+{
+    const float largest_half = 65504, dim = 1.0f / 64; /* half's digits go below 2^-14 */
+    size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
+    float largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmaxf(largest, photo->data[i]);
+    return largest > largest_half || largest < dim;
+}
 
 status maps_write_exr(const merlin_maps *maps, const char *path)
 {
     const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
                                           &maps->depth,  &maps->mask,   &maps->photo};
     exr_channel channels[CHANNELS];
+    bool full = outgrows_half(&maps->photo);
     for (int i = 0; i < CHANNELS; i++)
         channels[i] = (exr_channel){layers[i].name, images[layers[i].image]->data + layers[i].channel,
-                                    images[layers[i].image]->channels, false};
+                                    images[layers[i].image]->channels, full && layers[i].image == PHOTO};
     exr_attribute square = {.name = "merlinCrop", .count = 3};
     square.values[0] = (float)maps->crop.x;
     square.values[1] = (float)maps->crop.y;

@@ -501,6 +501,26 @@ static void written_maps_are_read_back(void **state)
     merlin_maps_free(&again);
 }
 
+static void a_photograph_in_any_unit_is_read_back(void **state)
+{
+    fixture *f = *state;
+    const float units[] = {1e-6f, 1e6f};
+    for (int k = 0; k < 2; k++) {
+        merlin_maps maps, again;
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            f->photo.data[i] *= units[k];
+        estimate(f, &maps);
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            f->photo.data[i] /= units[k];
+        assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+        if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            assert_float_equal(maps.photo.data[i], again.photo.data[i], 1e-3f * maps.photo.data[i]);
+        merlin_maps_free(&maps);
+        merlin_maps_free(&again);
+    }
+}
+
 static void maps_of_the_farthest_exposures_are_read_back(void **state)
 {
     const fixture *f = *state;
@@ -721,6 +741,7 @@ int main(void)
         cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
         cmocka_unit_test(photographs_in_another_unit_are_exposed_for_it),
         cmocka_unit_test(written_maps_are_read_back),
+        cmocka_unit_test(a_photograph_in_any_unit_is_read_back),
         cmocka_unit_test(maps_of_the_farthest_exposures_are_read_back),
         cmocka_unit_test(a_folder_has_every_file_and_no_other),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing),
