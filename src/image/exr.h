@@ -59,6 +59,15 @@ status exr_next_part(exr_file *f, bool *found);
 void exr_close(exr_file *f);
 int exr_width(const exr_file *f);
 int exr_height(const exr_file *f);
+
+/* The picture that is meant to be seen (OpenEXR's display window), and where in it the first value lies: all values may
+ * lie within it or beyond. */
+typedef struct exr_frame {
+    long long width, height, left, top;
+} exr_frame;
+exr_frame exr_display(const exr_file *f);
+/* CIE 1931 chromaticities of red, green, blue and white: false, and values as they were, if the file does not say. */
+bool exr_get_chromaticities(const exr_file *f, float xy[8]);
 bool exr_has_channel(const exr_file *f, const char *name);
 /* Channels by number, sorted by name; NULL from the last one on. */
 const char *exr_channel_name(const exr_file *f, int index);

@@ -12,7 +12,7 @@ struct exr_file {
     char *path;
     exr_context_t context;
     int part, parts; /* what follows is of this one */
-    exr_attr_box2i_t window;
+    exr_attr_box2i_t window, display;
     const exr_attr_chlist_t *channels;
     exr_storage_t storage;
 };
@@ -57,6 +57,7 @@ static status open_part(exr_file *f)
 {
     exr_result_t r = exr_get_storage(f->context, f->part, &f->storage);
     if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, f->part, &f->window);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_display_window(f->context, f->part, &f->display);
     if (r == EXR_ERR_SUCCESS) r = exr_get_channels(f->context, f->part, &f->channels);
     return r == EXR_ERR_SUCCESS ? check_layout(f) : fail_reading(f, r);
 }
@@ -111,6 +112,15 @@ int exr_width(const exr_file *f)
 int exr_height(const exr_file *f)
 {
     return f->window.max.y - f->window.min.y + 1;
+}
+
+exr_frame exr_display(const exr_file *f)
+{
+    const exr_attr_box2i_t *d = &f->display, *w = &f->window;
+    return (exr_frame){.width = 1LL + d->max.x - d->min.x,
+                       .height = 1LL + d->max.y - d->min.y,
+                       .left = (long long)w->min.x - d->min.x,
+                       .top = (long long)w->min.y - d->min.y};
 }
 
 static bool find_source(const exr_file *f, const char *name, source *out)
@@ -286,6 +296,15 @@ bool exr_get_numbers(const exr_file *f, const char *name, float *values, int cou
     for (int i = 0; i < count; i++)
         if (!isfinite(found[i])) return false;
     memcpy(values, found, (size_t)count * sizeof *values);
+    return true;
+}
+
+bool exr_get_chromaticities(const exr_file *f, float xy[8])
+{
+    exr_attr_chromaticities_t c;
+    if (exr_attr_get_chromaticities(f->context, f->part, "chromaticities", &c) != EXR_ERR_SUCCESS) return false;
+    const float found[8] = {c.red_x, c.red_y, c.green_x, c.green_y, c.blue_x, c.blue_y, c.white_x, c.white_y};
+    memcpy(xy, found, sizeof found);
     return true;
 }
 

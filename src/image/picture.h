@@ -49,11 +49,11 @@ bool picture_tiff_is_premultiplied(const char *path);
 int picture_exif_orientation(void *exif, size_t size);
 /* Turns a picture that lies so upright. */
 status picture_turn(img *image, int orientation);
-status picture_check_size(const char *path, int width, int height);
+status picture_check_size(const char *path, long long width, long long height);
 /* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
  * they mean as sRGB, or else scaled to [0, 1]. */
 void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out);
-status picture_read_exr(const char *path, img *color, img *alpha);
+status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "image/exr.h"
 #include "image/picture.h"
+#include "image/primaries.h"
 
 enum { NAME_SIZE = 256 };
 
@@ -71,6 +72,55 @@ static void divide_by_alpha(const img *alpha, img *color)
     }
 }
 
+/* Brings colours of other primaries to sRGB's. */
+static status convert_primaries(const exr_file *f, const char *path, img *color)
+{
+    float xy[8];
+    double m[9];
+    if (color->channels != 3 || !exr_get_chromaticities(f, xy) || primaries_are_srgb(xy)) return OK;
+    if (!primaries_to_srgb(xy, m))
+        return fail(ERROR_INPUT, "cannot read %s: its chromaticities are those of no colours", path);
+    size_t values = 3 * (size_t)color->width * (size_t)color->height;
+    for (size_t i = 0; i < values; i += 3) {
+        const double v[3] = {color->data[i], color->data[i + 1], color->data[i + 2]};
+        for (int c = 0; c < 3; c++)
+            color->data[i + (size_t)c] = (float)(m[3 * c] * v[0] + m[3 * c + 1] * v[1] + m[3 * c + 2] * v[2]);
+    }
+    return OK;
+}
+
+/* What of the values lies in the frame, and black around it. */
+static status place_in_frame(const exr_frame *frame, img *image)
+{
+    long long right = frame->left + image->width, bottom = frame->top + image->height;
+    long long first = frame->left > 0 ? frame->left : 0, end = right < frame->width ? right : frame->width;
+    img seen;
+    status s = img_new(&seen, (int)frame->width, (int)frame->height, image->channels);
+    if (s != OK) return s;
+    size_t bytes = end > first ? (size_t)(end - first) * (size_t)image->channels * sizeof *image->data : 0;
+    for (long long y = frame->top > 0 ? frame->top : 0; bytes && y < bottom && y < frame->height; y++)
+        memcpy(img_at(&seen, (int)first, (int)y), img_at(image, (int)(first - frame->left), (int)(y - frame->top)),
+               bytes);
+    img_free(image);
+    *image = seen;
+    return OK;
+}
+
+static status show_frame(const exr_file *f, img *color, img *alpha)
+{
+    exr_frame d = exr_display(f);
+    if (d.left == 0 && d.top == 0 && d.width == color->width && d.height == color->height) return OK;
+    status s = place_in_frame(&d, color);
+    return s == OK && alpha && alpha->data ? place_in_frame(&d, alpha) : s;
+}
+
+static status check_frame(const exr_file *f, const char *path)
+{
+    exr_frame d = exr_display(f);
+    if (d.width < 1 || d.height < 1) return fail(ERROR_INPUT, "cannot read %s: its display window is empty", path);
+    return picture_check_size(path, d.width, d.height);
+}
+
 /* Opens the first part that has a picture. */
 static status open_picture(const char *path, exr_file **out, channel_name names[3], int *channels)
 {
@@ -81,6 +131,7 @@ static status open_picture(const char *path, exr_file **out, channel_name names[
         s = exr_next_part(f, &found);
     if (s == OK && *channels == 0)
         s = fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    if (s == OK) s = check_frame(f, path);
     if (s == OK)
         *out = f;
     else
@@ -110,12 +161,13 @@ status picture_look_exr(const char *path, picture_head *head)
     int channels;
     status s = open_picture(path, &f, names, &channels);
     if (s != OK) return s;
-    *head = (picture_head){.width = exr_width(f), .height = exr_height(f), .bits = 32};
+    exr_frame d = exr_display(f);
+    *head = (picture_head){.width = (int)d.width, .height = (int)d.height, .bits = 32};
     exr_close(f);
     return OK;
 }
 
-status picture_read_exr(const char *path, img *color, img *alpha)
+status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha)
 {
     exr_file *f = NULL;
     channel_name names[3];
@@ -123,6 +175,8 @@ status picture_read_exr(const char *path, img *color, img *alpha)
     status s = open_picture(path, &f, names, &channels);
     if (s != OK) return s;
     s = read_channels(f, names, channels, color, alpha);
+    if (s == OK && how == PICTURE_LINEARIZE) s = convert_primaries(f, path, color);
+    if (s == OK) s = show_frame(f, color, alpha);
     exr_close(f);
     return s;
 }

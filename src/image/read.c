@@ -68,10 +68,10 @@ static status look_at(const char *path, picture_kind *kind)
                 path);
 }
 
-status picture_check_size(const char *path, int width, int height)
+status picture_check_size(const char *path, long long width, long long height)
 {
     if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: it is %d x %d pixels, more than %d a side; make it smaller first", path,
+    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", path,
                 width, height, IMAGE_MAX_SIDE);
 }
 
@@ -127,7 +127,7 @@ static status read_any(const char *path, picture_colour how, img *color, img *al
     picture_head head = {.plain = false};
     status s = look_at(path, &kind);
     if (s == OK && kind == PICTURE_PNG) s = picture_read_png(path, how, color, alpha, &head);
-    if (s == OK && kind == PICTURE_EXR) s = picture_read_exr(path, color, alpha);
+    if (s == OK && kind == PICTURE_EXR) s = picture_read_exr(path, how, color, alpha);
     if (s == OK && kind != PICTURE_EXR && !head.plain) s = picture_decode(path, kind, how, color, alpha);
     if (s == OK) s = check_finite(path, color);
     if (s == OK && alpha && alpha->data) s = check_finite(path, alpha);
@@ -183,7 +183,7 @@ static status read_samples(const char *path, bool decode, img *color, int *bits)
     if (s != OK) return s;
     *bits = head.bits;
     picture_colour how = colour_of_samples(&head, decode);
-    if (kind == PICTURE_EXR) return picture_read_exr(path, color, NULL);
+    if (kind == PICTURE_EXR) return picture_read_exr(path, PICTURE_AS_IT_IS, color, NULL);
     return head.plain ? picture_read_png(path, how, color, NULL, &head) : picture_decode(path, kind, how, color, NULL);
 }
 

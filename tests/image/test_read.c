@@ -463,11 +463,11 @@ static void exr_pictures_are_found_by_their_channels(void **state)
 }
 
 /* One line of floats, uncompressed. */
-static void write_part(exr_context_t file, int part, int channels, const float *line, int width)
+static void write_part(exr_context_t file, int part, int first_line, int channels, const float *line, int width)
 {
     exr_encode_pipeline_t e = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_chunk_info_t chunk;
-    assert_int_equal(exr_write_scanline_chunk_info(file, part, 0, &chunk), 0);
+    assert_int_equal(exr_write_scanline_chunk_info(file, part, first_line, &chunk), 0);
     assert_int_equal(exr_encoding_initialize(file, part, &chunk, &e), 0);
     for (int i = 0; i < channels; i++) {
         e.channels[i].encode_from_ptr = (const uint8_t *)(line + i * width);
@@ -490,6 +490,89 @@ static void add_part(exr_context_t file, const char *name, const char *channels,
     }
 }
 
+static exr_attr_box2i_t box(int left, int top, int right, int bottom)
+{
+    exr_attr_box2i_t b;
+    b.min.x = left;
+    b.min.y = top;
+    b.max.x = right;
+    b.max.y = bottom;
+    return b;
+}
+
+/* Two pixels of R = 1 and G = 1 with the windows and chromaticities given (NULL: none). */
+static void write_view(const char *name, const exr_attr_box2i_t *data, const exr_attr_box2i_t *display,
+                       const exr_attr_chromaticities_t *primaries)
+{
+    static const float bgr[6] = {0, 0, 0, 1, 1, 0};
+    exr_context_initializer_t quiet = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_t file;
+    assert_int_equal(exr_start_write(&file, scratch_path(name), EXR_WRITE_FILE_DIRECTLY, &quiet), 0);
+    add_part(file, "picture", "BGR", 2);
+    assert_int_equal(exr_set_data_window(file, 0, data), 0);
+    assert_int_equal(exr_set_display_window(file, 0, display), 0);
+    if (primaries) assert_int_equal(exr_attr_set_chromaticities(file, 0, "chromaticities", primaries), 0);
+    assert_int_equal(exr_write_header(file), 0);
+    write_part(file, 0, data->min.y, 3, bgr, 2);
+    assert_int_equal(exr_finish(&file), 0);
+}
+
+/* The numbers are those of ITU-R BT.2087 and of the usual ACEScg matrix (Bradford). */
+static void the_chromaticities_of_an_exr_are_honoured(void **state)
+{
+    (void)state;
+    const exr_attr_box2i_t window = box(0, 0, 1, 0);
+    static const exr_attr_chromaticities_t rec2020 = {0.708f, 0.292f, 0.170f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.3290f},
+                                           acescg = {0.713f, 0.293f, 0.165f,   0.830f,
+                                                     0.128f, 0.044f, 0.32168f, 0.33767f},
+                                           none = {0};
+    static const float wide[6] = {1.6605f, -0.1246f, -0.0182f, -0.5876f, 1.1329f, -0.1006f};
+    static const float aces[6] = {1.70505f, -0.13026f, -0.02400f, -0.62179f, 1.14080f, -0.12897f};
+    static const float same[6] = {1, 0, 0, 0, 1, 0};
+    const exr_attr_chromaticities_t *primaries[] = {&rec2020, &acescg, NULL};
+    const float *expected[] = {wide, aces, same};
+    img color;
+    int bits;
+    for (int k = 0; k < 3; k++) {
+        write_view("view.exr", &window, &window, primaries[k]);
+        assert_int_equal(img_read(scratch_path("view.exr"), &color, NULL), OK);
+        for (int i = 0; i < 6; i++)
+            assert_float_equal(color.data[i], expected[k][i], 2e-4);
+        img_free(&color);
+    }
+    write_view("view.exr", &window, &window, &acescg);
+    assert_int_equal(img_read_samples(scratch_path("view.exr"), true, &color, &bits), OK);
+    assert_memory_equal(color.data, same, sizeof same); /* a measurement stays what it is */
+    img_free(&color);
+    write_view("view.exr", &window, &window, &none);
+    assert_int_equal(img_read(scratch_path("view.exr"), &color, NULL), ERROR_INPUT);
+}
+
+/* As programs crop their pictures to what is not black, and render more than is to be seen. */
+static void an_exr_is_what_its_display_window_shows(void **state)
+{
+    (void)state;
+    const exr_attr_box2i_t data = box(3, -1, 4, -1);
+    const exr_attr_box2i_t around = box(2, -2, 5, 0), part = box(4, -1, 4, -1), elsewhere = box(9, 9, 10, 9);
+    img color;
+    int width, height;
+    write_view("around.exr", &data, &around, NULL);
+    assert_int_equal(img_read_size(scratch_path("around.exr"), &width, &height), OK);
+    assert_true(width == 4 && height == 3);
+    assert_int_equal(img_read(scratch_path("around.exr"), &color, NULL), OK);
+    for (int i = 0; i < 36; i++) /* red in the second, green in the third of the middle row */
+        assert_true(color.data[i] == (i == 15 || i == 19));
+    img_free(&color);
+    write_view("part.exr", &data, &part, NULL);
+    assert_int_equal(img_read(scratch_path("part.exr"), &color, NULL), OK);
+    assert_true(color.width == 1 && color.height == 1 && color.data[0] == 0 && color.data[1] == 1);
+    img_free(&color);
+    write_view("elsewhere.exr", &data, &elsewhere, NULL);
+    assert_int_equal(img_read(scratch_path("elsewhere.exr"), &color, NULL), OK);
+    assert_true(color.width == 2 && color.height == 1 && color.data[0] == 0 && color.data[4] == 0);
+    img_free(&color);
+}
+
 /* As renderers write them: a part a layer, sorted by whatever they sort them by. */
 static void an_exr_is_its_first_part_that_is_a_picture(void **state)
 {
@@ -503,8 +586,8 @@ static void an_exr_is_its_first_part_that_is_a_picture(void **state)
     add_part(file, "depth", "Z", 3);
     add_part(file, "picture", "ABGR", 2);
     assert_int_equal(exr_write_header(file), 0);
-    write_part(file, 0, 1, depth, 3);
-    write_part(file, 1, 4, abgr, 2);
+    write_part(file, 0, 0, 1, depth, 3);
+    write_part(file, 1, 0, 4, abgr, 2);
     assert_int_equal(exr_finish(&file), 0);
     assert_int_equal(img_read_size(scratch_path("parts.exr"), &width, &height), OK);
     assert_int_equal(width, 2);
@@ -803,6 +886,8 @@ int main(void)
         cmocka_unit_test(radiance_files_are_linear),
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
         cmocka_unit_test(an_exr_is_its_first_part_that_is_a_picture),
+        cmocka_unit_test(the_chromaticities_of_an_exr_are_honoured),
+        cmocka_unit_test(an_exr_is_what_its_display_window_shows),
         cmocka_unit_test(colour_of_an_exr_is_not_times_its_alpha),
         cmocka_unit_test(the_mask_of_maps_is_their_alpha),
         cmocka_unit_test(one_pixel_is_a_picture),
