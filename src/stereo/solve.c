@@ -8,6 +8,7 @@
 #include "stereo/lapack.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/solve_parts.h"
+#include "stereo/unlit.h"
 
 static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
 enum { METHOD_COUNT = sizeof method_names / sizeof *method_names };
@@ -236,6 +237,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
     if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
+    if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
     free(p.pixel);
     free(light);
     if (s != OK) pst_surface_free(out);
