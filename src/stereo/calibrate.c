@@ -104,27 +104,59 @@ static status find_circle(const char *folder, const pst_calibrate_options *optio
 }
 
 /* What every picture has, such as a window that mirrors in the ball; zero for fewer than three pictures. */
-static status find_constant(const pst_capture *c, img *out)
+static void find_constant(const pst_capture *c, img *constant)
 {
-    status s = img_new(out, c->width, c->height, 1);
-    for (int i = 0; i < c->count && s == OK && c->count > 2; i++)
+    for (int i = 0; i < c->count && c->count > 2; i++)
         for (size_t p = 0; p < pixels_of(c); p++) {
             float value = grey(c->picture[i] + p * (size_t)c->channels, c->channels);
-            out->data[p] = i ? fminf(out->data[p], value) : value;
+            constant->data[p] = i ? fminf(constant->data[p], value) : value;
         }
+}
+
+/* What a picture has beyond the constant; what is clipped stays that. */
+static status take_picture(const pst_capture *c, int i, pst_ball ball, const img *constant, img *out)
+{
+    status s = img_new(out, c->width, c->height, 1);
+    for (size_t p = 0; p < pixels_of(c) && s == OK; p++) {
+        const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
+        float value = ball == PST_CHROME ? grey(pixel, c->channels) : shading(pixel, c->channels);
+        out->data[p] = ball == PST_MATTE && value == 1 ? 1 : value - constant->data[p];
+    }
+    return s;
+}
+
+static int compare_levels(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
+ * over pictures, for where a light is beside the camera no such side is seen. */
+static status find_room(const pst_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
+{
+    float *level = malloc((size_t)c->count * sizeof *level);
+    if (!level) return fail(ERROR_MEMORY, "no memory for a room's light");
+    size_t count = 0;
+    status s = OK;
+    for (int i = 0; i < c->count && s == OK; i++) {
+        img picture;
+        s = take_picture(c, i, PST_MATTE, constant, &picture);
+        if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
+        img_free(&picture);
+    }
+    qsort(level, count, sizeof *level, compare_levels);
+    for (size_t p = 0; p < pixels_of(c) && count > 0; p++)
+        constant->data[p] = level[count / 2];
+    free(level);
     return s;
 }
 
 static status find_light(const pst_capture *c, int i, const img *constant, const ball_view *view, pst_calibration *out)
 {
     img picture;
-    status s = img_new(&picture, c->width, c->height, 1);
+    status s = take_picture(c, i, out->ball, constant, &picture);
     if (s != OK) return s;
-    for (size_t p = 0; p < pixels_of(c); p++) {
-        const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
-        picture.data[p] =
-            out->ball == PST_CHROME ? grey(pixel, c->channels) - constant->data[p] : shading(pixel, c->channels);
-    }
     s = out->ball == PST_CHROME ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
                                 : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
     img_free(&picture);
@@ -132,6 +164,14 @@ static status find_light(const pst_capture *c, int i, const img *constant, const
         s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
                     (double)out->circle.x, (double)out->circle.y, (double)out->circle.radius);
     return s == OK ? OK : fail_in(s, "%s", out->name[i]);
+}
+
+static status find_lights(const pst_capture *c, const img *constant, const ball_view *view, pst_calibration *out)
+{
+    status s = OK;
+    for (int i = 0; i < c->count && s == OK; i++)
+        s = find_light(c, i, constant, view, out);
+    return s;
 }
 
 static status reserve(pst_capture *c, pst_calibration *out)
@@ -155,10 +195,12 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
     status s = find_brightest(c, &out->brightest);
     if (s == OK) s = find_circle(folder, options, c, out, &view.center);
     view.circle = out->circle;
-    if (s == OK) s = find_constant(c, &constant);
+    if (s == OK) s = img_new(&constant, c->width, c->height, 1);
+    if (s == OK && out->ball == PST_CHROME) find_constant(c, &constant);
     if (s == OK) s = reserve(c, out);
-    for (int i = 0; i < c->count && s == OK; i++)
-        s = find_light(c, i, &constant, &view, out);
+    if (s == OK) s = find_lights(c, &constant, &view, out);
+    if (s == OK && out->ball == PST_MATTE) s = find_room(c, &view, out, &constant);
+    if (s == OK && out->ball == PST_MATTE) s = find_lights(c, &constant, &view, out);
     img_free(&constant);
     return s;
 }

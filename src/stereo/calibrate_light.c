@@ -237,3 +237,22 @@ status ball_shading_light(const img *picture, const ball_view *view, float *resi
     free(at);
     return s;
 }
+
+bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, float *level)
+{
+    enum { LEAST_SEEN = 50 };
+    static const float AWAY = -0.15f; /* cosine: nothing of a lamp's penumbra is there */
+    double sum = 0;
+    size_t seen = 0;
+    for (int y = 0; y < picture->height; y++)
+        for (int x = 0; x < picture->width; x++) {
+            vec3 n, v;
+            if (!inside(view, x, y, INSIDE) || !ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v)) continue;
+            if (vec3_dot(n, light) > AWAY) continue;
+            sum += (double)*img_at(picture, x, y);
+            seen++;
+        }
+    if (seen < LEAST_SEEN) return false;
+    *level = (float)(sum / (double)seen);
+    return true;
+}

@@ -25,5 +25,7 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
 
 /* picture: 1 channel, linear. */
 status ball_shading_light(const img *picture, const ball_view *view, float *residual, vec3 *direction);
+/* The mean of what a ball shows where it faces away from a light; false where that is hardly seen. */
+bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, float *level);
 
 #endif

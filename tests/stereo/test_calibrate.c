@@ -35,6 +35,12 @@ static float matte(vec3 n, vec3 l)
     return shade > 0 ? 0.6f * shade + 0.3f * powf(fmaxf(vec3_dot(n, h), 0), 60) : 0;
 }
 
+/* The same in a room that is brighter above. */
+static float matte_in_a_room(vec3 n, vec3 l)
+{
+    return matte(n, l) + 0.12f + 0.01f * n.y;
+}
+
 /* The mean of 4 x 4 points of a pixel. */
 static float ball_pixel(int x, int y, vec3 l, float shade(vec3, vec3))
 {
@@ -110,6 +116,15 @@ static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
     (void)state;
     write_balls(matte, IMG_LINEAR16);
     assert_lights_found(PST_MATTE, false, 0.5f, 2);
+    write_mask();
+    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+}
+
+/* More than 2 degrees off where the room's light counts as the lamp's. */
+static void a_matte_ball_tells_its_lights_in_a_lit_room(void **state)
+{
+    (void)state;
+    write_balls(matte_in_a_room, IMG_LINEAR16);
     write_mask();
     assert_lights_found(PST_MATTE, true, 0.5f, 2);
 }
@@ -350,6 +365,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         in_scratch(a_chrome_ball_tells_its_lights),
         in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
+        in_scratch(a_matte_ball_tells_its_lights_in_a_lit_room),
         in_scratch(what_one_channel_clips_is_no_shading),
         in_scratch(a_ball_beside_the_axis_tells_its_lights),
         in_scratch(what_was_found_is_written),
