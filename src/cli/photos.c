@@ -141,10 +141,29 @@ static status choose_masks(photo_list *list, const char *mask, bool batch)
     return list->at[0].mask ? OK : no_memory();
 }
 
+static char *folder_of(const char *path)
+{
+    const char *name = base_name(path);
+    return name == path ? strdup(".") : format_name(path, (size_t)(name - path), "");
+}
+
+/* Whether both name one place, however the folder that it is in is spelled; that is there as long as the photograph is.
+ */
+static bool is_same_place(const char *one, const char *other)
+{
+    if (strcmp(one, other) == 0) return true;
+    if (strcmp(base_name(one), base_name(other)) != 0) return false;
+    char *a = folder_of(one), *b = folder_of(other);
+    bool same = a && b && file_is_same(a, b);
+    free(a);
+    free(b);
+    return same;
+}
+
 static bool is_taken(const photo_list *list, size_t before, const char *output)
 {
     for (size_t i = 0; i < before; i++)
-        if (strcmp(list->at[i].output, output) == 0) return true;
+        if (is_same_place(list->at[i].output, output)) return true;
     return false;
 }
 
@@ -230,7 +249,8 @@ status photo_find_model(const char *asked, char **path)
 {
     const char *environment = getenv("MERLIN_MODEL");
     if (!asked && environment && *environment) asked = environment;
-    bool is_file = asked && (strchr(asked, '/') || strchr(asked, '.') || file_exists(asked));
+    bool is_file =
+        asked && (strchr(asked, '/') || strchr(asked, '.') || file_exists(asked));
     if (is_file) return (*path = strdup(asked)) ? OK : no_memory();
     status s = find_shipped(asked ? asked : "merlin-point", path);
     if (s != OK || *path) return s;

@@ -143,6 +143,16 @@ present results/a/maps.exr results/c/maps.exr
 absent results/b results/c.mask
 grep -q '"given"' results/c/report.json || complain "NAME.mask.png was not used in a folder"
 
+echo "photographs of one name in one folder have a folder each, however it is spelled"
+mkdir twins
+cp disc.hdr twins/disc.png # by its content a Radiance picture
+cp disc.hdr twins
+succeeds '^twins/../twins/disc.hdr: twins/../twins/disc-2.merlin/' estimate twins/disc.png twins/../twins/disc.hdr --size 64
+cd twins || exit 1
+succeeds '^./disc.hdr: ./disc-2.merlin/' estimate disc.png ./disc.hdr --size 64
+cd ..
+rm -r twins
+
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
