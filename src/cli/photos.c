@@ -249,8 +249,9 @@ status photo_find_model(const char *asked, char **path)
 {
     const char *environment = getenv("MERLIN_MODEL");
     if (!asked && environment && *environment) asked = environment;
+    /* the folder of what merlin-env found may well be called so */
     bool is_file =
-        asked && (strchr(asked, '/') || strchr(asked, '.') || file_exists(asked));
+        asked && (strchr(asked, '/') || strchr(asked, '.') || (file_exists(asked) && !file_is_folder(asked)));
     if (is_file) return (*path = strdup(asked)) ? OK : no_memory();
     status s = find_shipped(asked ? asked : "merlin-point", path);
     if (s != OK || *path) return s;

@@ -103,6 +103,8 @@ done
 header='{"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}}'
 printf "\\x$(printf %x ${#header})"'\0\0\0\0\0\0\0%s\0\0\0\0' "$header" >other.safetensors
 refuses 1 'other.safetensors' estimate disc.hdr --model other.safetensors "${small[@]}"
+mkdir merlin-nowhere # of what such weights found, say
+refuses 1 'there is no weights file merlin-nowhere' estimate disc.hdr --model merlin-nowhere "${small[@]}"
 absent out.merlin
 
 echo "places that cannot be written"
