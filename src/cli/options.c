@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "cli/cli.h"
@@ -35,14 +36,24 @@ static const cli_option *find(const cli_option *options, int value)
     return options;
 }
 
+/* "--m" may be short for several. */
+static bool is_ambiguous(const cli_option *options, const char *given)
+{
+    size_t length = strcspn(given, "="), matches = 0;
+    for (; options->name; options++)
+        matches += length > 2 && strncmp(given + 2, options->name, length - 2) == 0;
+    return matches > 1;
+}
+
 /* What getopt_long did not take, value being its answer. A letter it names itself; a long option it has just passed. */
-static status refuse(int value, char *const *argv)
+static status refuse(const cli_option *options, int value, char *const *argv)
 {
     char letter[] = {'-', (char)optopt, 0};
     bool is_letter = optopt > ' ' && optopt < 127, is_long = optopt == 0 || optopt >= FIRST_LONG;
     const char *given = is_letter ? letter : is_long ? argv[optind - 1] : "that is no letter";
     if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
     if (optopt >= FIRST_LONG) return fail(ERROR_USAGE, "%s: this option takes no value", given);
+    if (is_long && is_ambiguous(options, given)) return fail(ERROR_USAGE, "%s is short for several options", given);
     return fail(ERROR_USAGE, "unknown option %s", given);
 }
 
@@ -106,7 +117,7 @@ status cli_read_options(int *argc, char ***argv, const cli_option *options)
     opterr = 0;
     optind = 1;
     for (int value; (value = getopt_long(*argc, *argv, letters, longs, NULL)) != -1;) {
-        if (value == ':' || value == '?') return refuse(value, *argv);
+        if (value == ':' || value == '?') return refuse(options, value, *argv);
         const cli_option *option = find(options, value);
         if (optarg && !*optarg) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
         status s = take(option, optarg);

@@ -16,6 +16,10 @@ for command in estimate relight render train eval bench info; do
     refuses 2 "$command: --help=me: this option takes no value" "$MERLIN" "$command" --help=me
 done
 refuses 2 "-o wants a value" "$MERLIN" estimate photo.png -o
+succeeds "usage: merlin estimate" "$MERLIN" estimate --he
+refuses 2 "--m is short for several options" "$MERLIN" estimate photo.png --m mask.png
+refuses 2 "--li=0,0,0 is short for several options" "$MERLIN" relight photo.png --li=0,0,0
+refuses 2 "unknown option --lamp" "$MERLIN" relight photo.png --lamp
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
 
 # every option that a command's help names is completed, and is in the manual
