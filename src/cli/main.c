@@ -77,9 +77,9 @@ int main(int argc, char **argv)
         print_help(stderr);
         return 2;
     }
-    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help COMMAND is merlin COMMAND --help */
-        argv[1] = argv[2];
-        argv[2] = "--help";
+    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help eval photos is merlin eval photos --help */
+        memmove(argv + 1, argv + 2, (size_t)(argc - 2) * sizeof *argv);
+        argv[argc - 1] = "--help";
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_help(stdout);

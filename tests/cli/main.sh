@@ -21,6 +21,11 @@ refuses 2 "--m is short for several options" "$MERLIN" estimate photo.png --m ma
 refuses 2 "--li=0,0,0 is short for several options" "$MERLIN" relight photo.png --li=0,0,0
 refuses 2 "unknown option --lamp" "$MERLIN" relight photo.png --lamp
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
+for command in "stereo calibrate" "eval stereo" "eval solvers" "eval photos"; do
+    read -ra words <<<"$command"
+    succeeds "usage: merlin $command " "$MERLIN" help "${words[@]}"
+done
+succeeds "usage: merlin estimate" "$MERLIN" help estimate photo.png
 
 # every option that a command's help names is completed, and is in the manual
 # shellcheck source=completions/merlin.bash
