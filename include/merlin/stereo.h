@@ -42,7 +42,7 @@ typedef struct merlin_capture_files {
                             of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
     const char *mask;    /* NULL: the folder's mask.png, else what is not black in any picture */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
-    int near_lights;     /* 1: lights.txt holds positions */
+    int near_lights;     /* 1: the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
     float field_of_view; /* horizontal, degrees; 0: not known */

@@ -24,6 +24,7 @@ void light_list_free(light_list *list)
     for (size_t i = 0; list->name && i < list->count; i++)
         free(list->name[i]);
     free(list->name);
+    free(list->length);
     free(list->at);
     *list = (light_list){0};
 }
@@ -38,10 +39,15 @@ status light_list_add(light_list *list, vec3 light)
     return OK;
 }
 
-/* The name of the light that was added last. */
-static status add_name(light_list *list, const char *word)
+/* The name of the light that was added last, and its direction's length. */
+static status add_name(light_list *list, const char *word, real length)
 {
-    char **larger = realloc(list->name, list->count * sizeof *larger);
+    real *longer = realloc(list->length, list->count * sizeof *longer);
+    if (longer) {
+        list->length = longer;
+        list->length[list->count - 1] = length;
+    }
+    char **larger = longer ? realloc(list->name, list->count * sizeof *larger) : NULL;
     if (larger) {
         list->name = larger;
         list->name[list->count - 1] = strdup(word);
@@ -149,16 +155,16 @@ static char *take_last_word(char *line)
     return word;
 }
 
-static status direction_to_position(const reader *r, vec3 *v)
+static status direction_to_position(const reader *r, vec3 *v, real *length)
 {
-    real length = vec3_length(*v);
-    if (!(length > (real)1e-6)) return fail(ERROR_INPUT, "%s:%d: the direction has no length", r->where, r->line);
-    *v = vec3_add(vec3_scale(*v, 1 / length), vec3_make(0, 0, -1));
+    *length = vec3_length(*v);
+    if (!(*length > (real)1e-6)) return fail(ERROR_INPUT, "%s:%d: the direction has no length", r->where, r->line);
+    *v = vec3_add(vec3_scale(*v, 1 / *length), vec3_make(0, 0, -1));
     return OK;
 }
 
 /* Cuts the numbers off: of an .lp file's line the name is left, which may have blanks in it. */
-static status parse_light(const reader *r, char *line, vec3 *out)
+static status parse_light(const reader *r, char *line, vec3 *out, real *length)
 {
     replace_decimal_commas(r, line);
     int count = count_words(line);
@@ -177,7 +183,7 @@ static status parse_light(const reader *r, char *line, vec3 *out)
                         (double)LARGEST);
     }
     *out = vec3_of(v);
-    return r->lp ? direction_to_position(r, out) : OK;
+    return r->lp ? direction_to_position(r, out, length) : OK;
 }
 
 /* A first line that holds one whole number is the count of an .lp file. */
@@ -200,11 +206,12 @@ static status parse_line(reader *r, char *line, bool first, light_list *out)
 {
     if (first && count_words(line) == 1) return parse_count(r, line);
     vec3 light;
-    status s = parse_light(r, line, &light);
+    real length = 0;
+    status s = parse_light(r, line, &light, &length);
     if (s != OK) return s;
     s = light_list_add(out, light);
     without_blanks_behind(line);
-    if (s == OK && r->lp) s = add_name(out, line);
+    if (s == OK && r->lp) s = add_name(out, line, length);
     return s == OK ? OK : fail_in(s, "%s:%d", r->where, r->line);
 }
 

@@ -8,9 +8,9 @@
  * An .lp file starts with a line that holds one number, the count; then `name x y z` a line, the name as it stands,
  * blanks and all, and the last three being the direction to a distant light, x right, y up, z toward the camera. Such a
  * direction becomes the position at distance 1 from (0, 0, -1), where the object stands: the frontal hemisphere of
- * docs/conventions.md; light_list_direction takes it back. Blanks or commas part the numbers, which may have a decimal
- * comma where only blanks do. Empty lines and what follows a # (at the beginning of a line or behind a blank) are
- * skipped. */
+ * docs/conventions.md; light_list_direction takes it back, and light_list_written the numbers themselves. Blanks or
+ * commas part the numbers, which may have a decimal comma where only blanks do. Empty lines and what follows a # (at
+ * the beginning of a line or behind a blank) are skipped. */
 #ifndef MERLIN_BASE_LIGHT_LIST_H
 #define MERLIN_BASE_LIGHT_LIST_H
 
@@ -23,7 +23,8 @@ enum { LIGHT_LIST_MAX = 4096 };
 
 typedef struct light_list {
     vec3 *at;
-    char **name; /* of an .lp file: the picture each light belongs to; NULL for a plain list */
+    char **name;  /* of an .lp file: the picture each light belongs to; NULL for a plain list */
+    real *length; /* of an .lp file: how long each direction was; NULL for a plain list */
     size_t count;
 } light_list;
 
@@ -40,6 +41,12 @@ void light_list_free(light_list *list);
 static inline vec3 light_list_direction(const light_list *list, size_t i)
 {
     return vec3_normalize(vec3_add(list->at[i], vec3_make(0, 0, 1)));
+}
+
+/* What stood in the line of entry i of an .lp file: of some near lights it is their position. */
+static inline vec3 light_list_written(const light_list *list, size_t i)
+{
+    return vec3_scale(light_list_direction(list, i), list->length[i]);
 }
 
 #endif

@@ -118,16 +118,25 @@ static bool are_directions(const light_list *list)
     return behind;
 }
 
+/* An .lp file's numbers are directions, which a dome has from its middle, unless they are too long or too short. */
+static bool are_written_positions(const light_list *list)
+{
+    for (size_t i = 0; list->name && i < list->count; i++)
+        if (fabsf(list->length[i] - 1) > 0.02f) return true;
+    return false;
+}
+
 static status set_lights(const char *path, const light_list *list, bool near, pst_capture *c)
 {
     c->lighting = near ? PST_NEAR : PST_DISTANT;
     if (near && are_directions(list))
         return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
+    bool written = near && are_written_positions(list);
     c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
     for (size_t i = 0; i < list->count; i++) {
         vec3 at = list->at[i];
         if (near) {
-            c->light[i].position = at;
+            c->light[i].position = written ? light_list_written(list, i) : at;
             continue;
         }
         c->light[i].direction = list->name ? light_list_direction(list, i) : vec3_normalize(at);

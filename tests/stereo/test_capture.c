@@ -173,6 +173,29 @@ static void near_lights_have_positions_and_a_camera(void **state)
     assert_refused(&options, "lists directions");
 }
 
+static void near_lights_of_an_lp_file_are_where_it_says(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    unlink(scratch_path("lights.txt"));
+    pst_read_options options = {.near = true};
+    pst_capture c;
+    write_text("dome.lp", "3\na.png 3 0 -4\nb.png -30 12 -40\nc.png 0 0.5 0\n");
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_float_equal(c.light[0].position.z, -4, 1e-6);
+    assert_float_equal(c.light[1].position.x, -30, 1e-5);
+    assert_float_equal(c.light[1].position.z, -40, 1e-5);
+    assert_float_equal(c.light[2].position.y, 0.5, 1e-6);
+    pst_capture_free(&c);
+    /* a dome's, rounded as some write them, go round what is at (0, 0, -1) */
+    write_text("dome.lp", "3\na.png 0 0 1\nb.png 0.29 0 0.96\nc.png 1 0 0\n");
+    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_float_equal(c.light[0].position.z, 0, 1e-6);
+    assert_float_equal(c.light[2].position.x, 1, 1e-6);
+    assert_float_equal(c.light[2].position.z, -1, 1e-6);
+    pst_capture_free(&c);
+}
+
 static void a_field_of_view_makes_a_camera_without_lights(void **state)
 {
     (void)state;
@@ -319,6 +342,7 @@ int main(void)
         in_scratch(an_lp_file_says_which_picture_has_which_light),
         in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),
+        in_scratch(near_lights_of_an_lp_file_are_where_it_says),
         in_scratch(a_field_of_view_makes_a_camera_without_lights),
         in_scratch(a_distance_is_of_a_camera_that_is_known),
         in_scratch(unknown_lights_need_no_list),
