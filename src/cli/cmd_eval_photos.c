@@ -197,6 +197,19 @@ static status check_output(const request *r, const photo_list *photos)
     return OK;
 }
 
+/* The last of them comes into use when the photographs have been taken apart by all others. */
+static status check_models(const request *r)
+{
+    status s = OK;
+    for (int i = 0; i < r->model_count && s == OK; i++) {
+        char *weights;
+        s = photo_find_model(r->models[i], &weights);
+        if (s == OK && !file_exists(weights)) s = fail(ERROR_INPUT, "there is no weights file %s", weights);
+        free(weights);
+    }
+    return s;
+}
+
 int eval_photos(int argc, char **argv)
 {
     request r = {0};
@@ -209,6 +222,7 @@ int eval_photos(int argc, char **argv)
     cli_catch_interrupts();
     size_t failures = 0;
     s = check_output(&r, &photos);
+    if (s == OK) s = check_models(&r);
     if (s == OK) s = compare(&r, &photos, &failures);
     photo_list_free(&photos);
     return s == OK ? failures > 0 : cli_fail("eval photos", s);

@@ -38,6 +38,8 @@ cmp -s rest.png two.png || complain "the others' rows are not those of a folder 
 rm folder/*.hdr
 refuses 1 'worse.png' photos folder --model weights.safetensors -o none.png --quiet
 radiance folder/disc.hdr 64 22
+# before anything is taken apart, or worse.png would be told of
+refuses 1 'no weights file missing.safetensors' photos folder --model weights.safetensors --model missing.safetensors -o none.png
 refuses 1 'nowhere' photos --quiet folder/disc.hdr --model weights.safetensors -o nowhere/none.png
 absent none.png
 finish
