@@ -19,7 +19,13 @@ _merlin() {
         [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
         [info]="--tensors --json --quiet --help"
     )
+    local -A below=([eval]="stereo solvers photos" [stereo]="calibrate")
     local commands="estimate relight stereo render train eval bench info"
+    if [[ $current == = ]]; then # --by=, in words of its own
+        current=
+    elif [[ $previous == = ]]; then
+        previous=${COMP_WORDS[COMP_CWORD - 2]}
+    fi
     if ((COMP_CWORD == 1)); then
         mapfile -t COMPREPLY < <(compgen -W "$commands help --help --version" -- "$current")
         return
@@ -27,10 +33,12 @@ _merlin() {
     if ((COMP_CWORD == 2)); then
         case $command in # words that may stand where a file may
         help) mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current") && return ;;
-        eval) mapfile -t more < <(compgen -W "stereo solvers photos" -- "$current") ;;
-        stereo) mapfile -t more < <(compgen -W "calibrate" -- "$current") ;;
+        eval | stereo) mapfile -t more < <(compgen -W "${below[$command]}" -- "$current") ;;
         info) mapfile -t more < <(compgen -W "merlin-point merlin-env" -- "$current") ;;
         esac
+    elif [[ $command == help ]]; then
+        ((COMP_CWORD > 3)) || mapfile -t COMPREPLY < <(compgen -W "${below[$previous]-}" -- "$current")
+        return
     elif [[ -n ${options["$command ${COMP_WORDS[2]}"]-} ]]; then
         command+=" ${COMP_WORDS[2]}"
     fi

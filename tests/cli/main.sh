@@ -49,6 +49,10 @@ done
 completes relight rel
 completes photos eval ph
 completes merlin-env relight photo.png --model merlin-e
+completes network relight photo.png --by = # as the shell parts --by=
+completes network relight photo.png --by = n
+completes merlin-env relight photo.png --model = merlin-e
+completes photos help eval ph
 
 "$MERLIN" >"$scratch/stdout" 2>"$scratch/stderr"
 [[ $? == 2 && ! -s $scratch/stdout ]] || complain "merlin alone should explain itself on standard error and exit with 2"
