@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "estimate/api.h"
@@ -149,6 +150,18 @@ static status write_lp(const relight_job *job, const staging *t)
     return file_print(staging_path(t, "dome.lp", path), print_lp, job);
 }
 
+/* An earlier dome's list, whose lights these pictures of the same names would be believed to have. */
+static bool has_list(const char *folder)
+{
+    char *path = file_join(folder, "dome.lp");
+    light_list list = {0};
+    bool has = path && file_exists(path) && light_list_read(path, &list) == OK && list.name &&
+               strcmp(list.name[0], "dome_000.png") == 0;
+    light_list_free(&list);
+    free(path);
+    return has;
+}
+
 static status write_dome_mask(const relight_job *job, const staging *t)
 {
     char path[PATH_MAX];
@@ -166,7 +179,8 @@ static status write_dome(const relight_job *job, const stage *st, const staging 
                          : write_light(job, st, t, &(picture){"dome", (size_t)i, &light}, NULL);
     }
     if (s == OK) s = write_dome_mask(job, t);
-    return s == OK && job->lp ? write_lp(job, t) : s;
+    bool listed = job->lp || has_list(job->output);
+    return s == OK && listed ? write_lp(job, t) : s;
 }
 
 /* ---- an orbit, in the square ---- */
