@@ -29,7 +29,7 @@ demo: build
 PREFIX = /usr/local
 install: build
 	cmake --build --preset release --target libmerlin
-	cmake --install build/release --prefix $(PREFIX)
+	cmake --install build/release --prefix "$(PREFIX)"
 	@if [ "$$(id -u)" = 0 ]; then ldconfig || true; fi
 
 test: setup-test

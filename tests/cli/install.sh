@@ -17,6 +17,10 @@ radiance disc.hdr 64 22
 cmake --install "$build" --prefix "$scratch/first" >install.log || complain "it does not install: $(cat install.log)"
 mv first prefix # nothing may remember the place
 
+echo "make install takes a prefix with a blank in it for one"
+make -n -C "$MERLIN_SOURCE_DIR" install PREFIX="$scratch/my programs" >make.log 2>&1
+grep -q -e "--prefix [\"']$scratch/my programs[\"']\$" make.log || complain "it would run: $(grep -e --prefix make.log)"
+
 echo "the installed command finds its weights and its manual lies where man looks"
 succeeds merlin-point prefix/bin/merlin info merlin-point
 present prefix/share/man/man1/merlin.1 prefix/share/bash-completion/completions/merlin
