@@ -155,6 +155,15 @@ succeeds '^./disc.hdr: ./disc-2.merlin/' estimate disc.png ./disc.hdr --size 64
 cd ..
 rm -r twins
 
+echo "in a folder a mask goes before the photograph's alpha, as the help says"
+mkdir cut
+cp "$MERLIN_SOURCE_DIR/examples/demo.png" cut
+cp disc.merlin/mask.png cut/demo.mask.png # of another size, to be told of
+refuses 1 'the mask is 64×64 pixels, the photograph 512×512' estimate cut "${small[@]}"
+succeeds 'in a FOLDER$' estimate --help
+succeeds "^ *NAME.mask.png, else the photograph's alpha," estimate --help
+rm -r cut
+
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
