@@ -100,16 +100,6 @@ static status check(request *r)
     return OK;
 }
 
-/* DIR/maps.exr is what stands in the folder, for shells that complete names: the folder is meant. */
-static const char *without_name_of_maps(char *input)
-{
-    char *slash = strrchr(input, '/');
-    if (strcmp(slash ? slash + 1 : input, "maps.exr") != 0 || !file_exists(input)) return input;
-    if (!slash) return ".";
-    slash[slash == input] = 0;
-    return input;
-}
-
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
@@ -139,7 +129,7 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
     if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
-    r->input = without_name_of_maps((*argv)[0]);
+    r->input = photo_without_maps_name((*argv)[0]);
     return check(r);
 }
 

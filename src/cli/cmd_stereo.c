@@ -22,9 +22,8 @@ static const char help[] =
     "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
     "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
-    "under 50 lights. MAPS is a folder made by merlin estimate: the photograph is not estimated again. calibrate "
-    "finds\n"
-    "light directions from pictures of a ball.\n\n"
+    "under 50 lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
+    "again. calibrate finds light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
     "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
     "                       unless DIR has a light_intensities.txt with one or three numbers a line\n"
@@ -161,7 +160,7 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
     if (*argc > 1) return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", (*argv)[1]);
-    r->input = r->folder.folder = (*argv)[0];
+    r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
     return check(r);
 }
 

@@ -47,6 +47,15 @@ char *photo_output_inside(const char *input, const char *name, const char *asked
     return out;
 }
 
+const char *photo_without_maps_name(char *input)
+{
+    char *slash = strrchr(input, '/');
+    if (strcmp(base_name(input), "maps.exr") != 0 || !file_exists(input)) return input;
+    if (!slash) return ".";
+    slash[slash == input] = 0;
+    return input;
+}
+
 static bool is_mask_name(const char *path)
 {
     size_t stem = stem_length(path);

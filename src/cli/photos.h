@@ -27,6 +27,9 @@ void photo_list_free(photo_list *list);
 /* Where what is made of a photograph, or of a folder, goes: asked if that is not NULL, else NAME inside the folder or
  * inside the photograph's own, its name without ending + ".merlin"; malloc'ed. */
 char *photo_output_inside(const char *input, const char *name, const char *asked);
+/* input, or of DIR/maps.exr, which is cut, DIR: shells complete the name of what stands in a folder of maps, and the
+ * folder is meant. */
+const char *photo_without_maps_name(char *input);
 
 /* asked, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in models
  * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed.

@@ -69,6 +69,7 @@ awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < 0.01 * $estimated ^ 2) }" || 
 cp dome/dome_* dome/dome.lp estimated
 succeeds '"pictures": *6' stereo estimated --method ls --json -o out
 refuses 2 'holds maps already' stereo disc.merlin --size 64
+refuses 2 'disc.merlin holds maps already' stereo disc.merlin/maps.exr --size 64 # no photograph
 refuses 2 'for a folder of pictures' stereo disc.merlin --near
 
 echo "lights from a ball, straight ahead"
