@@ -32,7 +32,8 @@ static const char help[] =
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
-    "Several photographs: goes on after one that fails, and then exits with 1.\n";
+    "Several photographs: goes on after one that fails, and then exits with 1. What stands beside maps.exr in\n"
+    "a FOLDER under the names above is no photograph.\n";
 
 typedef struct request {
     const char *mask, *output, *weights;

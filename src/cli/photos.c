@@ -62,6 +62,17 @@ static bool is_mask_name(const char *path)
     return stem > 5 && strncmp(path + stem - 5, ".mask", 5) == 0;
 }
 
+/* What estimate and stereo write beside maps.exr. */
+static bool is_result_name(const char *path)
+{
+    static const char *const results[] = {"albedo.png",         "depth.png",    "error.png",  "maps.exr",
+                                          "mask.png",           "mesh.png",     "normal.png", "overview.png",
+                                          "reconstruction.png", "roughness.png"};
+    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
+        if (strcmp(base_name(path), results[i]) == 0) return true;
+    return false;
+}
+
 /* folder/NAME + suffix if that file exists, else NULL; *memory says whether NULL means no memory. */
 static char *companion(const char *folder, const char *photo, const char *suffix, bool *memory)
 {
@@ -101,14 +112,16 @@ static status add(photo_list *list, const char *photo)
     return list->at[list->count++].photo ? OK : no_memory();
 }
 
+/* Of a folder of maps nothing: estimate * finds those that it has made the last time. */
 static status add_folder(photo_list *list, const char *folder)
 {
     char **names;
     size_t count, photos = 0;
+    bool results = file_is_in(folder, "maps.exr");
     status s = file_list(folder, endings, &names, &count);
     if (s != OK) return s;
     for (size_t i = 0; i < count && s == OK; i++) {
-        if (is_mask_name(names[i])) continue;
+        if (is_mask_name(names[i]) || (results && is_result_name(names[i]))) continue;
         s = add(list, names[i]);
         if (s != OK) break;
         photo_job *job = &list->at[list->count - 1];
@@ -118,7 +131,7 @@ static status add_folder(photo_list *list, const char *folder)
         photos++;
     }
     file_list_free(names, count);
-    if (s == OK && photos == 0) return fail(ERROR_INPUT, "no photographs in the folder %s", folder);
+    if (s == OK && photos == 0 && !results) return fail(ERROR_INPUT, "no photographs in the folder %s", folder);
     return s;
 }
 
@@ -214,6 +227,8 @@ static status fill_list(char *const *arguments, int count, const char *mask, con
         batch |= folder;
         s = folder ? add_folder(out, arguments[i]) : add(out, arguments[i]);
     }
+    if (s == OK && out->count == 0)
+        s = fail(ERROR_INPUT, "no photographs, but maps that were made of one in the folder %s", arguments[0]);
     if (s == OK) s = choose_masks(out, mask, batch);
     if (s != OK) return s;
     if (!batch && output) {

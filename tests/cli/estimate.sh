@@ -164,6 +164,19 @@ succeeds 'in a FOLDER$' estimate --help
 succeeds "^ *NAME.mask.png, else the photograph's alpha," estimate --help
 rm -r cut
 
+echo "what was made of photographs is not taken for photographs the next time"
+mkdir again
+cp disc.hdr again/a.hdr
+cp disc.hdr again/b.hdr
+for _ in 1 2; do succeeds 'again/b.merlin/overview.png' estimate again/* --size 64; done
+[ "$(ls again again/a.merlin | tr '\n' ' ')" = "again: a.hdr a.merlin b.hdr b.merlin  again/a.merlin: $names " ] ||
+    complain "there is $(ls again again/a.merlin)"
+refuses 1 'no photographs, but maps .* in the folder again/a.merlin' estimate again/a.merlin --size 64
+succeeds 'again/a.hdr' estimate again/a.hdr --size 64 -o again
+succeeds 'again/b.hdr' estimate again --size 64
+absent again/albedo.merlin again/maps.merlin
+rm -r again
+
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
