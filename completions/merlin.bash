@@ -48,7 +48,7 @@ _merlin() {
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
     --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
-    --model) mapfile -t COMPREPLY < <(compgen -W "merlin-point merlin-env" -f -- "$current") ;;
+    --model | --init | --init-shared) mapfile -t COMPREPLY < <(compgen -W "merlin-point merlin-env" -f -- "$current") ;;
     --data | --means | --env-dir | --material-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     *)
         if [[ $current == -* ]]; then

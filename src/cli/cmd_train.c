@@ -1,9 +1,11 @@
 /* merlin train: from a folder of samples to weights. */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "base/parallel.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/photos.h"
 #include "train/train.h"
 
 static const char help[] =
@@ -14,7 +16,7 @@ static const char help[] =
     "  -o, --output DIR    receives weights.safetensors (from the first validation on),\n"
     "                      checkpoint.safetensors, curves.csv, validation.csv, curves.png and seconds.txt\n"
     "  -r, --resume        go on from DIR's checkpoint\n"
-    "  -i, --init W        start from these weights (to fine-tune them)\n"
+    "  -i, --init W        start from these weights (to fine-tune them): a file, or merlin-point or merlin-env\n"
     "      --init-shared W start from those of another model's weights that fit by name and shape\n"
     "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"
     "  -t, --threads N     processor threads (default: all)\n"
@@ -58,6 +60,17 @@ static status parse(int argc, char **argv, request *r)
     return OK;
 }
 
+/* Weights are named as everywhere else: a file, or those that ship. */
+static status train(trn_options *o)
+{
+    char *weights = NULL;
+    status s = o->init ? photo_find_model(o->init, &weights) : OK;
+    o->init = weights;
+    if (s == OK) s = trn_train(o);
+    free(weights);
+    return s;
+}
+
 int cmd_train(int argc, char **argv)
 {
     request r = {.options = {.interrupted = cli_interrupted}};
@@ -65,6 +78,6 @@ int cmd_train(int argc, char **argv)
     if (r.help) return fputs(help, stdout) < 0;
     if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
-    status s = trn_train(&r.options);
+    status s = train(&r.options);
     return s == OK ? 0 : cli_fail("train", s);
 }
