@@ -96,6 +96,8 @@ static status parse(int argc, char **argv, request *r)
 static int run_means(const request *r)
 {
     if (!r->output) return cli_usage("eval", "--means needs -o FILE.exr");
+    if (!file_ends_in(r->output, ".exr"))
+        return cli_usage("eval", "-o names mean maps to write, an EXR: let %s end in .exr", r->output);
     eval_means means;
     const eval_options *o = &r->options;
     status s = file_check_writable(r->output);
