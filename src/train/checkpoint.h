@@ -38,7 +38,7 @@ typedef struct trn_provenance {
     const char *note; /* such as the commit; may be NULL */
     int64_t presentations, samples;
     int size, generator_version;
-    double validation_loss;
+    double validation_loss; /* infinite: there was no validation, and the weights say nothing of it */
 } trn_provenance;
 
 /* Weights for everybody (model_load): half floats, batch norm's statistics float32, with the model's configuration and

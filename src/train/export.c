@@ -1,4 +1,5 @@
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,9 +50,10 @@ static status write_weights(const char *path, const st_tensor *tensors, size_t c
                                        {"samples", samples},
                                        {"size", size},
                                        {"generator_version", version},
-                                       {"validation_loss", loss},
-                                       {"note", from->note ? from->note : ""}};
-    return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
+                                       {"note", from->note ? from->note : ""},
+                                       {"validation_loss", loss}};
+    size_t known = sizeof metadata / sizeof *metadata - !isfinite(from->validation_loss);
+    return st_write(path, tensors, count, metadata, known);
 }
 
 status train_export(const char *path, nn_params *params, const trn_provenance *from)

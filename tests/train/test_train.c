@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "model/model.h"
+#include "nn/safetensors.h"
 #include "train/curves.h"
 #include "train/train.h"
 
@@ -352,6 +353,28 @@ static void exported_weights_load_as_a_model(void **state)
     nn_params_free(params);
 }
 
+static bool weights_name_a_loss(const fixture *f, const char *run)
+{
+    char path[600];
+    st_file *file;
+    snprintf(path, sizeof path, "%s/%s/weights.safetensors", f->root, run);
+    if (st_open(path, &file) != OK) fail_msg("%s", status_message());
+    bool named = st_metadata(file, "validation_loss") != NULL;
+    st_close(file);
+    return named;
+}
+
+static void weights_without_validation_name_no_loss(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 4, 2, 2, jitter);
+    assert_int_equal(train(f, "validated", false, 0), OK);
+    assert_true(weights_name_a_loss(f, "validated"));
+    write_config(f, 4, 2, 0, jitter);
+    assert_int_equal(train(f, "not", false, 0), OK);
+    assert_false(weights_name_a_loss(f, "not"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +394,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(weights_without_validation_name_no_loss, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
