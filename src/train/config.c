@@ -87,6 +87,8 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK && c->size % MODEL_SIZE_MULTIPLE)
         s = fail(ERROR_INPUT, "%s: \"size\" must be a multiple of %d", where, MODEL_SIZE_MULTIPLE);
     if (s == OK) s = json_int(o, "batch", 1, 1024, &c->batch);
+    if (s == OK && c->size == MODEL_SIZE_MULTIPLE && c->batch == 1) /* a batch of one pixel has no variance */
+        s = fail(ERROR_INPUT, "%s: \"batch\" must be 2 at least where \"size\" is %d", where, MODEL_SIZE_MULTIPLE);
     if (s == OK) s = json_int(o, "presentations", 1, INT_MAX, &c->presentations);
     if (s == OK) s = read_rates(o, c);
     if (s == OK) s = json_choice(o, "type", type_words, 3, &type);

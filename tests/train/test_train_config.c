@@ -105,6 +105,7 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("\"size\": 128", "\"siez\": 128", "size");
     refuses("\"batch\": 16", "\"batch\": 0", "batch");
     refuses("\"batch\": 16", "\"batch\": \"16\"", "batch");
+    refuses("\"size\": 128,\n    \"batch\": 16", "\"size\": 32,\n    \"batch\": 1", "2 at least");
     refuses("\"batch\": 16", "\"batch\": 15", "validation_count");
     refuses("\"batch\": 16", "\"batch\": 16, \"bacth\": 16", "bacth");
     refuses("\"presentations\": 192000", "\"presentations\": 1e12", "presentations");
