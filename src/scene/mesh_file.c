@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/library.h"
 #include "scene/mesh_gltf.h"
+#include "scene/mesh_obj.h"
 #include "scene/mesh_ply.h"
 
 enum { TRIANGLE_LIMIT = 5000000 };
@@ -19,6 +20,7 @@ static struct {
     __typeof__(aiSetImportPropertyInteger) *set_integer;
     __typeof__(aiReleasePropertyStore) *release_settings;
     __typeof__(aiImportFileExWithProperties) *import;
+    __typeof__(aiImportFileFromMemoryWithProperties) *import_text;
     __typeof__(aiReleaseImport) *release;
     __typeof__(aiGetErrorString) *error;
 } assimp;
@@ -28,6 +30,7 @@ static const library_function wanted[] = {
     {"aiSetImportPropertyInteger", &assimp.set_integer},
     {"aiReleasePropertyStore", &assimp.release_settings},
     {"aiImportFileExWithProperties", &assimp.import},
+    {"aiImportFileFromMemoryWithProperties", &assimp.import_text},
     {"aiReleaseImport", &assimp.release},
     {"aiGetErrorString", &assimp.error},
 };
@@ -110,22 +113,31 @@ static status take_scene(const struct aiScene *scene, scn_mesh *mesh, int *parts
     return s;
 }
 
-static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
+/* text: an OBJ's, which is not read from the file then; or NULL. */
+static status import(const char *path, const char *text, size_t size, scn_mesh *mesh, int *parts)
 {
-    status s = file_ends_in(path, ".obj") ? OK : mesh_check_gltf(path);
-    if (s == OK) s = library_need(&libassimp);
-    if (s != OK) return s;
+    const unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices |
+                           aiProcess_SortByPType;
     struct aiPropertyStore *settings = assimp.create_settings();
     if (!settings) return fail(ERROR_MEMORY, "no memory for the mesh");
     assimp.set_integer(settings, "PP_SBP_REMOVE", aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const struct aiScene *scene = assimp.import(path,
-                                                aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                    aiProcess_PreTransformVertices | aiProcess_SortByPType,
-                                                NULL, settings);
+    const struct aiScene *scene = text ? assimp.import_text(text, (unsigned)size, steps, "obj", settings)
+                                       : assimp.import(path, steps, NULL, settings);
     assimp.release_settings(settings);
     if (!scene) return fail(ERROR_INPUT, "cannot read the mesh: %s", assimp.error());
-    s = take_scene(scene, mesh, parts);
+    status s = take_scene(scene, mesh, parts);
     assimp.release(scene);
+    return s;
+}
+
+static status read_by_assimp(const char *path, scn_mesh *mesh, int *parts)
+{
+    char *text = NULL;
+    size_t size = 0;
+    status s = file_ends_in(path, ".obj") ? mesh_tidy_obj(path, &text, &size) : mesh_check_gltf(path);
+    if (s == OK) s = library_need(&libassimp);
+    if (s == OK) s = import(path, text, size, mesh, parts);
+    free(text);
     return s;
 }
 

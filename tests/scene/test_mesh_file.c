@@ -79,6 +79,19 @@ static void polygons_without_normals_are_triangulated_and_creased(void **state)
     scn_object_free(&o);
 }
 
+/* The cube at half its size, between vertices that no face has. */
+static void obj_numbers_may_begin_with_their_point(void **state)
+{
+    (void)state;
+    scn_object o;
+    const char text[] = "\xef\xbb\xbfv .5 0 0\nv .5\t.5 .5\nvt .25 .75\n"
+                        "v 0 0 0\nv .5 0 0\nv .5 .5 0\nv 0 .5 0\nv 0 0 .5\nv .5 0 .5\nv .5 .5 .5\nv 0 .5 .5\n"
+                        "v 7 7 7\nv 8 8 8\nf 3 6 5 4\nf 7 8 9 10\nf 3 4 8 7\nf 4 5 9 8\nf 5 6 10 9\nf 6 3 7 10\n";
+    assert_int_equal(load("points.obj", text, sizeof text - 1, &o), OK);
+    check_cube(&o);
+    scn_object_free(&o);
+}
+
 static void inward_surfaces_are_turned_outward(void **state)
 {
     (void)state;
@@ -365,6 +378,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(polygons_without_normals_are_triangulated_and_creased),
+        cmocka_unit_test(obj_numbers_may_begin_with_their_point),
         cmocka_unit_test(inward_surfaces_are_turned_outward),
         cmocka_unit_test(ascii_ply_is_read),
         cmocka_unit_test(vertices_of_no_face_do_not_count_for_the_frame),
