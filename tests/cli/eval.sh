@@ -23,6 +23,8 @@ refuses 2 "--model W is missing" "$MERLIN" eval --data "$samples"
 refuses 2 "--means needs -o" "$MERLIN" eval --means "$samples"
 refuses 2 "--means goes with" "$MERLIN" eval --means "$samples" -o "$scratch/other.exr" --data "$samples" --model "$weights"
 refuses 2 "--means goes with" "$MERLIN" eval --means "$samples" -o "$scratch/other.exr" --json
+refuses 2 "taken for a sample" "$MERLIN" eval --means "$samples" -o "$samples/means.exr"
+refuses 2 "taken for a sample" env -C "$samples" "$MERLIN" eval --means . -o 000001.exr
 refuses 2 "end in .exr" "$MERLIN" eval --means "$samples" -o "$scratch/other.png"
 refuses 2 "-o is for --means" "$MERLIN" eval --data "$samples" --model "$weights" -o "$scratch/other.json"
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 0
