@@ -1,6 +1,7 @@
 #include "render/generate.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -149,12 +150,48 @@ static void describe(const render_options *o, char *out, size_t size)
              o->material_folder ? o->material_folder : "", o->material_folder ? "\n" : "");
 }
 
+/* The folder above, in place; false if there is none. */
+static bool go_up(char *path)
+{
+    char *slash = strrchr(path, '/');
+    if (strcmp(path, ".") == 0 || strcmp(path, "/") == 0) return false;
+    if (slash)
+        slash[slash == path] = 0;
+    else
+        strcpy(path, ".");
+    return true;
+}
+
+/* Whether a folder, which need not exist yet, is `outer` or lies in it. */
+static bool lies_in(const char *folder, const char *outer)
+{
+    char named[PATH_MAX], path[PATH_MAX];
+    snprintf(named, sizeof named, "%s", folder);
+    while (!file_exists(named) && go_up(named))
+        ;
+    if (!realpath(named, path)) return false;
+    while (!file_is_same(path, outer))
+        if (!go_up(path)) return false;
+    return true;
+}
+
+/* Samples among what is read would be read themselves by the run that continues this one. */
+static status check_apart(const render_options *o)
+{
+    const char *materials = o->material_folder, *maps = o->environment_folder, *read = NULL;
+    if (maps && file_is_same(o->folder, maps)) read = maps;
+    if (materials && lies_in(o->folder, materials)) read = materials;
+    if (!read) return OK;
+    return fail(ERROR_USAGE, "samples in %s would be taken for pictures of %s: choose another folder", o->folder, read);
+}
+
 static status claim_folder(const render_options *o)
 {
     char text[8192], *found = NULL;
     size_t size;
     describe(o, text, sizeof text);
-    status s = file_make_folder(o->folder);
+    status s = check_apart(o);
+    if (s == OK) s = file_make_folder(o->folder);
     if (s != OK) return s;
     char *path = file_join(o->folder, "render.txt");
     if (!path) return fail(ERROR_MEMORY, "out of memory");

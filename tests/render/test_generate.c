@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "image/write.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "scratch.h"
@@ -113,6 +114,29 @@ static void samples_of_other_options_are_not_mixed_in(void **state)
     assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
     assert_non_null(strstr(status_message(), "other options"));
     scratch_remove(folder);
+}
+
+static void samples_are_not_rendered_among_what_they_are_made_of(void **state)
+{
+    (void)state;
+    char *materials = scratch_new(), *inside = file_join(materials, "new/samples"), *tile;
+    sample s;
+    render_stats stats;
+    render_options o = small(NULL);
+    assert_int_equal(render_sample(&o, 0, &s), OK);
+    assert_non_null(tile = file_join(materials, "brick_albedo.png"));
+    assert_int_equal(img_write_png(tile, &s.albedo, IMG_SRGB8), OK);
+    sample_free(&s);
+    o = small(inside);
+    o.material_folder = materials;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "taken for pictures of"));
+    assert_false(file_exists(inside));
+    o.folder = materials;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    free(tile);
+    free(inside);
+    scratch_remove(materials);
 }
 
 static void impossible_options_are_refused(void **state)
@@ -254,6 +278,7 @@ int main(void)
         cmocka_unit_test(set_is_the_same_from_one_thread_and_from_two),
         cmocka_unit_test(interrupted_set_is_continued_to_the_same_files),
         cmocka_unit_test(samples_of_other_options_are_not_mixed_in),
+        cmocka_unit_test(samples_are_not_rendered_among_what_they_are_made_of),
         cmocka_unit_test(impossible_options_are_refused),
         cmocka_unit_test(an_unreadable_mesh_claims_no_folder),
         cmocka_unit_test(an_object_elsewhere_keeps_its_maps_and_flash_picture),
