@@ -79,6 +79,8 @@ static status name_output(run *r)
         return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
                     folder);
     if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
+    if (r->options->init && file_is_same(r->options->init, p->weights))
+        return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", p->weights);
     return OK;
 }
 

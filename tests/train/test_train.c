@@ -88,6 +88,15 @@ static int stop_after_steps(void)
     return --steps_left <= 0;
 }
 
+static status train_from(const fixture *f, const char *name, const char *weights)
+{
+    char *output = file_join(f->root, name);
+    status s = trn_train(
+        &(trn_options){.config = f->config, .data = f->data, .output = output, .init = weights, .quiet = true});
+    free(output);
+    return s;
+}
+
 static status train_asked(const fixture *f, const char *name, bool resume, int (*interrupted)(void))
 {
     char *output = file_join(f->root, name);
@@ -353,6 +362,20 @@ static void exported_weights_load_as_a_model(void **state)
     nn_params_free(params);
 }
 
+static void weights_that_a_run_starts_from_are_not_replaced(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 4, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    char checkpoint[600], weights[600];
+    snprintf(checkpoint, sizeof checkpoint, "%s/a/checkpoint.safetensors", f->root);
+    snprintf(weights, sizeof weights, "%s/a/../a/weights.safetensors", f->root);
+    assert_int_equal(remove(checkpoint), 0);
+    assert_int_equal(train_from(f, "a", weights), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "name another folder"));
+    assert_int_equal(train_from(f, "b", weights), OK);
+}
+
 static bool weights_name_a_loss(const fixture *f, const char *run)
 {
     char path[600];
@@ -394,6 +417,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(weights_that_a_run_starts_from_are_not_replaced, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_without_validation_name_no_loss, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
