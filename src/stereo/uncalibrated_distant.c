@@ -21,7 +21,7 @@
 #include "stereo/uncalibrated_parts.h"
 #include "stereo/unit_quadric.h"
 
-enum { SAMPLE = 1500, REFITS = 30, PASSES = 5, GRID = 24, FEWEST = 100 };
+enum { SAMPLE = 1500, REFITS = 30, PASSES = 5, GRID = 12, FEWEST = 100 };
 
 /* Lights whose strengths differ by more are not meant to be equal. */
 static const double uneven = 0.07;
@@ -268,23 +268,41 @@ static void compare_with_balloon(const pseudo *f, double products[9])
     }
 }
 
-/* The best of a grid of those that leave the lights' mean on the camera's side. */
-static status search(const rotation_cost *c, vec3 mean, double a[9])
+/* Of grid point k, counted along three turns. */
+static void grid_rotation(int k, double out[9])
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const double step = 6.283185307 / GRID;
+    const double about_z[3] = {0, 0, step * (k % GRID)}, about_x[3] = {step * (k / GRID % GRID), 0, 0};
+    const double last[3] = {0, 0, step * (k / GRID / GRID)};
+    double once[9], tilted[9];
+    turned(about_z, identity, once);
+    turned(about_x, once, tilted);
+    turned(last, tilted, out);
+}
+
+/* Whether it leaves the lights' mean on the camera's side. */
+static bool is_frontal(const double a[9], vec3 mean)
+{
+    return fabs((double)transform(a, mean).z) >= FRONTAL;
+}
+
+/* The best of those that are frontal, downhill from every point of a grid: a ball's cap is almost as integrable if it
+ * is turned into a saddle, and what is between the two is less than what the grid's own points are off. */
+static status search(const rotation_cost *c, vec3 mean, double a[9])
+{
     double best = HUGE_VAL;
     for (int k = 0; k < GRID * GRID * GRID; k++) {
-        const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
-        double trial[9], tilted[9], step = 6.283185307 / GRID;
-        double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
-        double last[3] = {0, 0, step * index[2]};
-        turned(about_z, identity, trial);
-        turned(about_x, trial, tilted);
-        turned(last, tilted, trial);
-        double value = cost_at(c, trial);
-        if (!(value < best) || fabs((double)transform(trial, mean).z) < FRONTAL) continue;
+        double from[9], trial[9];
+        grid_rotation(k, from);
+        if (!is_frontal(from, mean)) continue;
+        memcpy(trial, from, sizeof trial);
+        descend(c, 0.3, trial);
+        const double *found = is_frontal(trial, mean) ? trial : from;
+        double value = cost_at(c, found);
+        if (!(value < best)) continue;
         best = value;
-        memcpy(a, trial, sizeof trial);
+        memcpy(a, found, sizeof trial);
     }
     return best < HUGE_VAL ? OK : fail(ERROR_INPUT, "the pictures do not tell where the lights are");
 }
