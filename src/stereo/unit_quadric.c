@@ -6,7 +6,7 @@
 
 #include "stereo/lapack.h"
 
-enum { PASSES = 8 };
+enum { PASSES = 8, UNKNOWNS = 6 };
 /* Of the quadric: its smallest axis' share of its largest. */
 static const double flattest = 0.02;
 
@@ -26,12 +26,13 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* As many vectors as there are unknowns can be met whatever they are, and say nothing: the median of the others. */
 static double median_distance(const unit_quadric *q, const vec3 *v, size_t count, double *distance)
 {
     for (size_t i = 0; i < count; i++)
         distance[i] = fabs(length_of(q->make, v[i]) - 1);
     qsort(distance, count, sizeof *distance, ascending);
-    return distance[count / 2];
+    return distance[count > UNKNOWNS ? (count + UNKNOWNS) / 2 : count - 1];
 }
 
 /* vᵀ Q v = 1, linear in the six numbers of Q, weighted by how close the last quadric came (Cauchy). */

@@ -14,7 +14,7 @@
 
 typedef struct unit_quadric {
     double make[9], dual[9]; /* row-major; dual: the inverse's transpose */
-    double spread;           /* of the lengths |make v| about 1: their median distance */
+    double spread;           /* of the lengths |make v| about 1: their median distance, six that fit anyhow left out */
 } unit_quadric;
 
 /* By least squares, reweighted for the vectors that are not like most. ERROR_INPUT if there is no such ellipsoid. */

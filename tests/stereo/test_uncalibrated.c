@@ -225,20 +225,23 @@ static void a_bowl_under_near_lights_is_a_bowl(void **state)
     capture_drop(&c);
 }
 
-/* A white sphere's cap that fills the picture, turned to the camera by up to 33 degrees, under distant lights. */
-static void cap_capture(pst_capture *c)
+/* A white sphere's cap that fills the picture, turned to the camera by up to 33 degrees, under distant lights whose
+ * strengths differ by up to this factor from 1. */
+static void cap_capture(float factor, pst_capture *c)
 {
     enum { SIZE = 64, LIGHTS = 12 };
     const float bend = 0.4f;
+    rng r = rng_at(5, 0, 0);
     capture_new(c, SIZE, LIGHTS, 1);
     for (int k = 0; k < LIGHTS; k++) {
+        float strength = 30000 * powf(factor, rng_range(&r, -1, 1));
         c->light[k].direction = relief_light(k, LIGHTS);
         for (int i = 0; i < SIZE * SIZE; i++) {
             float x = bend * ((float)(i % SIZE) - 31.5f) / 32, y = bend * (31.5f - (float)(i / SIZE)) / 32;
             vec3 n = vec3_make(x, y, sqrtf(1 - x * x - y * y));
             c->mask.data[i] = 1;
             memcpy(c->normal_true.data + 3 * i, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-            c->picture[k][i] = (uint16_t)(30000 * fmaxf(vec3_dot(n, c->light[k].direction), 0));
+            c->picture[k][i] = (uint16_t)(strength * fmaxf(vec3_dot(n, c->light[k].direction), 0));
         }
     }
 }
@@ -248,8 +251,18 @@ static void a_cap_is_no_saddle(void **state)
 {
     (void)state;
     pst_capture c;
-    cap_capture(&c);
+    cap_capture(1, &c);
     assert_true(bare_angle(&c) < 0.5); /* 0.0; 22 as a saddle */
+    capture_drop(&c);
+}
+
+/* Any six of the twelve are equally strong in some space. */
+static void few_lights_of_unequal_strengths_do_not_pass_for_equal(void **state)
+{
+    (void)state;
+    pst_capture c;
+    cap_capture(1.5f, &c);
+    assert_true(bare_angle(&c) < 0.5);
     capture_drop(&c);
 }
 
@@ -280,6 +293,7 @@ int main(void)
         cmocka_unit_test(flattened_contrast_makes_no_bowl_of_a_ball),
         cmocka_unit_test(a_bowl_under_near_lights_is_a_bowl),
         cmocka_unit_test(a_cap_is_no_saddle),
+        cmocka_unit_test(few_lights_of_unequal_strengths_do_not_pass_for_equal),
         cmocka_unit_test(a_speck_under_unknown_lights_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
