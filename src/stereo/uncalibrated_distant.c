@@ -3,8 +3,8 @@
  * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors
  *    are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3 matrix
  *    is left between the factors.
- * 2. Prior: most lights are equally strong or, where that cannot be, most of the surface has one albedo. It leaves a
- *    rotation or reflection (unit_quadric.h).
+ * 2. Prior: most lights are equally strong or, where that cannot be or the other is so far more exactly, most of the
+ *    surface has one albedo. It leaves a rotation or reflection (unit_quadric.h).
  * 3. Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using
  *    integrability, CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the
  *    camera's side, but for a sign, convex or concave. Noise bends it: on photographs it is 20 to 40 degrees off. So
@@ -23,8 +23,10 @@
 
 enum { SAMPLE = 1500, REFITS = 30, PASSES = 5, GRID = 12, FEWEST = 100 };
 
-/* Lights whose strengths differ by more are not meant to be equal. */
-static const double uneven = 0.07;
+/* Lights whose strengths differ by more are not meant to be equal, nor are those that do so this many times more than
+ * the surface's albedos: noise alone has albedos differ three times more, one albedo under lights that differ, half as
+ * much or less. */
+static const double uneven = 0.07, plainly = 2;
 /* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
 #define FRONTAL 0.8
 /* What a surface costs that is nothing like the balloon, in costs of the most integrable one. */
@@ -375,7 +377,8 @@ static void transform_lights(const double m[9], lights3 *l)
     }
 }
 
-/* Lights become equally strong or, if they cannot, the surface becomes one of equal albedo; up to a rotation. */
+/* Lights become equally strong or, if they cannot or the surface is plainly of one albedo, that does; up to a
+ * rotation. */
 static status straighten(pseudo *f, lights3 *l)
 {
     unit_quadric strength, albedo;
@@ -387,8 +390,9 @@ static status straighten(pseudo *f, lights3 *l)
     status s = unit_quadric_fit(light, (size_t)l->count, &strength);
     free(light);
     if (s != OK) return s;
-    bool by_albedo = strength.spread > uneven;
-    if (by_albedo && (unit_quadric_fit(f->b, n, &albedo) != OK || albedo.spread > strength.spread))
+    double albedos = unit_quadric_fit(f->b, n, &albedo) == OK ? albedo.spread : HUGE_VAL;
+    bool by_albedo = strength.spread > fmin(uneven, plainly * albedos);
+    if (by_albedo && albedos > strength.spread)
         return fail(ERROR_INPUT,
                     "the lights are not equally strong, nor is the surface of one albedo: where the lights "
                     "are cannot be told; state their intensities in light_intensities.txt");

@@ -266,6 +266,16 @@ static void few_lights_of_unequal_strengths_do_not_pass_for_equal(void **state)
     capture_drop(&c);
 }
 
+/* By a tenth at most. */
+static void one_colour_tells_what_lights_almost_equal_do_not(void **state)
+{
+    (void)state;
+    pst_capture c;
+    cap_capture(1.1f, &c);
+    assert_true(bare_angle(&c) < 0.5); /* 7 if the lights are taken for equal */
+    capture_drop(&c);
+}
+
 static void a_speck_under_unknown_lights_is_refused(void **state)
 {
     (void)state;
@@ -294,6 +304,7 @@ int main(void)
         cmocka_unit_test(a_bowl_under_near_lights_is_a_bowl),
         cmocka_unit_test(a_cap_is_no_saddle),
         cmocka_unit_test(few_lights_of_unequal_strengths_do_not_pass_for_equal),
+        cmocka_unit_test(one_colour_tells_what_lights_almost_equal_do_not),
         cmocka_unit_test(a_speck_under_unknown_lights_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
