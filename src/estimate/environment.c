@@ -1,4 +1,5 @@
 /* merlin_environment: surroundings from a file. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,6 +9,20 @@
 /* The well lit of the training data (render/environment.c). */
 static const float MEAN_LUMINANCE = 1.0f;
 static const float MOST_EXPOSURE = 20.0f;
+
+/* Divides by a power of two, so that nothing is rounded: the sums over the largest floats would not be finite. */
+static void bring_to_one(img *picture)
+{
+    float most = 0;
+    int exponent;
+    size_t count = img_value_count(picture);
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(picture->data[i])) most = fmaxf(most, picture->data[i]);
+    frexpf(most, &exponent);
+    float factor = ldexpf(1, -exponent > FLT_MAX_EXP - 1 ? FLT_MAX_EXP - 1 : -exponent);
+    for (size_t i = 0; i < count; i++)
+        picture->data[i] *= factor;
+}
 
 static status prepare(const char *path, float turn, float exposure, env_map *map)
 {
@@ -30,6 +45,7 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
     if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
     img picture = {0};
     s = img_read_latlong(path, &picture);
+    if (s == OK) bring_to_one(&picture);
     if (s == OK) s = env_map_new(&picture, &e->map);
     if (s == OK) s = prepare(path, turn, exposure, &e->map);
     img_free(&picture);

@@ -281,6 +281,42 @@ static void surroundings_without_light_are_refused(void **state)
     assert_int_equal(merlin_environment_read(f->surroundings, NAN, 0, &room), MERLIN_WRONG_USE);
 }
 
+/* A Radiance HDR of 32 x 16, bright on the right and dark on the left, all with this exponent. */
+static void write_radiance(const char *path, unsigned char exponent)
+{
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    fputs("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n", f);
+    for (int i = 0; i < 16 * 32; i++) {
+        const unsigned char bright = i % 32 >= 16 ? 250 : 14;
+        fwrite((const unsigned char[]){bright, bright, bright, exponent}, 1, 4, f);
+    }
+    assert_int_equal(fclose(f), 0);
+}
+
+/* The largest and the smallest powers of two that leave every value a float of full precision. */
+static void surroundings_are_the_same_in_every_unit(void **state)
+{
+    fixture *f = *state;
+    const unsigned char exponents[] = {128, 255, 10};
+    char path[96];
+    merlin_image images[3];
+    snprintf(path, sizeof path, "%s/room.hdr", f->folder);
+    for (int k = 0; k < 3; k++) {
+        merlin_environment *room;
+        write_radiance(path, exponents[k]);
+        assert_int_equal(merlin_environment_read(path, 0, 0, &room), MERLIN_OK);
+        assert_int_equal(merlin_relight_environment(f->point, &f->maps, room, NULL, MERLIN_BY_BRDF, &images[k]),
+                         MERLIN_OK);
+        merlin_environment_free(room);
+    }
+    assert_true(images[0].data[3 * (32 * SIDE + 32)] > 0);
+    for (int k = 1; k < 3; k++)
+        assert_memory_equal(images[k].data, images[0].data, 3 * SIDE * SIDE * sizeof(float));
+    for (int k = 0; k < 3; k++)
+        merlin_image_free(&images[k]);
+}
+
 /* Somebody's own maps, in the photograph's resolution. */
 static void normals_that_are_none_are_relit_as_some(void **state)
 {
@@ -315,6 +351,7 @@ int main(void)
         cmocka_unit_test(stage_outlives_its_maps_at_any_side),
         cmocka_unit_test(stage_says_what_it_misses),
         cmocka_unit_test(surroundings_without_light_are_refused),
+        cmocka_unit_test(surroundings_are_the_same_in_every_unit),
         cmocka_unit_test(normals_that_are_none_are_relit_as_some),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
