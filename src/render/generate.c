@@ -158,7 +158,7 @@ static bool go_up(char *path)
     if (slash)
         slash[slash == path] = 0;
     else
-        strcpy(path, ".");
+        memcpy(path, ".", sizeof ".");
     return true;
 }
 
