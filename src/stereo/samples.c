@@ -13,6 +13,11 @@
 enum { ENOUGH = 24 };
 /* In a pixel's ordinary brightness: below is a shadow, above a highlight, which counts as this much. */
 static const float dark = 0.05f, bright = 1.2f;
+/* The second of the lights' eigenvalues as a share of the first: of planes to 0.0004, and below 8-bit steps certainly;
+ * of what is not flat 0.01 and more. Between the two noise decides: planes have up to 9 of the fourth, shallow reliefs
+ * 20 and more. */
+static const double flat = 1e-3, flattest = 1e-5, above_noise = 15;
+static const double above_rounding = 1e-9;
 
 status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
 {
@@ -64,11 +69,9 @@ static void add_pixel(const pst_samples *m, size_t i, float level, double *gram)
             gram[j * n + k] += (double)fminf(v[j] / level, bright) * (double)fminf(v[k] / level, bright);
 }
 
-status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
+/* Of the lights, summed over the pixels that all of them light, of which *lit are there; over all if they are few. */
+static void fill_gram(const pst_samples *m, double *gram, size_t *lit)
 {
-    size_t n = (size_t)m->lights;
-    double *gram = calloc(n * n + n, sizeof *gram);
-    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
     *lit = 0;
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < m->count; i++) {
@@ -78,6 +81,14 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
             if (pass == 0) *lit += all;
             if (pass == 1 && level > 0 && (all || *lit < ENOUGH)) add_pixel(m, i, level, gram);
         }
+}
+
+status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
+{
+    size_t n = (size_t)m->lights;
+    double *gram = calloc(n * n + n, sizeof *gram);
+    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    fill_gram(m, gram, lit);
     double *eigenvalue = gram + n * n;
     bool solved = lapack_eigen(gram, m->lights, true, eigenvalue);
     double smallest = eigenvalue[n - 3], largest = eigenvalue[n - 1];
@@ -85,8 +96,23 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
         for (size_t k = 0; k < 3; k++)
             basis[3 * j + k] = gram[j * n + n - 1 - k] * sqrt(eigenvalue[n - 1 - k] > 0 ? eigenvalue[n - 1 - k] : 0);
     free(gram);
-    if (!solved || !(smallest > 1e-9 * largest))
+    if (!solved || !(smallest > above_rounding * largest))
         return fail(ERROR_INPUT, "the pictures do not differ enough to tell the lights from the surface");
+    return OK;
+}
+
+status pst_samples_differ(const pst_samples *m, bool *differ)
+{
+    size_t n = (size_t)m->lights, lit;
+    double *gram = calloc(n * n + n, sizeof *gram);
+    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    fill_gram(m, gram, &lit);
+    double *eigenvalue = gram + n * n;
+    bool solved = lapack_eigen(gram, m->lights, false, eigenvalue);
+    double share = eigenvalue[n - 2] / eigenvalue[n - 1];
+    bool noise = n >= 4 && eigenvalue[n - 2] < above_noise * eigenvalue[n - 4];
+    *differ = !solved || (share > flattest && (share > flat || !noise));
+    free(gram);
     return OK;
 }
 

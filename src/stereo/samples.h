@@ -26,6 +26,9 @@ void pst_samples_free(pst_samples *m);
  * leaves dark or saturated (of all, if hardly any is). *lit gets how many those are. */
 status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit);
 
+/* Whether the pictures differ in more than brightness and noise. */
+status pst_samples_differ(const pst_samples *m, bool *differ);
+
 void pst_samples_fit(pst_samples *m, const float *x, const float *y, const float *z);
 
 #endif

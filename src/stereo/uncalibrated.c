@@ -11,9 +11,10 @@
 #include "stereo/inflate.h"
 #include "stereo/integrate.h"
 #include "stereo/lobe_choice.h"
+#include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"
 
-enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192 };
+enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
 /* Near lights have an unknown a picture more, and distance to spare: they must cost less than this share of what
  * distant ones do; the other way round if distant ones show the object's front by the outline's word alone. Measured on
  * rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.93 to 1.2 where they were distant. */
@@ -178,6 +179,23 @@ static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, p
     return s;
 }
 
+/* A plane under distant lights has pictures that differ in nothing but brightness, and near lights explain them too, as
+ * well as any others. */
+static status check_not_flat(const pst_problem *p)
+{
+    pst_samples m;
+    bool differ = true;
+    status s = pst_samples_new(p, DIFFERING, &m);
+    if (s != OK) return s;
+    s = pst_samples_differ(&m, &differ);
+    pst_samples_free(&m);
+    if (s == OK && !differ)
+        s = fail(ERROR_INPUT,
+                 "the pictures differ in nothing but their brightness, as those of a plane do: they do not "
+                 "tell where the lights are");
+    return s;
+}
+
 status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
 {
     const pst_capture *c = p->capture;
@@ -190,6 +208,7 @@ status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
     hypothesis near = {.light = calloc(count, sizeof *near.light)};
     hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
     status s = near.light && distant.light ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    if (s == OK) s = check_not_flat(&q);
     if (s == OK) s = find_both(&q, &near, &distant);
     if (s == OK) {
         bool camera_known = c->camera.perspective && c->camera.focal > 0;

@@ -276,6 +276,28 @@ static void one_colour_tells_what_lights_almost_equal_do_not(void **state)
     capture_drop(&c);
 }
 
+/* With a colour of its own a pixel and noise of half a percent. */
+static void a_plane_under_unknown_lights_is_refused(void **state)
+{
+    (void)state;
+    pst_capture c;
+    pst_surface s;
+    rng r = rng_at(6, 0, 0);
+    const vec3 n = vec3_normalize(vec3_make(-0.3f, 0.1f, 1));
+    capture_new(&c, 32, 10, 1);
+    for (int i = 0; i < 32 * 32; i++) {
+        float albedo = rng_range(&r, 0.3f, 1);
+        c.mask.data[i] = 1;
+        for (int k = 0; k < 10; k++)
+            c.picture[k][i] =
+                (uint16_t)(50000 * (albedo * vec3_dot(n, relief_light(k, 10)) + rng_range(&r, -0.005f, 0.005f)));
+    }
+    c.lighting = PST_UNKNOWN_LIGHT;
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "nothing but their brightness"));
+    capture_drop(&c);
+}
+
 static void a_speck_under_unknown_lights_is_refused(void **state)
 {
     (void)state;
@@ -305,6 +327,7 @@ int main(void)
         cmocka_unit_test(a_cap_is_no_saddle),
         cmocka_unit_test(few_lights_of_unequal_strengths_do_not_pass_for_equal),
         cmocka_unit_test(one_colour_tells_what_lights_almost_equal_do_not),
+        cmocka_unit_test(a_plane_under_unknown_lights_is_refused),
         cmocka_unit_test(a_speck_under_unknown_lights_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
