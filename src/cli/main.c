@@ -70,8 +70,9 @@ static void reuse_memory(void)
 }
 
 /* Beside other work a thread of OpenMP waits for one that has no processor, and takes another's meanwhile: three
- * estimates at once took 3 to 15 seconds instead of 1.7. It spins for milliseconds before it sleeps; a thirtieth of that
- * costs nothing where the machine is idle. libgomp asks the environment before main, so the program starts once more. */
+ * estimates at once took 3 to 15 seconds instead of 1.7. It spins for milliseconds before it sleeps; a thirtieth of
+ * that costs nothing where the machine is idle. libgomp asks the environment before main, so the program starts once
+ * more. */
 static void wait_briefly(char *const *argv)
 {
     if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;

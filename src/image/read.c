@@ -71,8 +71,8 @@ static status look_at(const char *path, picture_kind *kind)
 status picture_check_size(const char *path, long long width, long long height)
 {
     if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", path,
-                width, height, IMAGE_MAX_SIDE);
+    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
+                path, width, height, IMAGE_MAX_SIDE);
 }
 
 void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out)

@@ -275,8 +275,9 @@ static void grid_rotation(int k, double out[9])
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const double step = 6.283185307 / GRID;
-    const double about_z[3] = {0, 0, step * (k % GRID)}, about_x[3] = {step * (k / GRID % GRID), 0, 0};
-    const double last[3] = {0, 0, step * (k / GRID / GRID)};
+    const int index[3] = {k % GRID, k / GRID % GRID, k / GRID / GRID};
+    const double about_z[3] = {0, 0, step * index[0]}, about_x[3] = {step * index[1], 0, 0};
+    const double last[3] = {0, 0, step * index[2]};
     double once[9], tilted[9];
     turned(about_z, identity, once);
     turned(about_x, once, tilted);
