@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
 #include "stereo/poisson.h"
 
 /* Of what the object's pixels reach at their brightest in the mean: what is brighter is lit. Darker may be noise or a
@@ -69,18 +70,43 @@ static float likeness(const pst_problem *p, size_t pixel)
 
 enum { BRIGHT = 2 }; /* more than any likeness */
 
+typedef struct search {
+    const pst_problem *problem;
+    float most; /* brightness of what may be dark */
+    img *alike; /* brightness, then likeness */
+} search;
+
+static void measure(void *context, size_t begin, size_t end)
+{
+    const search *w = context;
+    for (size_t i = begin; i < end; i++)
+        w->alike->data[w->problem->pixel[i]] = brightest(w->problem, w->problem->pixel[i]);
+}
+
+static void compare(void *context, size_t begin, size_t end)
+{
+    const search *w = context;
+    for (size_t i = begin; i < end; i++) {
+        float *at = &w->alike->data[w->problem->pixel[i]];
+        *at = *at < w->most ? likeness(w->problem, w->problem->pixel[i]) : BRIGHT;
+    }
+}
+
 /* alike: 1 channel, the likeness of dark pixels; BRIGHT elsewhere. */
 static status find_dark(const pst_problem *p, img *alike)
 {
     const pst_capture *c = p->capture;
     status s = img_new(alike, c->width, c->height, 1);
     if (s != OK) return s;
-    double sum = 0;
-    for (size_t i = 0; i < p->pixel_count; i++)
-        sum += (double)(alike->data[p->pixel[i]] = brightest(p, p->pixel[i]));
-    float most = dark * (float)(sum / (double)p->pixel_count);
     for (size_t i = 0; i < img_value_count(alike); i++)
-        alike->data[i] = c->mask.data[i] > 0.5f && alike->data[i] < most ? likeness(p, i) : BRIGHT;
+        alike->data[i] = BRIGHT;
+    search w = {.problem = p, .alike = alike};
+    double sum = 0;
+    parallel_blocks(p->pixel_count, measure, &w);
+    for (size_t i = 0; i < p->pixel_count; i++)
+        sum += (double)alike->data[p->pixel[i]];
+    w.most = dark * (float)(sum / (double)p->pixel_count);
+    parallel_blocks(p->pixel_count, compare, &w);
     return OK;
 }
 
