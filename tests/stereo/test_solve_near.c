@@ -164,9 +164,9 @@ static bool doubts_distance(const few_leds *few, double *angle)
     return unsure;
 }
 
-/* Three values of a pixel are explained from anywhere, and those of a ring about the lens nearly so. What is off here
- * by 10 degrees and more is off by 6 at most (10 under three lights) where the distance is known to three percent. What
- * is said of it holds. */
+/* Three values of a pixel are explained from anywhere, and those of a ring about the lens nearly so: what is found then
+ * is a guess, 9 to 27 degrees off, and may be any other on another machine. Where the distance is known to three
+ * percent normals are off by 6 at most (10 under three lights). What is said of it holds. */
 static void a_ring_of_lights_does_not_tell_the_distance(void **state)
 {
     (void)state;
@@ -175,7 +175,6 @@ static void a_ring_of_lights_does_not_tell_the_distance(void **state)
         for (int glossy = 0; glossy < 2; glossy++) {
             few_leds few = {count, true, 4 * (float)glossy, 0};
             assert_true(doubts_distance(&few, &angle));
-            assert_true(angle > 10);
             few.distance_off = 1.03f;
             assert_false(doubts_distance(&few, &angle));
             assert_true(angle < (count == 3 ? 10 : 6));
