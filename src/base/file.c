@@ -83,6 +83,12 @@ status file_read(const char *path, size_t limit, char **data, size_t *size)
     return s;
 }
 
+char *file_folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
+}
+
 size_t file_text_mark(const char *text, size_t size)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};

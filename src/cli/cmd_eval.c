@@ -57,6 +57,18 @@ static status take_precision(const char *text, void *into)
     return OK;
 }
 
+/* Every EXR of a folder of samples is taken for one, and must be: means among them would end training. */
+static status check_means_apart(const request *r)
+{
+    char *folder = file_folder_of(r->output);
+    if (!folder) return fail(ERROR_MEMORY, "no memory for a file name");
+    bool among = file_is_same(folder, r->means_folder);
+    free(folder);
+    if (!among) return OK;
+    return fail(ERROR_USAGE, "-o %s would be taken for a sample of %s: name another folder", r->output,
+                r->means_folder);
+}
+
 /* Nobody should wait for an evaluation to find that its report went elsewhere. */
 static status check(const request *r)
 {
@@ -65,7 +77,11 @@ static status check(const request *r)
         return fail(ERROR_USAGE, "-o is for --means; an evaluation prints its report, with --json for a program");
     if (!r->means_folder) return OK;
     bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->views || o->figure;
-    return evaluates || r->json ? fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone") : OK;
+    if (evaluates || r->json) return fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone");
+    if (!r->output) return fail(ERROR_USAGE, "--means needs -o FILE.exr");
+    if (!file_ends_in(r->output, ".exr"))
+        return fail(ERROR_USAGE, "-o names mean maps to write, an EXR: let %s end in .exr", r->output);
+    return check_means_apart(r);
 }
 
 static status parse(int argc, char **argv, request *r)
@@ -93,25 +109,8 @@ static status parse(int argc, char **argv, request *r)
     return argc == 0 ? check(r) : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
 }
 
-/* Every EXR of a folder of samples is taken for one, and must be: means among them would end training. */
-static status check_means_apart(const request *r)
-{
-    const char *slash = strrchr(r->output, '/');
-    char *folder = slash ? strndup(r->output, slash > r->output ? (size_t)(slash - r->output) : 1) : strdup(".");
-    if (!folder) return fail(ERROR_MEMORY, "no memory for a file name");
-    bool among = file_is_same(folder, r->means_folder);
-    free(folder);
-    if (!among) return OK;
-    return fail(ERROR_USAGE, "-o %s would be taken for a sample of %s: name another folder", r->output,
-                r->means_folder);
-}
-
 static int run_means(const request *r)
 {
-    if (!r->output) return cli_usage("eval", "--means needs -o FILE.exr");
-    if (!file_ends_in(r->output, ".exr"))
-        return cli_usage("eval", "-o names mean maps to write, an EXR: let %s end in .exr", r->output);
-    if (check_means_apart(r) != OK) return cli_usage("eval", "%s", status_message());
     eval_means means;
     const eval_options *o = &r->options;
     status s = file_check_writable(r->output);

@@ -163,19 +163,13 @@ static status choose_masks(photo_list *list, const char *mask, bool batch)
     return list->at[0].mask ? OK : no_memory();
 }
 
-static char *folder_of(const char *path)
-{
-    const char *name = base_name(path);
-    return name == path ? strdup(".") : format_name(path, (size_t)(name - path), "");
-}
-
 /* Whether both name one place, however the folder that it is in is spelled; that is there as long as the photograph is.
  */
 static bool is_same_place(const char *one, const char *other)
 {
     if (strcmp(one, other) == 0) return true;
     if (strcmp(base_name(one), base_name(other)) != 0) return false;
-    char *a = folder_of(one), *b = folder_of(other);
+    char *a = file_folder_of(one), *b = file_folder_of(other);
     bool same = a && b && file_is_same(a, b);
     free(a);
     free(b);

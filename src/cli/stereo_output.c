@@ -188,7 +188,7 @@ static status stage_mesh(const stereo_files *files, const staging *maps, const c
     *out = NULL;
     if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
     const char *slash = strrchr(path, '/');
-    char *folder = slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
+    char *folder = file_folder_of(path);
     status s = folder ? staging_begin(folder, files->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
     s = s == OK ? check_texture(files, maps, path, folder) : fail_in(s, "cannot write %s", path);
     free(folder);
