@@ -14,10 +14,17 @@ typedef struct blob {
     size_t area;
 } blob;
 
+/* The normal of a pixel that is not too near the outline. */
+static bool normal_inside(const ball_view *view, int x, int y, float share, vec3 *n)
+{
+    vec3 v;
+    return ball_point(view, (float)x + 0.5f, (float)y + 0.5f, n, &v) && vec3_dot(*n, v) > sqrtf(1 - share * share);
+}
+
 static bool inside(const ball_view *view, int x, int y, float share)
 {
-    vec3 n, v;
-    return ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v) && vec3_dot(n, v) > sqrtf(1 - share * share);
+    vec3 n;
+    return normal_inside(view, x, y, share, &n);
 }
 
 static float brightest_inside(const img *p, const ball_view *view)
@@ -99,7 +106,7 @@ static status list_blobs(const ball_view *view, flood *f, blobs *out)
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             int at = y * w + x;
-            if (!inside(view, x, y, INSIDE) || !(f->left.data[at] > f->level)) continue;
+            if (!(f->left.data[at] > f->level) || !inside(view, x, y, INSIDE)) continue;
             blob *larger = realloc(out->at, (out->count + 1) * sizeof *larger);
             if (!larger) return fail(ERROR_MEMORY, "no memory for highlights");
             out->at = larger;
@@ -162,8 +169,8 @@ static size_t collect_shades(const img *p, const ball_view *view, shade *out)
     size_t count = 0;
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++) {
-            vec3 n, v;
-            if (!inside(view, x, y, INSIDE) || !ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v)) continue;
+            vec3 n;
+            if (!normal_inside(view, x, y, INSIDE, &n)) continue;
             out[count++] = (shade){n, *img_at(p, x, y), true};
         }
     return count;
@@ -246,9 +253,8 @@ bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, floa
     size_t seen = 0;
     for (int y = 0; y < picture->height; y++)
         for (int x = 0; x < picture->width; x++) {
-            vec3 n, v;
-            if (!inside(view, x, y, INSIDE) || !ball_point(view, (float)x + 0.5f, (float)y + 0.5f, &n, &v)) continue;
-            if (vec3_dot(n, light) > AWAY) continue;
+            vec3 n;
+            if (!normal_inside(view, x, y, INSIDE, &n) || vec3_dot(n, light) > AWAY) continue;
             sum += (double)*img_at(picture, x, y);
             seen++;
         }
