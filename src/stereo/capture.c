@@ -164,6 +164,13 @@ void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
     c->camera.mean_distance = distance;
 }
 
+static status settle_camera(const pst_read_options *options, pst_capture *c)
+{
+    pst_capture_see(c, options->field_of_view, options->distance);
+    if (!(options->distance > 0) || c->camera.perspective) return OK;
+    return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
+}
+
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
 {
     static const pst_read_options defaults = {0};
@@ -175,15 +182,8 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
     if (s == OK) s = pst_read_pictures(folder, options, out);
     if (s == OK) s = pst_read_mask(folder, options, out);
     if (s == OK) s = read_truth(kind, folder, out);
-    if (s != OK) {
-        pst_capture_free(out);
-        return s;
-    }
-    pst_capture_see(out, options->field_of_view, options->distance);
-    if (options->distance > 0 && !out->camera.perspective) {
-        pst_capture_free(out);
-        return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
-    }
-    if (options->unknown_lights) pst_capture_forget_lights(out);
-    return OK;
+    if (s == OK) s = settle_camera(options, out);
+    if (s == OK && options->unknown_lights) pst_capture_forget_lights(out);
+    if (s != OK) pst_capture_free(out);
+    return s;
 }
