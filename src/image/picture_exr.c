@@ -65,7 +65,7 @@ static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha
 static void divide_by_alpha(const img *alpha, img *color)
 {
     const float least = 1e-6f; /* less is nothing, and what is divided by it would be noise */
-    size_t count = (size_t)color->width * (size_t)color->height * (size_t)color->channels;
+    size_t count = img_value_count(color);
     for (size_t i = 0; i < count; i++) {
         float cover = alpha->data[i / (size_t)color->channels];
         if (cover > least && cover < 1) color->data[i] /= cover;
@@ -80,7 +80,7 @@ static status convert_primaries(const exr_file *f, const char *path, img *color)
     if (color->channels != 3 || !exr_get_chromaticities(f, xy) || primaries_are_srgb(xy)) return OK;
     if (!primaries_to_srgb(xy, m))
         return fail(ERROR_INPUT, "cannot read %s: its chromaticities are those of no colours", path);
-    size_t values = 3 * (size_t)color->width * (size_t)color->height;
+    size_t values = img_value_count(color);
     for (size_t i = 0; i < values; i += 3) {
         const double v[3] = {color->data[i], color->data[i + 1], color->data[i + 2]};
         for (int c = 0; c < 3; c++)

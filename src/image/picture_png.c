@@ -110,7 +110,7 @@ static status read_codes(reader *r, const char *path)
 
 static void apply_exponent(float exponent, img *color)
 {
-    size_t count = (size_t)color->width * (size_t)color->height * (size_t)color->channels;
+    size_t count = img_value_count(color);
     for (size_t i = 0; i < count; i++)
         color->data[i] = powf(color->data[i], exponent);
 }

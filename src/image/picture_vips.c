@@ -262,7 +262,7 @@ status picture_turn(img *image, int orientation)
     if (orientation == 1) return OK;
     status s = vips_begin();
     if (s != OK) return s;
-    size_t size = (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof *image->data;
+    size_t size = img_value_count(image) * sizeof *image->data;
     VipsImage *lying = vips()->image_new_from_memory(image->data, size, image->width, image->height, image->channels,
                                                      VIPS_FORMAT_FLOAT);
     if (!lying) return vips_refusal(ERROR_INPUT, "turn", "a picture");
