@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "estimate/api.h"
+#include "image/animation.h"
 #include "image/figure.h"
 #include "image/resize.h"
 #include "image/write.h"
@@ -191,7 +192,7 @@ static vec3 orbit_light(int i, int count)
     return vec3_make(sine * cos(phi), sine * sin(phi), cos(ORBIT_TILT) - 1);
 }
 
-static status write_animations(const relight_job *job, const staging *t, const img *frames)
+static status write_animations(const relight_job *job, const staging *t, const img_animation *frames)
 {
     static const char *const names[] = {"orbit.webp", "orbit.gif"};
     int delay = ORBIT_MILLISECONDS / job->orbit;
@@ -200,7 +201,7 @@ static status write_animations(const relight_job *job, const staging *t, const i
     for (int i = 0; i < 2 && s == OK; i++) {
         if (stopped(job)) return fail(ERROR_STOPPED, "stopped");
         char path[PATH_MAX];
-        s = img_write_animation(staging_path(t, names[i], path), frames, job->orbit, delay);
+        s = img_animation_write(frames, staging_path(t, names[i], path), delay);
     }
     return s;
 }
@@ -223,32 +224,40 @@ static status render_frame(const relight_job *job, stage *st, env_map *environme
     return s == OK && i % step == 0 ? sheet_add(some, frame, label) : s;
 }
 
-static status write_frames(const relight_job *job, stage *st, const staging *t, img *frames)
+static status write_frames(const relight_job *job, stage *st, const staging *t, img_animation *frames)
 {
     sheet some = {.count = 0};
     /* shares the levels, which a turn does not change */
     env_map turning = job->environment ? job->environment->map : (env_map){.cosine = 1};
     status s = OK;
     for (int i = 0; i < job->orbit && s == OK; i++) {
+        img frame = {0};
         if (stopped(job)) s = fail(ERROR_STOPPED, "stopped");
-        if (s == OK) s = render_frame(job, st, &turning, i, &some, &frames[i]);
-        if (s == OK) s = write_picture(t, "frame", (size_t)i, &frames[i]);
+        if (s == OK) s = render_frame(job, st, &turning, i, &some, &frame);
+        if (s == OK) s = write_picture(t, "frame", (size_t)i, &frame);
+        if (s == OK) s = img_animation_add(frames, &frame);
+        img_free(&frame);
     }
     if (s == OK) s = sheet_write(&some, t, "orbit.png");
     sheet_free(&some);
     return s;
 }
 
+static int frame_side(const relight_job *job)
+{
+    int crop = job->maps->crop.side;
+    return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
+}
+
 static status write_orbit(const relight_job *job, stage *st, const staging *t)
 {
     if (job->orbit == 0) return OK;
-    img *frames = calloc((size_t)job->orbit, sizeof *frames);
-    if (!frames) return fail(ERROR_MEMORY, "no memory for %d frames", job->orbit);
-    status s = write_frames(job, st, t, frames);
-    if (s == OK) s = write_animations(job, t, frames);
-    for (int i = 0; i < job->orbit; i++)
-        img_free(&frames[i]);
-    free(frames);
+    int side = frame_side(job);
+    img_animation frames;
+    status s = img_animation_new(side, side, job->orbit, &frames);
+    if (s == OK) s = write_frames(job, st, t, &frames);
+    if (s == OK) s = write_animations(job, t, &frames);
+    img_animation_free(&frames);
     return s;
 }
 
@@ -263,12 +272,6 @@ static size_t count_whole(const relight_job *job)
 size_t relight_count(const relight_job *job)
 {
     return count_whole(job) + (size_t)job->orbit;
-}
-
-static int frame_side(const relight_job *job)
-{
-    int crop = job->maps->crop.side;
-    return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
 }
 
 /* What the stage has taken over. */

@@ -17,8 +17,6 @@ status img_write_png(const char *path, const img *image, img_encoding encoding);
 typedef void (*img_change)(const void *context, size_t first, size_t count, float *values);
 status img_write_png_changed(const char *path, const img *image, img_encoding encoding, img_change change,
                              const void *context);
-/* Equal-sized 3-channel linear frames as animated WebP or GIF by the path's ending, looping for ever. */
-status img_write_animation(const char *path, const img *frames, int count, int milliseconds);
 
 float srgb_encode(float linear);
 float srgb_decode(float encoded);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <vips/vips.h>
 
+#include "image/animation.h"
 #include "image/figure.h"
 #include "image/read.h"
 #include "image/write.h"
@@ -74,15 +75,19 @@ static void animations_loop_with_their_frames_and_delays(void **state)
 {
     (void)state;
     static const char *const names[] = {"turn.webp", "turn.gif"};
-    img frames[3];
+    img_animation turn;
+    assert_int_equal(img_animation_new(24, 16, 3, &turn), OK);
+    assert_int_equal(img_animation_write(&turn, scratch_path("none.gif"), 80), ERROR_USAGE);
+    img frame = make(24, 16, 3);
     for (int i = 0; i < 3; i++) {
-        frames[i] = make(24, 16, 3);
         for (int k = 0; k < 24 * 16 * 3; k++)
-            frames[i].data[k] = k / 3 % 24 / 8 == i;
+            frame.data[k] = k / 3 % 24 / 8 == i;
+        assert_int_equal(img_animation_add(&turn, &frame), OK);
     }
+    assert_int_equal(img_animation_add(&turn, &frame), ERROR_USAGE);
     for (int k = 0; k < 2; k++) {
         const char *path = scratch_path(names[k]);
-        if (img_write_animation(path, frames, 3, 80) != OK) print_error("%s\n", status_message());
+        if (img_animation_write(&turn, path, 80) != OK) print_error("%s\n", status_message());
         assert_int_equal(header(path, "n-pages"), 3);
         assert_int_equal(header(path, "page-height"), 16);
         assert_int_equal(header(path, "width"), 24);
@@ -94,10 +99,9 @@ static void animations_loop_with_their_frames_and_delays(void **state)
         assert_int_equal(delays[1], 80);
         g_object_unref(image);
     }
-    assert_int_equal(img_write_animation(scratch_path("turn.mp4"), frames, 3, 80), ERROR_USAGE);
-    assert_int_equal(img_write_animation(scratch_path("none.gif"), frames, 0, 80), ERROR_USAGE);
-    for (int i = 0; i < 3; i++)
-        img_free(&frames[i]);
+    assert_int_equal(img_animation_write(&turn, scratch_path("turn.mp4"), 80), ERROR_USAGE);
+    img_animation_free(&turn);
+    img_free(&frame);
 }
 
 static void failed_writes_leave_nothing_and_say_where(void **state)
@@ -109,7 +113,11 @@ static void failed_writes_leave_nothing_and_say_where(void **state)
     assert_int_equal(img_write_png(path, &image, IMG_SRGB8), ERROR_OUTPUT);
     assert_non_null(strstr(status_message(), "place.png"));
     assert_null(strchr(status_message(), '~'));
-    assert_int_equal(img_write_animation(scratch_path("no/such/place.gif"), &image, 1, 80), ERROR_OUTPUT);
+    img_animation still;
+    assert_int_equal(img_animation_new(4, 4, 1, &still), OK);
+    assert_int_equal(img_animation_add(&still, &image), OK);
+    assert_int_equal(img_animation_write(&still, scratch_path("no/such/place.gif"), 80), ERROR_OUTPUT);
+    img_animation_free(&still);
     assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), ERROR_OUTPUT);
     /* a folder in the file's place */
     assert_int_equal(file_make_folder(scratch_path("taken.png")), OK);
