@@ -182,6 +182,28 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
     return s;
 }
 
+static void print_doubts(const char *input, const stereo_result *result)
+{
+    const struct {
+        bool holds;
+        const char *words;
+    } doubts[] = {
+        {result->lights_in_order, "none of the pictures that the .lp file names is there: its lights were taken in the "
+                                  "order of the pictures' names"},
+        {result->strengths_unsure,
+         "the object is too flat or the pictures are too few to tell how strong the lights are, and normals may be "
+         "many degrees off: state the strengths in light_intensities.txt"},
+        {result->distance_unsure,
+         "these lights do not tell how far the object is, and normals may be many degrees off: "
+         "state it by --distance, or take more lights, at different heights"},
+        {result->lights_unsure, "the pictures hardly tell where the lights are, and normals may be many degrees off, "
+                                "or bulge where the object "
+                                "recedes: state the lights' directions in lights.txt"},
+    };
+    for (size_t i = 0; i < sizeof doubts / sizeof *doubts; i++)
+        if (doubts[i].holds) fprintf(stderr, "merlin stereo: %s: %s\n", input, doubts[i].words);
+}
+
 static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
                        double seconds)
 {
@@ -190,22 +212,7 @@ static status announce(const request *r, const char *output, const stereo_result
         s = json_line_print(report);
     else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
-    if (!r->quiet && result->lights_in_order)
-        fprintf(
-            stderr,
-            "merlin stereo: %s: none of the pictures that the .lp file names is there: its lights were taken in the "
-            "order of the pictures' names\n",
-            r->input);
-    if (!r->quiet && result->strengths_unsure)
-        fprintf(stderr,
-                "merlin stereo: %s: the object is too flat or the pictures are too few to tell how strong the lights "
-                "are, and normals may be many degrees off: state the strengths in light_intensities.txt\n",
-                r->input);
-    if (!r->quiet && result->distance_unsure)
-        fprintf(stderr,
-                "merlin stereo: %s: these lights do not tell how far the object is, and normals may be many degrees "
-                "off: state it by --distance, or take more lights, at different heights\n",
-                r->input);
+    if (!r->quiet) print_doubts(r->input, result);
     return s;
 }
 

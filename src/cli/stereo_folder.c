@@ -80,6 +80,7 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     if (s->light) put_lights(report, c, s);
     if (s->method == PST_SEMI) cJSON_AddBoolToObject(report, "strengths_unsure", s->strengths_unsure);
     if (s->method == PST_NEAR_LIGHTS) cJSON_AddBoolToObject(report, "distance_unsure", s->distance_unsure);
+    if (s->method == PST_UNCALIBRATED) cJSON_AddBoolToObject(report, "lights_unsure", s->lights_unsure);
     free(values);
     return OK;
 }
@@ -96,6 +97,7 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
         r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
     r->strengths_unsure = s->strengths_unsure;
     r->distance_unsure = s->distance_unsure;
+    r->lights_unsure = s->lights_unsure;
     r->lights_in_order = c->lights_in_order;
     r->normal = s->normal;
     r->depth = s->depth;

@@ -17,6 +17,7 @@ typedef struct stereo_result {
     pst_camera camera;
     bool strengths_unsure; /* as in solve.h */
     bool distance_unsure;
+    bool lights_unsure;
     bool lights_in_order; /* as in capture.h */
 } stereo_result;
 

@@ -213,7 +213,8 @@ static status take_surface(const pst_capture *c, pst_surface *from, merlin_surfa
                            .lights = lights,
                            .light_count = lights ? c->count : 0,
                            .strengths_unsure = from->strengths_unsure,
-                           .distance_unsure = from->distance_unsure};
+                           .distance_unsure = from->distance_unsure,
+                           .lights_unsure = from->lights_unsure};
     if (!c->camera.perspective) return OK;
     to->camera.focal = c->camera.focal;
     to->camera.x = c->camera.center_x;

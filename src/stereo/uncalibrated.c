@@ -16,8 +16,8 @@
 
 enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
 /* Near lights have an unknown a picture more, and distance to spare: they must cost less than this share of what
- * distant ones do; the other way round if distant ones show the object's front by the outline's word alone. Measured on
- * rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.93 to 1.2 where they were distant. */
+ * distant ones do. Measured on rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.84 to 1.2
+ * where they were distant. */
 static const double clearly = 0.8;
 /* Times the cost of an answer of which more than PST_MOST_AWAY faces away. */
 static const double absurd = 1e3;
@@ -35,8 +35,8 @@ typedef struct hypothesis {
     pst_light *light; /* count */
     img depth;        /* near lights: goes with them; else empty */
     double cost;
-    double likeness; /* mean cosine between the sample's normals and the balloon's */
-    bool by_outline; /* pst_find_distant_lights */
+    double likeness;       /* mean cosine between the sample's normals and the balloon's */
+    pst_rotation rotation; /* distant lights: how they were told */
 } hypothesis;
 
 static pst_camera perspective_of(const pst_capture *c)
@@ -142,7 +142,7 @@ static status find_near(const pst_problem *p, const img *balloon, hypothesis *h,
 
 static status find_distant(const pst_problem *p, const img *balloon, hypothesis *h)
 {
-    status s = pst_find_distant_lights(p, balloon, h->light, &h->by_outline);
+    status s = pst_find_distant_lights(p, balloon, h->light, &h->rotation);
     return s == OK ? judge(p, balloon, h) : s;
 }
 
@@ -212,8 +212,9 @@ status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
     if (s == OK) s = find_both(&q, &near, &distant);
     if (s == OK) {
         bool camera_known = c->camera.perspective && c->camera.focal > 0;
-        double share = distant.by_outline ? 1 / clearly : clearly;
-        s = solve_as(&q, near.cost < share * distant.cost ? &near : &distant, camera_known, out);
+        bool are_near = near.cost < clearly * distant.cost;
+        s = solve_as(&q, are_near ? &near : &distant, camera_known, out);
+        if (s == OK) out->lights_unsure = !are_near && distant.rotation.unsure;
     }
     free(near.light);
     free(distant.light);

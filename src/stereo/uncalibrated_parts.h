@@ -2,6 +2,7 @@
 #ifndef MERLIN_STEREO_UNCALIBRATED_PARTS_H
 #define MERLIN_STEREO_UNCALIBRATED_PARTS_H
 
+#include "stereo/integrable.h"
 #include "stereo/solve_parts.h"
 
 /* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
@@ -9,9 +10,8 @@
 #define PST_MOST_AWAY 0.25
 
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's.
- * balloon: unit normals of one of the object's outline (inflate.h). *by_outline: the pictures alone ask for a surface
- * that faces away; it was turned to face the camera as the object's outline does. */
-status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, bool *by_outline);
+ * balloon: unit normals of one of the object's outline (inflate.h). rotation: the last step to them, and its doubts. */
+status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, pst_rotation *rotation);
 
 /* Positions of near lights of one power, and a depth map that goes with them (uncalibrated_near.c). camera: with a
  * perspective. depth is made here. */
