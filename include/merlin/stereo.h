@@ -40,7 +40,8 @@ typedef struct merlin_capture merlin_capture;
 typedef struct merlin_capture_files {
     const char *lights;  /* lights.txt or an .lp file (for the pictures in the order of their names, if it names none
                             of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
-    const char *mask;    /* NULL: the folder's mask.png, else what is not black in any picture */
+    const char *mask;    /* NULL: the folder's mask.png, else what is not black in every picture, nor as dark
+                          * as a dark edge of the pictures */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
     int near_lights;     /* 1: the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
@@ -62,7 +63,8 @@ typedef struct merlin_capture_params {
 } merlin_capture_params;
 
 /* Without pictures yet. params NULL: distant lights of known intensities, a camera far away. mask: 1 channel, the
- * object where it is at least one half; NULL: what is not black in any picture. */
+ * object where it is at least one half; NULL: what is not black in every picture, nor as dark as a dark edge of the
+ * pictures. */
 merlin_status merlin_capture_new(const merlin_capture_params *params, const merlin_image *mask, merlin_capture **out);
 /* 1 or 3 channels of linear light in [0, 1], all pictures alike and of the mask's size; from 0.98 on a value counts as
  * saturated. light NULL: nothing is known of it. */

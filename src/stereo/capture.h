@@ -76,7 +76,7 @@ bool pst_is_of_data_set(const char *folder);
 status pst_capture_reserve(pst_capture *c, size_t count);
 /* One more picture, of the capture's size and channels, clipped to [0, 1]. */
 status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light);
-/* The mask: pixels that are not black in any picture. */
+/* The mask: pixels that are not black in every picture and, where the picture's edge is dark, are brighter than it. */
 status pst_capture_find_mask(pst_capture *c);
 void pst_capture_free(pst_capture *c);
 

@@ -28,7 +28,10 @@ status pst_read_diligent_truth(const char *folder, pst_capture *c);
 
 /* Planes from c->name, ambient subtracted. A width and height that a layout has set already must be the pictures'. */
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c);
-/* From a file, or the pixels that are not black in any picture. */
+/* Of full scale: what no light brings above this is background or never lit. */
+#define PST_BLACK 0.004f
+
+/* From a file, or found. */
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c);
 /* The file asked for; else the folder's file `usual`; else its first one with this ending, and *found says how many
  * there are (0 where it did not come to that). *path is NULL if there is none. Free it. */

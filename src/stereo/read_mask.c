@@ -3,25 +3,10 @@
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
-/* Of full scale: what no light brings above this is background or never lit. */
-static const float BLACK = 0.004f;
-
 status pst_find_mask(const char *folder, const char *asked, char **path)
 {
     size_t others;
     return pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
-}
-
-status pst_capture_find_mask(pst_capture *c)
-{
-    status s = img_new(&c->mask, c->width, c->height, 1);
-    if (s != OK) return s;
-    size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
-    const uint16_t least = (uint16_t)(BLACK * 65535);
-    for (int i = 0; i < c->count; i++)
-        for (size_t p = 0; p < pixels * channels; p++)
-            if (c->picture[i][p] > least) c->mask.data[p / channels] = 1;
-    return OK;
 }
 
 static status check_mask(const char *path, pst_capture *c)
@@ -43,7 +28,7 @@ static status find_mask(const char *folder, pst_capture *c)
         if (c->mask.data[p] > 0) return OK;
     if (s != OK) return s;
     return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask", folder,
-                (double)(100 * BLACK));
+                (double)(100 * PST_BLACK));
 }
 
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)

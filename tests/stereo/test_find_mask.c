@@ -1,0 +1,99 @@
+/* Which pixels of a capture without a mask are the object. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+#include "base/rng.h"
+#include "relief.h"
+#include "stereo/capture.h"
+
+enum { SIZE = 64, PICTURES = 8 };
+
+static bool in_disc(int i, float radius)
+{
+    float x = (float)(i % SIZE) - 31.5f, y = (float)(i / SIZE) - 31.5f;
+    return x * x + y * y < radius * radius;
+}
+
+/* A disc of this radius whose pictures are of 0.05 to 0.4, before a background; both with noise up to `noise`. */
+static void disc_capture(float radius, float background, float noise, pst_capture *c)
+{
+    rng r = rng_at(7, 0, 0);
+    capture_new(c, SIZE, PICTURES, 3);
+    img_free(&c->mask);
+    for (int k = 0; k < PICTURES; k++) {
+        for (int i = 0; i < SIZE * SIZE * 3; i++) {
+            float level = in_disc(i / 3, radius) ? 0.05f * (float)(k + 1) : background;
+            c->picture[k][i] = relief_code(fmaxf(level + rng_range(&r, -noise, noise), 0));
+        }
+    }
+}
+
+/* Pixels in which the mask that is found and the disc differ. */
+static int differing(float radius, float background, float noise)
+{
+    pst_capture c;
+    int count = 0;
+    disc_capture(radius, background, noise, &c);
+    assert_int_equal(pst_capture_find_mask(&c), OK);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        count += (c.mask.data[i] > 0) != in_disc(i, radius);
+    capture_drop(&c);
+    return count;
+}
+
+static void noise_is_no_object(void **state)
+{
+    (void)state;
+    assert_int_equal(differing(20, 0, 0), 0);
+    assert_int_equal(differing(20, 0, 0.01f), 0);
+    assert_int_equal(differing(3, 0, 0.01f), 0);
+}
+
+static void black_cloth_is_no_object(void **state)
+{
+    (void)state;
+    assert_int_equal(differing(20, 0.006f, 0), 0);
+    assert_int_equal(differing(20, 0.008f, 0.008f), 0);
+}
+
+/* Nothing is known of what it shows, so that all is the object. */
+static void what_is_behind_in_a_lit_room_stays(void **state)
+{
+    (void)state;
+    int outside = 0;
+    for (int i = 0; i < SIZE * SIZE; i++)
+        outside += !in_disc(i, 20);
+    assert_int_equal(differing(20, 0.04f, 0.008f), outside);
+}
+
+/* To the edge, where a part of it is hardly lit. */
+static void an_object_may_fill_the_picture(void **state)
+{
+    (void)state;
+    pst_capture c;
+    disc_capture(100, 0, 0, &c);
+    for (int k = 0; k < PICTURES; k++)
+        for (int i = 0; i < SIZE * 3; i++)
+            c.picture[k][i] = 400;
+    assert_int_equal(pst_capture_find_mask(&c), OK);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        assert_true(c.mask.data[i] == 1);
+    capture_drop(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noise_is_no_object),
+        cmocka_unit_test(black_cloth_is_no_object),
+        cmocka_unit_test(what_is_behind_in_a_lit_room_stays),
+        cmocka_unit_test(an_object_may_fill_the_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
