@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
 #include "stereo/capture_parts.h"
 #include "stereo/pixel_fit.h"
 
@@ -22,24 +23,23 @@ typedef struct thresholds {
     float sure, possible;
 } thresholds;
 
-static bool is_edge(const img *level, size_t pixel)
+static int edge_pixels(const img *level)
 {
-    int x = (int)(pixel % (size_t)level->width), y = (int)(pixel / (size_t)level->width);
     int wide = (int)(edge_width * (level->width > level->height ? level->width : level->height));
-    if (wide < LEAST_EDGE) wide = LEAST_EDGE;
-    return x < wide || y < wide || x >= level->width - wide || y >= level->height - wide;
+    return wide < LEAST_EDGE ? LEAST_EDGE : wide;
 }
 
-/* At most SAMPLE levels of the edge or of all pixels, sorted. */
-static size_t sorted_sample(const img *level, bool edge, float *sample)
+/* At most SAMPLE levels, sorted: of all pixels or, if wide > 0, of those this near to the picture's edge. */
+static size_t sorted_sample(const img *level, int wide, float *sample)
 {
-    size_t pixels = (size_t)level->width * (size_t)level->height, all = 0, count = 0;
-    for (size_t p = 0; p < pixels; p++)
-        all += !edge || is_edge(level, p);
-    size_t step = all / SAMPLE + 1;
-    all = 0;
-    for (size_t p = 0; p < pixels; p++)
-        if ((!edge || is_edge(level, p)) && all++ % step == 0) sample[count++] = level->data[p];
+    size_t count = 0, seen = 0, pixels = (size_t)level->width * (size_t)level->height, step = pixels / SAMPLE + 1;
+    for (int y = 0; y < level->height; y++) {
+        bool inside = wide > 0 && y >= wide && y < level->height - wide;
+        for (int x = 0; x < level->width; x++) {
+            if (inside && x >= wide && x < level->width - wide) x = level->width - wide;
+            if (seen++ % step == 0) sample[count++] = *img_at(level, x, y);
+        }
+    }
     qsort(sample, count, sizeof *sample, pst_ascending);
     return count;
 }
@@ -47,9 +47,9 @@ static size_t sorted_sample(const img *level, bool edge, float *sample)
 /* sample: room for SAMPLE. */
 static thresholds edge_thresholds(const img *level, float *sample)
 {
-    size_t count = sorted_sample(level, false, sample);
+    size_t count = sorted_sample(level, 0, sample);
     float limit = dark * sample[(size_t)(bright * (double)(count - 1))];
-    count = sorted_sample(level, true, sample);
+    count = sorted_sample(level, edge_pixels(level), sample);
     float median = sample[count / 2];
     if (median >= limit) return (thresholds){-1, -1};
     for (size_t i = 0; i < count; i++)
@@ -61,7 +61,7 @@ static thresholds edge_thresholds(const img *level, float *sample)
 
 /* Leaves in the mask what is above the higher threshold, and what is above the lower one and hangs together with that.
  * waiting: room for all pixels. */
-static void keep_above(const img *level, thresholds t, size_t *waiting, img *mask)
+static void keep_above(const img *level, thresholds t, uint32_t *waiting, img *mask)
 {
     const size_t width = (size_t)mask->width, pixels = width * (size_t)mask->height;
     enum { POSSIBLE = 2 };
@@ -69,7 +69,7 @@ static void keep_above(const img *level, thresholds t, size_t *waiting, img *mas
     for (size_t p = 0; p < pixels; p++) {
         bool sure = mask->data[p] > 0 && level->data[p] > t.sure;
         mask->data[p] = sure ? 1 : mask->data[p] > 0 && level->data[p] > t.possible ? POSSIBLE : 0;
-        if (sure) waiting[count++] = p;
+        if (sure) waiting[count++] = (uint32_t)p;
     }
     while (count > 0) {
         size_t p = waiting[--count], x = p % width;
@@ -78,23 +78,35 @@ static void keep_above(const img *level, thresholds t, size_t *waiting, img *mas
         for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
             if (mask->data[beside[k]] < POSSIBLE) continue;
             mask->data[beside[k]] = 1;
-            waiting[count++] = beside[k];
+            waiting[count++] = (uint32_t)beside[k];
         }
     }
     for (size_t p = 0; p < pixels; p++)
         if (mask->data[p] > 1) mask->data[p] = 0;
 }
 
+typedef struct looking {
+    pst_capture *capture;
+    img *level;
+} looking;
+
 /* What is lit at all into the mask, and the mean over pictures and channels. */
-static void look(pst_capture *c, img *level)
+static void look(void *context, size_t begin, size_t end)
 {
-    size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    const looking *job = context;
+    const pst_capture *c = job->capture;
+    const size_t channels = (size_t)c->channels;
     const uint16_t least = (uint16_t)(PST_BLACK * 65535);
     const float share = 1 / (65535 * (float)channels * (float)c->count);
-    for (int i = 0; i < c->count; i++) {
-        for (size_t p = 0; p < pixels * channels; p++) {
-            level->data[p / channels] += share * c->picture[i][p];
-            if (c->picture[i][p] > least) c->mask.data[p / channels] = 1;
+    for (int k = 0; k < c->count; k++) {
+        for (size_t p = begin; p < end; p++) {
+            const uint16_t *value = c->picture[k] + p * channels;
+            unsigned sum = 0;
+            for (size_t i = 0; i < channels; i++) {
+                sum += value[i];
+                if (value[i] > least) c->mask.data[p] = 1;
+            }
+            job->level->data[p] += share * (float)sum;
         }
     }
 }
@@ -102,14 +114,15 @@ static void look(pst_capture *c, img *level)
 status pst_capture_find_mask(pst_capture *c)
 {
     img level;
+    const size_t pixels = (size_t)c->width * (size_t)c->height;
     status s = img_new(&c->mask, c->width, c->height, 1);
     if (s != OK) return s;
     s = img_new(&level, c->width, c->height, 1);
     float *sample = malloc(SAMPLE * sizeof *sample);
-    size_t *waiting = malloc((size_t)c->width * (size_t)c->height * sizeof *waiting);
+    uint32_t *waiting = malloc(pixels * sizeof *waiting);
     if (s == OK && (!sample || !waiting)) s = fail(ERROR_MEMORY, "no memory to find the object");
     if (s == OK) {
-        look(c, &level);
+        parallel_blocks(pixels, look, &(looking){c, &level});
         keep_above(&level, edge_thresholds(&level, sample), waiting, &c->mask);
     }
     free(sample);
