@@ -1,5 +1,5 @@
 /* The mask of a capture that has none. In the object is what some light brings above black and, where the picture's
- * edge is dark, what is on average brighter than that edge: noise and black cloth are no object. */
+ * edge is dark, what is brighter than that edge in the root mean square: noise and black cloth are no object. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,7 +18,7 @@ static const double bright = 0.995;
  * such. */
 static const float surely = 8, possibly = 3, deviation_of_median = 1.4826f;
 
-/* Of mean levels; below 0 if the pictures' edge is no background. */
+/* Of levels; below 0 if the pictures' edge is no background. */
 typedef struct thresholds {
     float sure, possible;
 } thresholds;
@@ -90,23 +90,24 @@ typedef struct looking {
     img *level;
 } looking;
 
-/* What is lit at all into the mask, and the mean over pictures and channels. */
+/* What is lit at all into the mask, and the mean square over pictures and channels: dark glossy objects are bright in
+ * few pictures. */
 static void look(void *context, size_t begin, size_t end)
 {
     const looking *job = context;
     const pst_capture *c = job->capture;
     const size_t channels = (size_t)c->channels;
     const uint16_t least = (uint16_t)(PST_BLACK * 65535);
-    const float share = 1 / (65535 * (float)channels * (float)c->count);
+    const float share = 1 / (65535.0f * 65535.0f * (float)channels * (float)c->count);
     for (int k = 0; k < c->count; k++) {
         for (size_t p = begin; p < end; p++) {
             const uint16_t *value = c->picture[k] + p * channels;
-            unsigned sum = 0;
+            float sum = 0;
             for (size_t i = 0; i < channels; i++) {
-                sum += value[i];
+                sum += (float)value[i] * (float)value[i];
                 if (value[i] > least) c->mask.data[p] = 1;
             }
-            job->level->data[p] += share * (float)sum;
+            job->level->data[p] += share * sum;
         }
     }
 }
@@ -123,6 +124,8 @@ status pst_capture_find_mask(pst_capture *c)
     if (s == OK && (!sample || !waiting)) s = fail(ERROR_MEMORY, "no memory to find the object");
     if (s == OK) {
         parallel_blocks(pixels, look, &(looking){c, &level});
+        for (size_t p = 0; p < pixels; p++)
+            level.data[p] = sqrtf(level.data[p]);
         keep_above(&level, edge_thresholds(&level, sample), waiting, &c->mask);
     }
     free(sample);
