@@ -14,7 +14,7 @@ enum { PASSES = 5, GRID = 12 };
 /* What a surface costs that is nothing like the balloon, in costs of the most integrable one. */
 static const double balloon_weight = 30;
 /* Of an object's width (the root of its pixels), one way, over which it is averaged, and pixels at least. Rendered
- * objects of 64 pixels with noise of 1 % are 20 degrees off without that and 15 with it, without noise 8 either way;
+ * objects of 64 pixels with noise of 1 % are 20 degrees off without that and 14 with it, without noise 7 either way;
  * twice as much is no better. */
 static const double averaged = 1.0 / 96;
 enum { LEAST_AVERAGED = 2 };
