@@ -57,9 +57,9 @@ typedef struct merlin_image {
     float *data; /* height × width × channels; NULL: no image */
 } merlin_image;
 
-/* PNG, JPEG, TIFF, WebP, HEIC, EXR or Radiance HDR of at most 64 million pixels into 3 linear channels; alpha (may be
- * NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere, else no image. An alpha that
- * nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
+/* PNG, JPEG, TIFF, WebP, HEIC, EXR or Radiance HDR of at most 64 million pixels, 16384 a side, into 3 linear channels;
+ * alpha (may be NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere, else no image. An
+ * alpha that nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
 /* 1 channel in [0, 1]. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
@@ -162,8 +162,8 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
 /* Maps made ready once for many lights, which each take a fraction of the time then. */
 typedef struct merlin_stage merlin_stage;
 
-/* side: pixels a side of the pictures, which show the square `crop`; 0: as many as it has in the photograph. The maps
- * may be freed afterwards; the model must outlive the stage. */
+/* side: pixels a side of the pictures, which show the square `crop`; 0: as many as it has in the photograph; at most
+ * 8000. The maps may be freed afterwards; the model must outlive the stage. */
 merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
                                merlin_stage **out);
 /* The square under a point light (or NULL), in surroundings (or NULL), or both: side x side, 3 channels in [0, 1], zero

@@ -40,18 +40,19 @@ typedef struct merlin_capture merlin_capture;
 typedef struct merlin_capture_files {
     const char *lights;  /* lights.txt or an .lp file (for the pictures in the order of their names, if it names none
                             of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
-    const char *mask;    /* NULL: the folder's mask.png, else what is not black in every picture, nor as dark
-                          * as a dark edge of the pictures */
+    const char *mask;    /* NULL: the folder's mask.png or *.mask.png, else what is brighter than black and than a dark
+                          * edge of the pictures */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
     int near_lights;     /* 1: the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
     float field_of_view; /* horizontal, degrees; 0: not known */
-    float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known */
+    float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known. For near
+                          * lights or a known field of view alone */
 } merlin_capture_files;
 
-/* PNG, JPEG, TIFF or EXR pictures and the lights they were taken under; 16-bit ones are linear unless a colour profile
- * says otherwise. files NULL: the usual case. */
+/* PNG, JPEG, TIFF or EXR pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones are
+ * linear unless a colour profile says otherwise. files NULL: the usual case. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 
 /* What holds for all pictures that are added from memory. */
@@ -63,8 +64,7 @@ typedef struct merlin_capture_params {
 } merlin_capture_params;
 
 /* Without pictures yet. params NULL: distant lights of known intensities, a camera far away. mask: 1 channel, the
- * object where it is at least one half; NULL: what is not black in every picture, nor as dark as a dark edge of the
- * pictures. */
+ * object where it is at least one half; NULL: what is brighter than black and than a dark edge of the pictures. */
 merlin_status merlin_capture_new(const merlin_capture_params *params, const merlin_image *mask, merlin_capture **out);
 /* 1 or 3 channels of linear light in [0, 1], all pictures alike and of the mask's size; from 0.98 on a value counts as
  * saturated. light NULL: nothing is known of it. */
@@ -111,7 +111,8 @@ typedef struct merlin_surface {
                              where the lights are: normals may be far off, or bulge where the object recedes */
 } merlin_surface;
 
-/* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on. */
+/* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on (MERLIN_STEREO_UNCALIBRATED: 7) to 1024
+ * (MERLIN_STEREO_LS: 4096). */
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
 void merlin_surface_free(merlin_surface *surface);
 

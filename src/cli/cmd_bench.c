@@ -17,14 +17,13 @@
 
 static const char help[] =
     "usage: merlin bench [options]\n\n"
-    "Measures this machine's peak rate of convolutions, and against it the network's inference and training, then\n"
-    "merlin estimate as a whole, what each light costs that an object is shown under, and the renderer.\n\n"
+    "Measures merlin estimate as a whole, this machine's peak rate of convolutions, and against it the network's\n"
+    "inference and training, what each light costs that an object is shown under, and the renderer.\n\n"
     "      --model W       weights (default: those merlin estimate takes)\n"
     "      --config C.json random weights of this configuration instead\n"
     "      --batch N       pictures in a training step (default 16)\n"
-    "      --stereo        photometric stereo by least squares instead: 32 pictures of 12 megapixels, against the "
-    "rate\n"
-    "                      at which this machine copies memory\n"
+    "      --stereo        photometric stereo by least squares instead: 8 and 32 pictures of 12 megapixels, against\n"
+    "                      the rate at which this machine copies memory\n"
     "      --profile FILE  write what each of the network's layers takes, forward, backward and in either precision\n"
     "      --quick         fewer runs, smaller pictures\n"
     "      --json          report on standard output as JSON\n"

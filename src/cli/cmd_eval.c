@@ -36,7 +36,7 @@ static const char help[] =
     "  --means DIR        compute mean maps over this folder\n"
     "  -o, --output FILE  where to write them\n"
     "      --json         report on standard output as JSON\n"
-    "      --quiet        no progress\n"
+    "      --quiet        no progress, and with --means no other output than errors\n"
     "  -h, --help         this text\n";
 
 typedef struct request {

@@ -22,7 +22,7 @@ static const char help[] =
     "most 4\n"
     "  -o, --output F.png   the picture\n"
     "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
-    "      --quiet          no progress\n"
+    "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Goes on after a photograph that fails, leaves it out, and then exits with 1.\n";
 

@@ -15,7 +15,7 @@ static const char help[] =
     "and under an environment. A run that was interrupted is continued by the same command.\n"
     "\n"
     "  --count N       how many samples (required)\n"
-    "  -o, --output D  folder for the samples, 000000.exr and on (required)\n"
+    "  -o, --output D  folder for the samples, 000000.exr and on, and render.txt with the options (required)\n"
     "  --seed S        seed of the data set (default 1)\n"
     "  --first I       index of the first sample (default 0)\n"
     "  --size P        pixels on a side (default 128)\n"
@@ -29,7 +29,7 @@ static const char help[] =
     "  --spp N         camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
     "  --paths N       indirect paths a pixel (default 8); environment light takes five for every eight\n"
     "  --threads T     threads (default: all processors)\n"
-    "  --quiet         no progress bar\n"
+    "  --quiet         no other output than errors\n"
     "  --json          a report as JSON on standard output\n"
     "  -h, --help      this text\n";
 

@@ -292,7 +292,7 @@ status photo_take_exposure(const char *text, void *into)
     merlin_params *params = into;
     double ev = 0;
     params->auto_exposure = strcmp(text, "auto") == 0;
-    status s = params->auto_exposure ? OK : cli_float("--exposure", text, -10, 10, &ev);
+    status s = params->auto_exposure ? OK : cli_float("--exposure", text, -20, 20, &ev);
     params->exposure = (float)ev;
     return s;
 }

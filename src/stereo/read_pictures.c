@@ -9,7 +9,10 @@
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
+/* Endings of a capture's pictures, and of those that are taken where there are none of the first: telephones leave
+ * .jpg and .heic side by side. */
 static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", NULL};
+static const char *const OTHERS[] = {".webp", ".heic", ".heif", ".avif", ".hdr", NULL};
 
 /* Unclipped floats are stored so that their brightest stays below what solvers take for saturated. */
 static const float FLOAT_CEILING = 0.97f;
@@ -25,8 +28,9 @@ static bool has_stem(const char *name, const char *stem)
 
 static bool is_beside_the_capture(const char *name)
 {
-    static const char *const others[] = {"mask",  "ambient", "normal", "normals",     "normal_gt", "albedo",
-                                         "depth", "relit",   "orbit",  "calibration", "roughness", "overview"};
+    static const char *const others[] = {"mask",  "ambient",        "normal", "normals",     "normal_gt", "albedo",
+                                         "depth", "relit",          "orbit",  "calibration", "roughness", "overview",
+                                         "error", "reconstruction", "mesh",   "maps"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (has_stem(name, others[i])) return true;
     return file_ends_in(name, ".mask.png");
@@ -55,15 +59,16 @@ static status refuse_empty(const char *folder, bool numbered)
         s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
                  (int)(slash - below), below);
     else
-        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF or EXR files", folder,
+        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC or HDR files", folder,
                  numbered ? "01.png, 02.png and on, " : "");
     file_list_free(names, count);
     return s;
 }
 
-static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
+/* None is no failure; then *names needs no freeing. */
+static status list_kinds(const char *folder, const char *const *endings, bool numbered, char ***names, size_t *count)
 {
-    status s = file_list(folder, PICTURES, names, count);
+    status s = file_list(folder, endings, names, count);
     if (s != OK) return s;
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
@@ -79,7 +84,14 @@ static status list_pictures(const char *folder, bool numbered, char ***names, si
     if (kept) return OK;
     file_list_free(*names, 0);
     *names = NULL;
-    return refuse_empty(folder, numbered);
+    return OK;
+}
+
+static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
+{
+    status s = list_kinds(folder, PICTURES, numbered, names, count);
+    if (s == OK && *count == 0) s = list_kinds(folder, OTHERS, numbered, names, count);
+    return s == OK && *count == 0 ? refuse_empty(folder, numbered) : s;
 }
 
 status pst_check_pictures(const char *folder)

@@ -291,6 +291,39 @@ static void a_mask_is_read_and_must_fit(void **state)
     assert_refused(&(pst_read_options){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
 }
 
+/* As stereo -o does that names the captures' folder. */
+static void results_beside_the_pictures_are_none(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    static const char *const results[] = {"normal.png",   "albedo.png", "depth.png", "error.png",
+                                          "overview.png", "mesh.png",   "maps.exr",  "reconstruction.png"};
+    for (size_t i = 0; i < sizeof results / sizeof *results; i++)
+        write_flat(results[i], 6, 4, 3, 0.5f, IMG_SRGB8);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    pst_capture_free(&c);
+}
+
+/* A file's kind is told by its first bytes, so that these may be PNGs. */
+static void rarer_kinds_are_taken_where_they_are_alone(void **state)
+{
+    (void)state;
+    write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
+    for (int i = 0; i < 3; i++)
+        write_flat((const char *[]){"a.heic", "b.webp", "c.HEIC"}[i], 6, 4, 3, 0.5f, IMG_LINEAR16);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    pst_capture_free(&c);
+    three_pictures(IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_string_equal(c.name[0], "a.png");
+    pst_capture_free(&c);
+}
+
 static void black_pictures_are_called_black(void **state)
 {
     (void)state;
@@ -348,6 +381,8 @@ int main(void)
         in_scratch(unknown_lights_need_no_list),
         in_scratch(given_intensities_are_kept),
         in_scratch(a_mask_is_read_and_must_fit),
+        in_scratch(results_beside_the_pictures_are_none),
+        in_scratch(rarer_kinds_are_taken_where_they_are_alone),
         in_scratch(black_pictures_are_called_black),
         in_scratch(what_does_not_fit_is_refused_in_one_line),
     };
