@@ -107,8 +107,8 @@ typedef struct merlin_surface {
                              lights are: normals may be far off */
     int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance, and with too few lights, or lights too much
                              alike, to tell it: normals may be far off */
-    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where neither the pictures nor the object's outline tell well
-                             where the lights are: normals may be far off, or bulge where the object recedes */
+    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where the lights are distant and the pictures or the object's
+                             outline tell them badly: normals may be far off, or bulge where the object recedes */
 } merlin_surface;
 
 /* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on (MERLIN_STEREO_UNCALIBRATED: 7) to 1024

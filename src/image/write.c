@@ -1,6 +1,5 @@
 #include "image/write.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 

@@ -60,7 +60,7 @@ typedef struct pst_capture {
 
 typedef struct pst_read_options {
     const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
-    const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or the pictures' own non-black part */
+    const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or found (pst_capture_find_mask) */
     const char *ambient; /* picture to subtract; NULL: ambient.png in the folder if there is one */
     bool near;           /* the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
@@ -76,7 +76,7 @@ bool pst_is_of_data_set(const char *folder);
 status pst_capture_reserve(pst_capture *c, size_t count);
 /* One more picture, of the capture's size and channels, clipped to [0, 1]. */
 status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light);
-/* The mask: pixels that are not black in every picture and, where the picture's edge is dark, are brighter than it. */
+/* The mask: pixels that are above black in some picture and, where the pictures' edge is dark, brighter than that. */
 status pst_capture_find_mask(pst_capture *c);
 void pst_capture_free(pst_capture *c);
 

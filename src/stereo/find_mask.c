@@ -8,15 +8,18 @@
 #include "stereo/pixel_fit.h"
 
 enum { LEAST_EDGE = 2, SAMPLE = 65536 };
-/* Width of the edge, in the picture's. */
+/* Width of the edge, in the picture's shorter side. */
 static const double edge_width = 0.02;
-/* The edge is background where its median is less than the first share of what 199 of 200 pixels stay below. */
+/* The edge is background where its median is less than the first share of what 199 of 200 pixels stay below: an object
+ * must have one pixel in 200. */
 static const float dark = 0.05f;
 static const double bright = 0.995;
 /* What is surely no background: above the edge's median by so many of its standard deviations, which its median
  * absolute deviation tells; noise reaches five among millions of pixels. And what is so where it hangs together with
  * such. */
 static const float surely = 8, possibly = 3, deviation_of_median = 1.4826f;
+/* The deviation is no less than this share of the median: most of a cloth may have one and the same of 256 codes. */
+static const float least_deviation = 0.05f;
 
 /* Of levels; below 0 if the pictures' edge is no background. */
 typedef struct thresholds {
@@ -25,14 +28,15 @@ typedef struct thresholds {
 
 static int edge_pixels(const img *level)
 {
-    int wide = (int)(edge_width * (level->width > level->height ? level->width : level->height));
+    int wide = (int)(edge_width * (level->width < level->height ? level->width : level->height));
     return wide < LEAST_EDGE ? LEAST_EDGE : wide;
 }
 
 /* At most SAMPLE levels, sorted: of all pixels or, if wide > 0, of those this near to the picture's edge. */
 static size_t sorted_sample(const img *level, int wide, float *sample)
 {
-    size_t count = 0, seen = 0, pixels = (size_t)level->width * (size_t)level->height, step = pixels / SAMPLE + 1;
+    size_t count = 0, seen = 0, pixels = (size_t)level->width * (size_t)level->height;
+    const size_t step = (pixels / SAMPLE + 1) | 1; /* odd, so as not to keep to some columns */
     for (int y = 0; y < level->height; y++) {
         bool inside = wide > 0 && y >= wide && y < level->height - wide;
         for (int x = 0; x < level->width; x++) {
@@ -55,7 +59,7 @@ static thresholds edge_thresholds(const img *level, float *sample)
     for (size_t i = 0; i < count; i++)
         sample[i] = fabsf(sample[i] - median);
     qsort(sample, count, sizeof *sample, pst_ascending);
-    float deviation = deviation_of_median * sample[count / 2];
+    float deviation = fmaxf(deviation_of_median * sample[count / 2], least_deviation * median);
     return (thresholds){median + surely * deviation, median + possibly * deviation};
 }
 
@@ -92,9 +96,8 @@ typedef struct looking {
 
 /* What is lit at all into the mask, and the mean square over pictures and channels: dark glossy objects are bright in
  * few pictures. */
-static void look(void *context, size_t begin, size_t end)
+static void look_at_part(const looking *job, size_t begin, size_t end)
 {
-    const looking *job = context;
     const pst_capture *c = job->capture;
     const size_t channels = (size_t)c->channels;
     const uint16_t least = (uint16_t)(PST_BLACK * 65535);
@@ -110,6 +113,14 @@ static void look(void *context, size_t begin, size_t end)
             job->level->data[p] += share * sum;
         }
     }
+}
+
+/* By parts whose mask and level stay in the cache while pictures pass. */
+static void look(void *context, size_t begin, size_t end)
+{
+    enum { PART = 8192 };
+    for (size_t p = begin; p < end; p += PART)
+        look_at_part(context, p, p + PART < end ? p + PART : end);
 }
 
 status pst_capture_find_mask(pst_capture *c)

@@ -1,11 +1,9 @@
 #include "stereo/integrable.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "image/resize.h"
-#include "stereo/uncalibrated_parts.h"
 
 enum { PASSES = 5, GRID = 12 };
 
@@ -18,11 +16,11 @@ static const double balloon_weight = 30;
  * twice as much is no better. */
 static const double averaged = 1.0 / 96;
 enum { LEAST_AVERAGED = 2 };
-/* Of the integrability form's mean, at the best rotation: from here on rendered objects were 20 to 46 degrees off,
+/* Of the integrability form's trace, at the best rotation: from here on rendered objects were 20 to 46 degrees off,
  * below 0.05 nearly all by less than 15. */
 static const double not_integrable = 0.08;
-/* Correlation of the surface's slopes with the balloon's, below which its sign is a matter of chance: bumps on a plane
- * have 0.02, objects 0.5 to 1. */
+/* Correlation of the normals' sideways components with the balloon's, below which its sign is a matter of chance: bumps
+ * on a plane have 0.02, objects 0.5 to 1. */
 static const double unlike = 0.4;
 
 /* One pixel's equation: b3 ∂y b1 − b1 ∂y b3 = b3 ∂x b2 − b2 ∂x b3 for b = A b', linear in the six minors of A. */
@@ -80,7 +78,8 @@ static status integrability_form(const pst_pseudo *f, const double minor[6], dou
             form[j] += w * row[j / 6] * row[j % 6];
         absolute += fabs(r);
     }
-    *scale = fmax(absolute / (double)count, 1e-12);
+    /* without minors there are no residuals yet, and all equations count as well */
+    if (absolute > 0) *scale = fmax(absolute / (double)count, 1e-12);
     return OK;
 }
 
@@ -273,8 +272,8 @@ static double share_away(const pst_pseudo *f, const double a[9])
     return (double)(sum < 0 ? count - away : away) / (double)count;
 }
 
-/* Between the slopes of the surface and of the balloon, 1 for the same. */
-static double slopes_correlation(const pst_pseudo *f, const double a[9])
+/* Between what the normals of surface and balloon have sideways, 1 for the same. */
+static double sideways_correlation(const pst_pseudo *f, const double a[9])
 {
     const pst_problem *p = f->problem;
     double both = 0, surface = 0, balloon = 0;
@@ -301,30 +300,53 @@ static status rotate(const pst_pseudo *f, vec3 mean, pst_rotation *out)
     s = rotate_by(f, mean, balloon_weight * least, &c, out->at);
     if (s != OK) return s;
     mirror(&c, out->at);
-    out->unsure = faces_away || least > not_integrable || slopes_correlation(f, out->at) < unlike;
+    out->unsure = faces_away || least > not_integrable || sideways_correlation(f, out->at) < unlike;
     return OK;
+}
+
+/* The rectangle that the pixels fill. */
+typedef struct frame {
+    size_t x, y, width, height;
+} frame;
+
+static frame frame_of(const pst_problem *p)
+{
+    size_t width = (size_t)p->capture->width, low = width, high = 0;
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        size_t x = p->pixel[i] % width;
+        low = x < low ? x : low;
+        high = x > high ? x : high;
+    }
+    size_t top = p->pixel[0] / width;
+    return (frame){low, top, high - low + 1, p->pixel[p->pixel_count - 1] / width - top + 1};
+}
+
+static float *place(const img *sums, const frame *r, const pst_problem *p, size_t i)
+{
+    size_t width = (size_t)p->capture->width;
+    return img_at(sums, (int)(p->pixel[i] % width - r->x), (int)(p->pixel[i] / width - r->y));
 }
 
 /* Between neighbouring pixels the surface turns by less than noise does. */
 static status average(const pst_pseudo *f)
 {
     const pst_problem *p = f->problem;
+    const frame r = frame_of(p);
     int radius = (int)(averaged * sqrt((double)p->pixel_count) + 0.5);
     if (radius < LEAST_AVERAGED) radius = LEAST_AVERAGED;
     img sums;
-    status s = img_new(&sums, p->capture->width, p->capture->height, 4);
+    status s = img_new(&sums, (int)r.width, (int)r.height, 4);
     if (s != OK) return s;
     for (size_t i = 0; i < p->pixel_count; i++) {
-        float *at = sums.data + 4 * (size_t)p->pixel[i];
         vec3 b = f->b[i];
-        if (isfinite(vec3_dot(b, b))) memcpy(at, &(float[4]){b.x, b.y, b.z, 1}, 4 * sizeof *at);
+        if (isfinite(vec3_dot(b, b))) memcpy(place(&sums, &r, p, i), &(float[4]){b.x, b.y, b.z, 1}, 4 * sizeof(float));
     }
     /* half the width twice is a tent */
     s = img_box_sums(&sums, radius / 2);
     if (s == OK) s = img_box_sums(&sums, radius - radius / 2);
     for (size_t i = 0; i < p->pixel_count && s == OK; i++) {
-        const float *at = sums.data + 4 * (size_t)p->pixel[i];
-        f->b[i] = vec3_scale(vec3_of(at), 1 / at[3]);
+        const float *sum = place(&sums, &r, p, i);
+        f->b[i] = vec3_scale(vec3_of(sum), sum[3] > 0 ? 1 / sum[3] : 0);
     }
     img_free(&sums);
     return s;

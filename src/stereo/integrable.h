@@ -10,6 +10,9 @@
 
 #include "stereo/solve_parts.h"
 
+/* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
+ * twentieth do, by noise; where they were not, half. */
+#define PST_MOST_AWAY 0.25
 /* Fewer pixels have no lights found by them. */
 enum { PST_FEWEST_PIXELS = 100 };
 
@@ -34,7 +37,7 @@ static inline vec3 pst_transform(const double m[9], vec3 v)
 }
 
 /* f->b, up to a rotation or reflection, becomes its mean over a neighbourhood. mean_light: of the lights in b's space.
- * ERROR_INPUT if the mask is too thin. */
+ * ERROR_INPUT if the mask is too thin, or no rotation leaves the lights before the object. */
 status pst_find_rotation(const pst_pseudo *f, vec3 mean_light, pst_rotation *out);
 
 /* ERROR_INPUT, in words. */

@@ -9,7 +9,6 @@
  * 4. With the lights found, their strengths among them, the robust solver does the rest. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "stereo/field_fit.h"
 #include "stereo/integrable.h"

@@ -5,10 +5,6 @@
 #include "stereo/integrable.h"
 #include "stereo/solve_parts.h"
 
-/* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
- * twentieth do, by noise; where they were not, half. */
-#define PST_MOST_AWAY 0.25
-
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's.
  * balloon: unit normals of one of the object's outline (inflate.h). rotation: the last step to them, and its doubts. */
 status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, pst_rotation *rotation);

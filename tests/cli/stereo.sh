@@ -38,6 +38,10 @@ grep -q 'how far the object is' stderr || complain "stderr: $(cat stderr)"
 succeeds '"distance_unsure":false' stereo leds --lights near.txt --near --distance 1 --json
 [ -s stderr ] && complain "stderr: $(cat stderr)"
 
+echo "whether unknown lights are told is said"
+"$MERLIN" relight disc.merlin --dome 8 -o unknown --quiet || complain "no pictures under a dome"
+succeeds '"lights_unsure":' stereo unknown --method uncalibrated --json
+
 echo "meshes by name, depth that may jump"
 echo "a surface can be relit"
 succeeds surface-relit "$MERLIN" relight dome/stereo --light 0.7,0.2,-0.4 --light -0.7,0.2,-0.4 --light 0,0,-9 -o surface-relit

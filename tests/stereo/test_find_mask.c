@@ -72,6 +72,51 @@ static void what_is_behind_in_a_lit_room_stays(void **state)
     assert_int_equal(differing(20, 0.04f, 0.008f), outside);
 }
 
+/* A rim in the noise's upper reaches belongs to the disc, an island as dim beside it does not. */
+static void what_is_dim_counts_where_it_hangs_together_with_more(void **state)
+{
+    (void)state;
+    pst_capture c;
+    disc_capture(20, 0.01f, 0.005f, &c);
+    const uint16_t dim = relief_code(0.0135f); /* five deviations of the background's root mean square */
+    for (int k = 0; k < PICTURES; k++) {
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            bool rim = in_disc(i, 22) && !in_disc(i, 20),
+                 island = i % SIZE < 8 && i % SIZE > 4 && i / SIZE < 8 && i / SIZE > 4;
+            for (int ch = 0; ch < 3; ch++)
+                if (rim || island) c.picture[k][3 * i + ch] = dim;
+        }
+    }
+    assert_int_equal(pst_capture_find_mask(&c), OK);
+    int wrong = 0;
+    for (int i = 0; i < SIZE * SIZE; i++)
+        wrong += (c.mask.data[i] > 0) != in_disc(i, 22);
+    assert_true(wrong <= 2); /* noise, beside the rim; 9 of the island, 272 of the rim */
+    capture_drop(&c);
+}
+
+/* Where not all pixels are looked at for the thresholds, and where there is hardly any edge. */
+static void any_size_is_taken(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{520, 260}, {1, 40}, {40, 1}, {1, 1}};
+    for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
+        int width = sizes[n][0], height = sizes[n][1];
+        uint16_t *picture = calloc((size_t)width * (size_t)height, sizeof *picture), *pictures[] = {picture};
+        pst_capture c = {.width = width, .height = height, .channels = 1, .count = 1, .picture = pictures};
+        for (int i = 0; i < width * height; i++) {
+            int x = i % width, y = i / width;
+            bool inside = 4 * x >= width && 4 * x < 3 * width && 4 * y >= height && 4 * y < 3 * height;
+            picture[i] = inside || n > 0 ? 30000 : 300;
+        }
+        assert_int_equal(pst_capture_find_mask(&c), OK);
+        for (int i = 0; i < width * height; i++)
+            assert_int_equal(c.mask.data[i] > 0, picture[i] == 30000);
+        img_free(&c.mask);
+        free(picture);
+    }
+}
+
 /* To the edge, where a part of it is hardly lit. */
 static void an_object_may_fill_the_picture(void **state)
 {
@@ -93,6 +138,8 @@ int main(void)
         cmocka_unit_test(noise_is_no_object),
         cmocka_unit_test(black_cloth_is_no_object),
         cmocka_unit_test(what_is_behind_in_a_lit_room_stays),
+        cmocka_unit_test(what_is_dim_counts_where_it_hangs_together_with_more),
+        cmocka_unit_test(any_size_is_taken),
         cmocka_unit_test(an_object_may_fill_the_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

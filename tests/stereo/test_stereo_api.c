@@ -122,6 +122,38 @@ static void unknown_strengths_are_found(void **state)
     merlin_capture_free(capture);
 }
 
+/* Waves that fill the picture, whose crests may as well be troughs. */
+static merlin_image waves_under(int k)
+{
+    merlin_image p = image_new(1);
+    float z = 1 - 0.5f * ((float)k + 0.5f) / LIGHTS, aside = sqrtf(1 - z * z), turn = 2.4f * (float)k;
+    for (int i = 0; i < PIXELS; i++) {
+        float x = 0.6f * sinf(0.4f * (float)(i % SIZE)), y = 0.5f * sinf(0.3f * (float)(i / SIZE));
+        float shade = (x * aside * cosf(turn) + y * aside * sinf(turn) + z) / sqrtf(x * x + y * y + 1);
+        p.data[i] = ALBEDO[0] * fmaxf(shade, 0);
+    }
+    return p;
+}
+
+static void doubts_about_unknown_lights_are_told(void **state)
+{
+    (void)state;
+    merlin_capture *capture;
+    merlin_surface surface;
+    const merlin_capture_params params = {.lighting = MERLIN_UNKNOWN_LIGHTS};
+    assert_int_equal(merlin_capture_new(&params, NULL, &capture), MERLIN_OK);
+    for (int k = 0; k < LIGHTS; k++) {
+        merlin_image p = waves_under(k);
+        assert_int_equal(merlin_capture_add(capture, &p, NULL), MERLIN_OK);
+        merlin_image_free(&p);
+    }
+    assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_OK);
+    assert_int_equal(surface.method, MERLIN_STEREO_UNCALIBRATED);
+    assert_true(surface.lights_unsure);
+    merlin_surface_free(&surface);
+    merlin_capture_free(capture);
+}
+
 /* A wall at distance 2, lit by LEDs beside the camera. */
 static merlin_image wall_under(const merlin_light *l)
 {
@@ -313,6 +345,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_in_memory_become_a_surface),
         cmocka_unit_test(unknown_strengths_are_found),
+        cmocka_unit_test(doubts_about_unknown_lights_are_told),
         cmocka_unit_test(near_lights_and_their_camera_are_taken),
         cmocka_unit_test(mask_says_what_is_solved),
         in_scratch(folder_becomes_a_mesh),
