@@ -153,8 +153,8 @@ static void add_noise(float share, pst_capture *c)
     }
 }
 
-/* Noise of a fiftieth of full scale turns the most integrable ball by 32 degrees; its outline turns it back. */
-static void outline_holds_a_noisy_ball(void **state)
+/* Noise of a fiftieth of full scale between neighbouring pixels turned the most integrable ball by 32 degrees. */
+static void a_noisy_ball_is_not_turned(void **state)
 {
     (void)state;
     const relief ball = {.size = 48, .lights = 12, .channels = 1, .exposure = 1.8f};
@@ -383,7 +383,7 @@ int main(void)
         cmocka_unit_test(near_lights_of_unknown_position_are_found),
         cmocka_unit_test(near_lights_are_found_without_a_camera),
         cmocka_unit_test(half_a_surface_that_faces_away_is_no_answer),
-        cmocka_unit_test(outline_holds_a_noisy_ball),
+        cmocka_unit_test(a_noisy_ball_is_not_turned),
         cmocka_unit_test(noise_between_neighbours_does_not_turn_an_object),
         cmocka_unit_test(doubtful_lights_are_said_to_be),
         cmocka_unit_test(a_relief_whose_sign_is_chance_is_said_to_be),
