@@ -39,6 +39,8 @@ static const char help[] =
     "      --quiet        no progress, and with --means no other output than errors\n"
     "  -h, --help         this text\n";
 
+enum { USUAL_ROWS = 8 };
+
 typedef struct request {
     eval_options options;
     const char *means_folder, *output;
@@ -76,7 +78,8 @@ static status check(const request *r)
     if (!r->means_folder && r->output)
         return fail(ERROR_USAGE, "-o is for --means; an evaluation prints its report, with --json for a program");
     if (!r->means_folder) return OK;
-    bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->views || o->figure;
+    bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->views || o->figure ||
+                     o->figure_rows || o->type != NN_FLOAT32;
     if (evaluates || r->json) return fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone");
     if (!r->output) return fail(ERROR_USAGE, "--means needs -o FILE.exr");
     if (!file_ends_in(r->output, ".exr"))
@@ -144,9 +147,10 @@ int cmd_eval(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
-    request r = {.options = {.figure_rows = 8, .stopped = cli_interrupted}};
+    request r = {.options = {.stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
+    if (!r.options.figure_rows) r.options.figure_rows = USUAL_ROWS;
     cli_catch_interrupts();
     return r.means_folder ? run_means(&r) : run_evaluation(&r);
 }

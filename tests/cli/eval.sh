@@ -23,6 +23,7 @@ refuses 2 "--model W is missing" "$MERLIN" eval --data "$samples"
 refuses 2 "--means needs -o" "$MERLIN" eval --means "$samples"
 refuses 2 "--means goes with" "$MERLIN" eval --means "$samples" -o "$scratch/other.exr" --data "$samples" --model "$weights"
 refuses 2 "--means goes with" "$MERLIN" eval --means "$samples" -o "$scratch/other.exr" --json
+refuses 2 "--means goes with" "$MERLIN" eval --means "$samples" -o "$scratch/other.exr" --precision bfloat16
 refuses 2 "taken for a sample" "$MERLIN" eval --means "$samples" -o "$samples/means.exr"
 refuses 2 "taken for a sample" env -C "$samples" "$MERLIN" eval --means . -o 000001.exr
 refuses 2 "end in .exr" "$MERLIN" eval --means "$samples" -o "$scratch/other.png"
