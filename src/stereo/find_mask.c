@@ -1,5 +1,6 @@
 /* The mask of a capture that has none. In the object is what some light brings above black and, where the picture's
- * edge is dark, what is brighter than that edge in the root mean square: noise and black cloth are no object. */
+ * edge is dark, what is brighter than that edge in the root mean square: noise and black cloth are no object. Specks go
+ * then, and small holes, of dark paint, are filled. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,6 +21,9 @@ static const double bright = 0.995;
 static const float surely = 8, possibly = 3, deviation_of_median = 1.4826f;
 /* The deviation is no less than this share of the median: most of a cloth may have one and the same of 256 codes. */
 static const float least_deviation = 0.05f;
+
+/* Of the object's pixels: separate pieces of less are specks, holes of less are dark paint. */
+static const double small = 0.01;
 
 /* Of levels; below 0 if the pictures' edge is no background. */
 typedef struct thresholds {
@@ -89,6 +93,51 @@ static void keep_above(const img *level, thresholds t, uint32_t *waiting, img *m
         if (mask->data[p] > 1) mask->data[p] = 0;
 }
 
+/* What has been looked at has this added to it. */
+enum { SEEN = 2 };
+
+/* The pixels that hang together with this one, into piece; whether one is at the picture's edge. */
+static size_t gather(img *mask, size_t from, uint32_t *piece, bool *at_edge)
+{
+    const size_t width = (size_t)mask->width, pixels = width * (size_t)mask->height;
+    const float kind = mask->data[from];
+    size_t count = 0;
+    *at_edge = false;
+    mask->data[from] += SEEN;
+    piece[count++] = (uint32_t)from;
+    for (size_t i = 0; i < count; i++) {
+        size_t p = piece[i], x = p % width;
+        *at_edge |= x == 0 || x + 1 == width || p < width || p + width >= pixels;
+        const size_t beside[] = {x > 0 ? p - 1 : p, x + 1 < width ? p + 1 : p, p >= width ? p - width : p,
+                                 p + width < pixels ? p + width : p};
+        for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
+            if (mask->data[beside[k]] != kind) continue;
+            mask->data[beside[k]] += SEEN;
+            piece[count++] = (uint32_t)beside[k];
+        }
+    }
+    return count;
+}
+
+/* Specks go, small holes are filled. piece: room for all pixels. */
+static void settle_small(img *mask, uint32_t *piece)
+{
+    const size_t pixels = (size_t)mask->width * (size_t)mask->height;
+    size_t inside = 0;
+    for (size_t p = 0; p < pixels; p++)
+        inside += mask->data[p] > 0;
+    for (size_t p = 0; p < pixels; p++) {
+        bool at_edge, hole = mask->data[p] == 0;
+        if (mask->data[p] >= SEEN) continue;
+        size_t count = gather(mask, p, piece, &at_edge);
+        if ((double)count >= small * (double)inside || (hole && at_edge)) continue;
+        for (size_t i = 0; i < count; i++)
+            mask->data[piece[i]] = hole ? SEEN + 1 : SEEN;
+    }
+    for (size_t p = 0; p < pixels; p++)
+        mask->data[p] -= SEEN;
+}
+
 typedef struct looking {
     pst_capture *capture;
     img *level;
@@ -137,7 +186,9 @@ status pst_capture_find_mask(pst_capture *c)
         parallel_blocks(pixels, look, &(looking){c, &level});
         for (size_t p = 0; p < pixels; p++)
             level.data[p] = sqrtf(level.data[p]);
-        keep_above(&level, edge_thresholds(&level, sample), waiting, &c->mask);
+        const thresholds t = edge_thresholds(&level, sample);
+        keep_above(&level, t, waiting, &c->mask);
+        if (t.sure >= 0) settle_small(&c->mask, waiting);
     }
     free(sample);
     free(waiting);
