@@ -198,8 +198,7 @@ static void print_doubts(const char *input, const stereo_result *result)
          "these lights do not tell how far the object is, and normals may be many degrees off: "
          "state it by --distance, or take more lights, at different heights"},
         {result->lights_unsure, "the pictures hardly tell where the lights are, and normals may be many degrees off, "
-                                "or bulge where the object "
-                                "recedes: state the lights' directions in lights.txt"},
+                                "or bulge where the object recedes: state the lights' directions in lights.txt"},
     };
     for (size_t i = 0; i < sizeof doubts / sizeof *doubts; i++)
         if (doubts[i].holds) fprintf(stderr, "merlin stereo: %s: %s\n", input, doubts[i].words);

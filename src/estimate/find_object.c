@@ -140,10 +140,10 @@ static float flood(search *s, size_t start, uint8_t from, uint8_t to)
         size_t at = s->stack[--depth], x = at % width, y = at / width;
         float u = ((float)x + 0.5f) / (float)width - 0.5f, v = ((float)y + 0.5f) / (float)height - 0.5f;
         sum += expf(-4 * (u * u + v * v));
-        const size_t next[4] = {at - 1, at + 1, at - width, at + width};
-        const bool inside[4] = {x > 0, x + 1 < width, y > 0, y + 1 < height};
-        for (int i = 0; i < 4; i++) {
-            if (!inside[i] || s->object[next[i]] != from) continue;
+        size_t next[4];
+        int count = img_beside(s->width, s->height, at, next);
+        for (int i = 0; i < count; i++) {
+            if (s->object[next[i]] != from) continue;
             s->object[next[i]] = to;
             s->stack[depth++] = next[i];
         }

@@ -25,6 +25,19 @@ typedef struct img_span {
 } img_span;
 img_span img_row_span(const img *mask, int y);
 
+/* The pixels that share a side with one: left, right, above, below, but for what is beside the picture. Returns how
+ * many. */
+static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
+{
+    const size_t w = (size_t)width, x = pixel % w, y = pixel / w;
+    int count = 0;
+    if (x > 0) to[count++] = pixel - 1;
+    if (x + 1 < w) to[count++] = pixel + 1;
+    if (y > 0) to[count++] = pixel - w;
+    if (y + 1 < (size_t)height) to[count++] = pixel + w;
+    return count;
+}
+
 /* sum += part, of the same size; its zeros leave the sum alone. */
 void img_add(const img *part, img *sum);
 

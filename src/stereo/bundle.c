@@ -29,21 +29,13 @@ static bool on_object(const pst_capture *c, int x, int y)
 
 static void place_grid(bundle *b, int across)
 {
-    const pst_capture *c = b->problem->capture;
-    int x0 = c->width, x1 = 0, y0 = c->height, y1 = 0;
-    for (size_t i = 0; i < b->problem->pixel_count; i++) {
-        int x = (int)(b->problem->pixel[i] % (size_t)c->width), y = (int)(b->problem->pixel[i] / (size_t)c->width);
-        x0 = x < x0 ? x : x0;
-        x1 = x > x1 ? x : x1;
-        y0 = y < y0 ? y : y0;
-        y1 = y > y1 ? y : y1;
-    }
-    int longer = (x1 - x0 > y1 - y0 ? x1 - x0 : y1 - y0) + 1;
+    const pst_bounds r = pst_bounds_of(b->problem);
+    int width = r.right - r.left + 1, height = r.bottom - r.top + 1, longer = width > height ? width : height;
     b->side = (longer + across - 1) / across;
-    b->columns = (x1 - x0) / b->side + 1;
-    b->rows = (y1 - y0) / b->side + 1;
-    b->left = x0 - (b->columns * b->side - (x1 - x0 + 1)) / 2;
-    b->top = y0 - (b->rows * b->side - (y1 - y0 + 1)) / 2;
+    b->columns = (width - 1) / b->side + 1;
+    b->rows = (height - 1) / b->side + 1;
+    b->left = r.left - (b->columns * b->side - width) / 2;
+    b->top = r.top - (b->rows * b->side - height) / 2;
     b->step = (float)b->side / b->camera.focal;
     b->radius = 0.5f * (float)longer / b->camera.focal;
 }

@@ -60,14 +60,12 @@ static blob grow(flood *f, int start)
 {
     blob b = {0};
     size_t depth = 0;
-    int w = f->left.width, h = f->left.height;
     visit(f, start, &depth, &b);
     while (depth) {
-        int at = f->stack[--depth], x = at % w, y = at / w;
-        if (x > 0) visit(f, at - 1, &depth, &b);
-        if (x < w - 1) visit(f, at + 1, &depth, &b);
-        if (y > 0) visit(f, at - w, &depth, &b);
-        if (y < h - 1) visit(f, at + w, &depth, &b);
+        size_t next[4];
+        int count = img_beside(f->left.width, f->left.height, (size_t)f->stack[--depth], next);
+        for (int i = 0; i < count; i++)
+            visit(f, (int)next[i], &depth, &b);
     }
     return b;
 }

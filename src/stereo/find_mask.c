@@ -67,50 +67,26 @@ static thresholds edge_thresholds(const img *level, float *sample)
     return (thresholds){median + surely * deviation, median + possibly * deviation};
 }
 
-/* Leaves in the mask what is above the higher threshold, and what is above the lower one and hangs together with that.
- * waiting: room for all pixels. */
-static void keep_above(const img *level, thresholds t, uint32_t *waiting, img *mask)
-{
-    const size_t width = (size_t)mask->width, pixels = width * (size_t)mask->height;
-    enum { POSSIBLE = 2 };
-    size_t count = 0;
-    for (size_t p = 0; p < pixels; p++) {
-        bool sure = mask->data[p] > 0 && level->data[p] > t.sure;
-        mask->data[p] = sure ? 1 : mask->data[p] > 0 && level->data[p] > t.possible ? POSSIBLE : 0;
-        if (sure) waiting[count++] = (uint32_t)p;
-    }
-    while (count > 0) {
-        size_t p = waiting[--count], x = p % width;
-        const size_t beside[] = {x > 0 ? p - 1 : p, x + 1 < width ? p + 1 : p, p >= width ? p - width : p,
-                                 p + width < pixels ? p + width : p};
-        for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
-            if (mask->data[beside[k]] < POSSIBLE) continue;
-            mask->data[beside[k]] = 1;
-            waiting[count++] = (uint32_t)beside[k];
-        }
-    }
-    for (size_t p = 0; p < pixels; p++)
-        if (mask->data[p] > 1) mask->data[p] = 0;
-}
-
 /* What has been looked at has this added to it. */
 enum { SEEN = 2 };
 
-/* The pixels that hang together with this one, into piece; whether one is at the picture's edge. */
-static size_t gather(img *mask, size_t from, uint32_t *piece, bool *at_edge)
+static void forget_seen(img *mask)
 {
-    const size_t width = (size_t)mask->width, pixels = width * (size_t)mask->height;
+    for (size_t p = 0; p < img_value_count(mask); p++)
+        if (mask->data[p] >= SEEN) mask->data[p] -= SEEN;
+}
+
+/* The pixels that hang together with this one, into piece. */
+static size_t gather(img *mask, size_t from, uint32_t *piece)
+{
     const float kind = mask->data[from];
     size_t count = 0;
-    *at_edge = false;
     mask->data[from] += SEEN;
     piece[count++] = (uint32_t)from;
     for (size_t i = 0; i < count; i++) {
-        size_t p = piece[i], x = p % width;
-        *at_edge |= x == 0 || x + 1 == width || p < width || p + width >= pixels;
-        const size_t beside[] = {x > 0 ? p - 1 : p, x + 1 < width ? p + 1 : p, p >= width ? p - width : p,
-                                 p + width < pixels ? p + width : p};
-        for (size_t k = 0; k < sizeof beside / sizeof *beside; k++) {
+        size_t beside[4];
+        int sides = img_beside(mask->width, mask->height, piece[i], beside);
+        for (int k = 0; k < sides; k++) {
             if (mask->data[beside[k]] != kind) continue;
             mask->data[beside[k]] += SEEN;
             piece[count++] = (uint32_t)beside[k];
@@ -119,23 +95,49 @@ static size_t gather(img *mask, size_t from, uint32_t *piece, bool *at_edge)
     return count;
 }
 
+/* Leaves in the mask what is above the lower threshold and hangs together with what is above the higher one. piece:
+ * room for all pixels. */
+static void keep_above(const img *level, thresholds t, uint32_t *piece, img *mask)
+{
+    const size_t pixels = img_value_count(mask);
+    for (size_t p = 0; p < pixels; p++)
+        if (!(level->data[p] > t.possible)) mask->data[p] = 0;
+    for (size_t p = 0; p < pixels; p++) {
+        if (mask->data[p] != 1) continue;
+        size_t count = gather(mask, p, piece);
+        bool sure = false;
+        for (size_t i = 0; i < count && !sure; i++)
+            sure = level->data[piece[i]] > t.sure;
+        for (size_t i = 0; i < count && !sure; i++)
+            mask->data[piece[i]] = 0;
+    }
+    forget_seen(mask);
+}
+
+static bool reaches_edge(const img *mask, const uint32_t *piece, size_t count)
+{
+    size_t beside[4];
+    for (size_t i = 0; i < count; i++)
+        if (img_beside(mask->width, mask->height, piece[i], beside) < 4) return true;
+    return false;
+}
+
 /* Specks go, small holes are filled. piece: room for all pixels. */
 static void settle_small(img *mask, uint32_t *piece)
 {
-    const size_t pixels = (size_t)mask->width * (size_t)mask->height;
+    const size_t pixels = img_value_count(mask);
     size_t inside = 0;
     for (size_t p = 0; p < pixels; p++)
         inside += mask->data[p] > 0;
     for (size_t p = 0; p < pixels; p++) {
-        bool at_edge, hole = mask->data[p] == 0;
         if (mask->data[p] >= SEEN) continue;
-        size_t count = gather(mask, p, piece, &at_edge);
-        if ((double)count >= small * (double)inside || (hole && at_edge)) continue;
+        bool hole = mask->data[p] == 0;
+        size_t count = gather(mask, p, piece);
+        if ((double)count >= small * (double)inside || (hole && reaches_edge(mask, piece, count))) continue;
         for (size_t i = 0; i < count; i++)
             mask->data[piece[i]] = hole ? SEEN + 1 : SEEN;
     }
-    for (size_t p = 0; p < pixels; p++)
-        mask->data[p] -= SEEN;
+    forget_seen(mask);
 }
 
 typedef struct looking {
@@ -180,18 +182,20 @@ status pst_capture_find_mask(pst_capture *c)
     if (s != OK) return s;
     s = img_new(&level, c->width, c->height, 1);
     float *sample = malloc(SAMPLE * sizeof *sample);
-    uint32_t *waiting = malloc(pixels * sizeof *waiting);
-    if (s == OK && (!sample || !waiting)) s = fail(ERROR_MEMORY, "no memory to find the object");
+    uint32_t *piece = malloc(pixels * sizeof *piece);
+    if (s == OK && (!sample || !piece)) s = fail(ERROR_MEMORY, "no memory to find the object");
     if (s == OK) {
         parallel_blocks(pixels, look, &(looking){c, &level});
         for (size_t p = 0; p < pixels; p++)
             level.data[p] = sqrtf(level.data[p]);
         const thresholds t = edge_thresholds(&level, sample);
-        keep_above(&level, t, waiting, &c->mask);
-        if (t.sure >= 0) settle_small(&c->mask, waiting);
+        if (t.sure >= 0) {
+            keep_above(&level, t, piece, &c->mask);
+            settle_small(&c->mask, piece);
+        }
     }
     free(sample);
-    free(waiting);
+    free(piece);
     img_free(&level);
     if (s != OK) img_free(&c->mask);
     return s;

@@ -304,38 +304,21 @@ static status rotate(const pst_pseudo *f, vec3 mean, pst_rotation *out)
     return OK;
 }
 
-/* The rectangle that the pixels fill. */
-typedef struct frame {
-    size_t x, y, width, height;
-} frame;
-
-static frame frame_of(const pst_problem *p)
-{
-    size_t width = (size_t)p->capture->width, low = width, high = 0;
-    for (size_t i = 0; i < p->pixel_count; i++) {
-        size_t x = p->pixel[i] % width;
-        low = x < low ? x : low;
-        high = x > high ? x : high;
-    }
-    size_t top = p->pixel[0] / width;
-    return (frame){low, top, high - low + 1, p->pixel[p->pixel_count - 1] / width - top + 1};
-}
-
-static float *place(const img *sums, const frame *r, const pst_problem *p, size_t i)
+static float *place(const img *sums, const pst_bounds *r, const pst_problem *p, size_t i)
 {
     size_t width = (size_t)p->capture->width;
-    return img_at(sums, (int)(p->pixel[i] % width - r->x), (int)(p->pixel[i] / width - r->y));
+    return img_at(sums, (int)(p->pixel[i] % width) - r->left, (int)(p->pixel[i] / width) - r->top);
 }
 
 /* Between neighbouring pixels the surface turns by less than noise does. */
 static status average(const pst_pseudo *f)
 {
     const pst_problem *p = f->problem;
-    const frame r = frame_of(p);
+    const pst_bounds r = pst_bounds_of(p);
     int radius = (int)(averaged * sqrt((double)p->pixel_count) + 0.5);
     if (radius < LEAST_AVERAGED) radius = LEAST_AVERAGED;
     img sums;
-    status s = img_new(&sums, (int)r.width, (int)r.height, 4);
+    status s = img_new(&sums, r.right - r.left + 1, r.bottom - r.top + 1, 4);
     if (s != OK) return s;
     for (size_t i = 0; i < p->pixel_count; i++) {
         vec3 b = f->b[i];

@@ -163,6 +163,21 @@ status pst_list_pixels(const pst_capture *c, pst_problem *p)
     return OK;
 }
 
+pst_bounds pst_bounds_of(const pst_problem *p)
+{
+    const size_t width = (size_t)p->capture->width;
+    pst_bounds r = {.left = p->capture->width,
+                    .right = 0,
+                    .top = (int)(p->pixel[0] / width),
+                    .bottom = (int)(p->pixel[p->pixel_count - 1] / width)};
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        int x = (int)(p->pixel[i] % width);
+        r.left = x < r.left ? x : r.left;
+        r.right = x > r.right ? x : r.right;
+    }
+    return r;
+}
+
 /* Beyond these, squares of albedos would leave the range of floats, or vanish beside what keeps a division from 0. */
 static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
 

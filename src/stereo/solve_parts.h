@@ -22,6 +22,11 @@ status pst_check_directions(const pst_light *light, int count);
 
 /* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */
 status pst_list_pixels(const pst_capture *c, pst_problem *p);
+/* The rectangle that the pixels fill, all four inside it; of one pixel at least. */
+typedef struct pst_bounds {
+    int left, right, top, bottom;
+} pst_bounds;
+pst_bounds pst_bounds_of(const pst_problem *p);
 
 status pst_solve_ls(const pst_problem *p, pst_surface *out);
 status pst_solve_robust(const pst_problem *p, pst_surface *out);

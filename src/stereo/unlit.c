@@ -42,12 +42,10 @@ static float brightest(const pst_problem *p, size_t pixel)
 /* The pixels of the object to the sides of one; returns how many. */
 static int neighbours_of(const img *mask, size_t pixel, size_t to[4])
 {
-    size_t width = (size_t)mask->width, x = pixel % width, y = pixel / width;
-    const size_t sides[4] = {pixel - 1, pixel + 1, pixel - width, pixel + width};
-    const bool there[4] = {x > 0, x + 1 < width, y > 0, y + 1 < (size_t)mask->height};
-    int count = 0;
-    for (int k = 0; k < 4; k++)
-        if (there[k] && mask->data[sides[k]] > 0.5f) to[count++] = sides[k];
+    size_t sides[4];
+    int count = 0, there = img_beside(mask->width, mask->height, pixel, sides);
+    for (int k = 0; k < there; k++)
+        if (mask->data[sides[k]] > 0.5f) to[count++] = sides[k];
     return count;
 }
 
