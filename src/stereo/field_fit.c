@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/inline.h"
 #include "base/parallel.h"
 #include "stereo/field_neighbours.h"
 #include "stereo/near_lights.h"
@@ -38,24 +39,37 @@ typedef struct gathered {
     float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) a pixel */
 } gathered;
 
+/* channels is a constant where this is called. */
+ALWAYS_INLINE void gather_picture(const pst_problem *p, int k, const uint32_t *pixel, size_t count, int channels,
+                                  float *restrict value, float *restrict usable, size_t stride)
+{
+    const uint16_t *picture = p->capture->picture[k];
+    float low = p->shadow > 0 ? p->shadow * 65535 * (float)channels : -1, high = p->saturation * 65535;
+    float share[3];
+    for (int ch = 0; ch < channels; ch++)
+        share[ch] = 1 / p->light[k].intensity[ch] / (65535 * (float)channels);
+    for (size_t j = 0; j < count; j++) {
+        const uint16_t *code = picture + (size_t)pixel[j] * (size_t)channels;
+        float sum = 0, top = 0, dark = 0;
+        for (int ch = 0; ch < channels; ch++) {
+            float v = code[ch];
+            sum += v * share[ch];
+            dark += v;
+            top = v > top ? v : top;
+        }
+        value[j * stride] = sum;
+        usable[j * stride] = top < high && dark > low ? 1 : 0;
+    }
+}
+
 void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride)
 {
     const pst_capture *c = p->capture;
-    float low = p->shadow * 65535 * (float)c->channels, high = p->saturation * 65535;
     for (int k = 0; k < c->count; k++) {
-        const float *e = p->light[k].intensity;
-        for (size_t j = 0; j < count; j++) {
-            const uint16_t *code = c->picture[k] + (size_t)pixel[j] * (size_t)c->channels;
-            float sum = 0, top = 0, dark = 0;
-            for (int ch = 0; ch < c->channels; ch++) {
-                float v = code[ch];
-                sum += v / e[ch];
-                dark += v;
-                top = v > top ? v : top;
-            }
-            value[j * stride + (size_t)k] = sum / (65535 * (float)c->channels);
-            usable[j * stride + (size_t)k] = top < high && (p->shadow <= 0 || dark > low) ? 1 : 0;
-        }
+        if (c->channels == 1)
+            gather_picture(p, k, pixel, count, 1, value + k, usable + k, stride);
+        else
+            gather_picture(p, k, pixel, count, 3, value + k, usable + k, stride);
     }
     for (size_t j = 0; j < count; j++)
         for (size_t k = (size_t)c->count; k < (size_t)pst_padded(c->count); k++)
@@ -103,7 +117,7 @@ static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *
 {
     const pst_field *f = job->field;
     if (begun->valid && f->problem->capture->count >= PST_MANY_LIGHTS) {
-        pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1]);
+        pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1], HUGE_VALF);
         if (next.cost < begun->cost + PST_FAR_LESS) return next;
     }
     pst_shading found = pst_lobe_fit(d, f->lobe);
@@ -115,7 +129,7 @@ static void try_second(const pst_field *f, size_t i, const pst_lobe_data *d)
 {
     pst_shading start = pst_lobe_translate(f->lobe, f->second, &f->shading[i]);
     start.second = true;
-    pst_shading found = pst_lobe_refine(d, f->second, &start);
+    pst_shading found = pst_lobe_refine(d, f->second, &start, pst_far_below(f->shading[i].cost));
     if (found.cost < pst_far_below(f->shading[i].cost)) f->shading[i] = found;
 }
 
@@ -125,7 +139,7 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
     const pst_shading *start[4];
     int starts = pst_better_neighbours(&job->around, i, start);
     for (int k = 0; k < starts; k++) {
-        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k]);
+        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k], job->next[i].cost);
         if (trial.cost < job->next[i].cost) job->next[i] = trial;
     }
 }
@@ -136,7 +150,7 @@ static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
     const pst_shading *own = &job->field->shading[i];
     pst_majority m;
     if (!pst_majority_against(&job->around, i, &m)) return;
-    pst_shading trial = pst_lobe_refine(d, lobe_of(job->field, m.member), m.member);
+    pst_shading trial = pst_lobe_refine(d, lobe_of(job->field, m.member), m.member, own->cost + job->contradiction);
     float less_strange = pst_strangeness(&m, own->normal) - pst_strangeness(&m, trial.normal);
     if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
 }
@@ -152,7 +166,7 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
         *own = fit_after(job, i, d, begun);
         break;
     case REFINE:
-        *own = pst_lobe_refine(d, lobe_of(f, own), own);
+        *own = pst_lobe_refine(d, lobe_of(f, own), own, HUGE_VALF);
         break;
     case SEARCH:
         *own = pst_lobe_search(d, f->lobe, own);

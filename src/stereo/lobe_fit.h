@@ -45,9 +45,9 @@ static inline void pst_tangents(vec3 n, vec3 *t1, vec3 *t2)
 typedef struct pst_lobe_data {
     pst_observations seen; /* borrowed */
     float level;           /* a value that is ordinary for the pixel; residuals are in its unit */
-    float hx[PST_MAX_LIGHTS], hy[PST_MAX_LIGHTS], hz[PST_MAX_LIGHTS];
-    float shadowy[PST_MAX_LIGHTS];   /* what less an observation costs if it is a shadow */
-    float precision[PST_MAX_LIGHTS]; /* usable / (level² + what the value is above it, squared) */
+    float hx[PST_LIGHTS_ROOM], hy[PST_LIGHTS_ROOM], hz[PST_LIGHTS_ROOM];
+    float shadowy[PST_LIGHTS_ROOM];   /* what less an observation costs if it is a shadow */
+    float precision[PST_LIGHTS_ROOM]; /* usable / (level² + what the value is above it, squared) */
 } pst_lobe_data;
 
 /* A value that is ordinary for the pixel: the median of those above a hundredth of its brightest. */
@@ -65,8 +65,8 @@ pst_shading pst_lobe_search(const pst_lobe_data *d, const pst_lobe *lobe, const 
 /* The start of another lobe that looks most like a shading of the one. */
 pst_shading pst_lobe_translate(const pst_lobe *from, const pst_lobe *to, const pst_shading *at);
 
-/* The best near a start. */
-pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start);
+/* The best near a start, or something that costs more than the limit, which is found sooner. */
+pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start, float limit);
 
 /* weight gets each observation's share in the fit, in [0, 1], model what the fit makes of it. */
 void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, float *weight, float *model);

@@ -27,7 +27,6 @@ static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *rest
     const int count = pst_whole(o->padded);
     vec3 n = vec3_scale(vec3_normalize(last), o->terminator);
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, bx = 0, by = 0, bz = 0;
-#pragma omp simd reduction(+ : xx, xy, xz, yy, yz, zz, bx, by, bz)
     for (int i = 0; i < count; i++) {
         float x = lx[i] - n.x, y = ly[i] - n.y, z = lz[i] - n.z, u = w[i], v = u * value[i];
         xx += u * x * x;
@@ -43,20 +42,37 @@ static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *rest
     return pst_solve3((float[6]){xx, xy, xz, yy, yz, zz}, vec3_make(bx, by, bz));
 }
 
-/* Sets the weights for residuals of the given width (in albedos) and returns the loss. */
-static float reweigh(const pst_observations *o, vec3 b, float width, float *restrict w)
+/* 1 / σ² */
+static float precision_of(vec3 b, float width)
+{
+    float sigma = width * vec3_length(b);
+    return 1 / (sigma * sigma + 1e-20f);
+}
+
+/* Sets the weights for residuals of the given width (in albedos). */
+static void reweigh(const pst_observations *o, vec3 b, float width, float *restrict w)
 {
     const float *lx = o->x, *ly = o->y, *lz = o->z, *value = o->value, *usable = o->usable;
     const int count = pst_whole(o->padded);
-    float albedo = vec3_length(b), sigma = width * albedo, cost = 0, offset = o->terminator * albedo;
-    float inverse = 1 / (sigma * sigma + 1e-20f);
-#pragma omp simd reduction(+ : cost)
+    const float offset = o->terminator * vec3_length(b), precision = precision_of(b, width);
+#pragma omp simd
     for (int i = 0; i < count; i++) {
-        float fit = b.x * lx[i] + b.y * ly[i] + b.z * lz[i] - offset, v = value[i];
-        float r = v - (fit > 0 ? fit : 0);
-        float t = r * r * inverse, g = 1 / (1 + t);
-        cost += usable[i] * (PST_IS_SHADOW(v, r) ? PST_SHADOW_COST : 1) * t * g;
+        float fit = b.x * lx[i] + b.y * ly[i] + b.z * lz[i] - offset, r = value[i] - (fit > 0 ? fit : 0);
+        float g = 1 / (1 + r * r * precision);
         w[i] = (fit > 0 ? usable[i] : 0) * g * g;
+    }
+}
+
+static float loss(const pst_observations *o, vec3 b, float width)
+{
+    const float *lx = o->x, *ly = o->y, *lz = o->z, *value = o->value, *usable = o->usable;
+    const int count = pst_whole(o->padded);
+    const float offset = o->terminator * vec3_length(b), precision = precision_of(b, width);
+    float cost = 0;
+    for (int i = 0; i < count; i++) {
+        float fit = b.x * lx[i] + b.y * ly[i] + b.z * lz[i] - offset, v = value[i], r = v - (fit > 0 ? fit : 0);
+        float t = r * r * precision;
+        cost += usable[i] * (PST_IS_SHADOW(v, r) ? PST_SHADOW_COST : 1) * t / (1 + t);
     }
     return cost;
 }
@@ -77,7 +93,8 @@ static pst_pixel fit_from(const pst_observations *o, float low, float high, floa
         reweigh(o, b, width, w);
         b = weighted_fit(o, b, w);
     }
-    return (pst_pixel){b, reweigh(o, b, narrowest, w)};
+    reweigh(o, b, narrowest, w);
+    return (pst_pixel){b, loss(o, b, narrowest)};
 }
 
 pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
@@ -101,7 +118,8 @@ pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
     }
     for (int k = 0; k < POLISH; k++) {
         best.b = weighted_fit(o, best.b, weight);
-        best.cost = reweigh(o, best.b, narrowest, weight);
+        reweigh(o, best.b, narrowest, weight);
     }
+    best.cost = loss(o, best.b, narrowest);
     return best;
 }
