@@ -11,9 +11,10 @@ enum { UNKNOWNS = 5, PRODUCTS = UNKNOWNS * (UNKNOWNS + 1) / 2 };
 static const float widths[] = {PST_WIDEST, PST_WIDEST, 0.11f, 0.08f, 0.057f, 0.04f, 0.04f, 0.04f, 0.04f, 0.04f, 0.04f};
 enum { STEPS = sizeof widths / sizeof *widths, FAR = 0, NEAR = 3 };
 
-/* A descent is given up where its loss would stay above the limit even if each step left gained so many times what the
- * last one did. */
+/* A step is hopeless if the loss will stay above the limit even where each step left gains so many times what it did;
+ * after as many such steps the descent is given up. */
 static const float hopeful = 2;
+enum { MOST_HOPELESS = 2 };
 
 /* The model at every light, linearized: what it changes by with each unknown, what is left of the observation, and the
  * weight that the loss gives it. */
@@ -196,7 +197,7 @@ pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const
     const bool far = from == PST_DESCENT_FAR;
     const float narrowest = fmaxf(widths[STEPS - 1], lobe->width);
     float width = fmaxf(widths[far ? FAR : NEAR], lobe->width), damping = far ? 1e-2f : 1e-3f;
-    int failures = 0;
+    int failures = 0, hopeless = 0;
     bool known = false; /* the equations there */
     pst_shading at = *start;
     linearized here;
@@ -217,7 +218,8 @@ pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const
             failures = 0;
             at = next;
             at.cost = here.loss;
-            if (done || (last && at.cost - hopeful * (float)(STEPS - 1 - k) * gain > limit)) break;
+            hopeless = last && at.cost - hopeful * (float)(STEPS - 1 - k) * gain > limit ? hopeless + 1 : 0;
+            if (done || hopeless == MOST_HOPELESS) break;
         } else {
             damping = damping * 10 + 1e-3f;
             if (last && ++failures == 2) break;

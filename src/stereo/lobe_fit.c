@@ -192,7 +192,7 @@ pst_shading pst_lobe_fit(const pst_lobe_data *d, const pst_lobe *lobe)
     if (best.cost < 0.5f) return best;
     start.normal = mirror_normal(d);
     start.albedo = 0;
-    pst_shading other = descend(d, lobe, &start, best.cost);
+    pst_shading other = descend(d, lobe, &start, HUGE_VALF);
     return other.cost < best.cost ? other : best;
 }
 
