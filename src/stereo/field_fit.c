@@ -265,19 +265,20 @@ static void fit_block(void *context, size_t block)
 {
     const fit_job *job = context;
     const pst_field *f = job->field;
-    size_t first = block * BLOCK, left = f->count - first;
-    int count = (int)(left < BLOCK ? left : BLOCK);
-    size_t stride = (size_t)pst_padded(f->problem->capture->count);
+    size_t first = block * BLOCK, end = first + BLOCK < f->count ? first + BLOCK : f->count;
+    size_t stride = (size_t)pst_padded(f->problem->capture->count), wanted[BLOCK], count = 0;
+    uint32_t pixel[BLOCK];
     gathered g;
     run_start begun = {false, 0};
-    bool wanted[BLOCK], any = false;
-    for (int j = 0; j < count; j++)
-        any |= wanted[j] = concerns(job, first + (size_t)j);
-    if (!any) return;
-    pst_gather(f->problem, f->pixel + first, (size_t)count, g.value, g.usable, stride);
-    for (int j = 0; j < count; j++)
-        if (wanted[j])
-            fit_pixel(job, first + (size_t)j, g.value + (size_t)j * stride, g.usable + (size_t)j * stride, &begun);
+    for (size_t i = first; i < end; i++) {
+        if (!concerns(job, i)) continue;
+        pixel[count] = f->pixel[i];
+        wanted[count++] = i;
+    }
+    if (count == 0) return;
+    pst_gather(f->problem, pixel, count, g.value, g.usable, stride);
+    for (size_t j = 0; j < count; j++)
+        fit_pixel(job, wanted[j], g.value + j * stride, g.usable + j * stride, &begun);
 }
 
 static status run(fit_job *job)
