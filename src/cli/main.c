@@ -79,9 +79,17 @@ static void wait_briefly(char *const *argv)
     if (setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv); /* without /proc all goes on so */
 }
 
+/* Its matrices are too small for several threads to gain from, and the other work has them all. It asks when it is
+ * loaded. */
+static void one_thread_for_blas(void)
+{
+    setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
+
 int main(int argc, char **argv)
 {
     vips_without_modules();
+    one_thread_for_blas();
     if (argc < 2) {
         print_help(stderr);
         return 2;
