@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#define HALF_LARGEST 65504.0f
+
 static inline uint32_t float_bits(float x)
 {
     uint32_t u;

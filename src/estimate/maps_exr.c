@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/half.h"
 #include "estimate/api.h"
 #include "estimate/exposure.h"
 #include "image/exr.h"
@@ -30,12 +31,12 @@ static const bool of_photographs[IMAGES] = {[2] = true, [PHOTO] = true};
 /* A photograph of floats may be in a unit that half has no room or no digits for. */
 static bool outgrows_half(const merlin_image *photo)
 {
-    const float largest_half = 65504, dim = 1.0f / 64; /* half's digits go below 2^-14 */
+    const float dim = 1.0f / 64; /* half's digits go below 2^-14 */
     size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
     float largest = 0;
     for (size_t i = 0; i < count; i++)
         largest = fmaxf(largest, photo->data[i]);
-    return largest > largest_half || largest < dim;
+    return largest > HALF_LARGEST || largest < dim;
 }
 
 status maps_write_exr(const merlin_maps *maps, const char *path)

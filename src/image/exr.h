@@ -48,7 +48,7 @@ static inline exr_attribute exr_text(const char *name, const char *text)
     return (exr_attribute){.name = name, .text = text};
 }
 
-/* Atomic: a temporary name, then renamed. Values beyond half's range are clamped to ±65504. */
+/* Atomic: a temporary name, then renamed. Values beyond half's range are clamped to ±HALF_LARGEST (base/half.h). */
 status exr_write(const char *path, int width, int height, const exr_channel *channels, size_t channel_count,
                  const exr_attribute *attributes, size_t attribute_count);
 

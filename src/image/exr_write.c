@@ -10,8 +10,6 @@
 #include "image/exr.h"
 #include "image/exr_context.h"
 
-static const float half_max = 65504.0f;
-
 typedef struct writer {
     const char *path;
     exr_context_t context;
@@ -66,7 +64,7 @@ static void line_of_halves(const float *from, int stride, int count, uint16_t *t
 {
     for (int i = 0; i < count; i++) {
         float x = from[(size_t)i * (size_t)stride];
-        x = x > half_max ? half_max : x < -half_max ? -half_max : x;
+        x = x > HALF_LARGEST ? HALF_LARGEST : x < -HALF_LARGEST ? -HALF_LARGEST : x;
         to[i] = float_to_half(x);
     }
 }
