@@ -129,8 +129,9 @@ static void try_second(const pst_field *f, size_t i, const pst_lobe_data *d)
 {
     pst_shading start = pst_lobe_translate(f->lobe, f->second, &f->shading[i]);
     start.second = true;
-    pst_shading found = pst_lobe_refine(d, f->second, &start, pst_far_below(f->shading[i].cost));
-    if (found.cost < pst_far_below(f->shading[i].cost)) f->shading[i] = found;
+    float limit = pst_far_below(f->shading[i].cost);
+    pst_shading found = pst_lobe_refine(d, f->second, &start, limit);
+    if (found.cost < limit) f->shading[i] = found;
 }
 
 static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)

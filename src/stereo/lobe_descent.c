@@ -177,8 +177,7 @@ static pst_shading moved(const pst_shading *at, const equations *e, float dampin
     next.normal = vec3_normalize(vec3_fma(vec3_fma(at->normal, most * x[0], e->t1), most * x[1], e->t2));
     next.albedo = fmaxf(at->albedo + x[2], 0);
     next.gloss = fmaxf(at->gloss + x[3], 0);
-    next.sharpness =
-        clamp_between(at->sharpness + clamp_between(x[4], -1, 1), LOBE_LEAST_SHARPNESS, LOBE_MOST_SHARPNESS);
+    next.sharpness = clamp_sharpness(at->sharpness + clamp_between(x[4], -1, 1));
     return next;
 }
 
@@ -195,8 +194,9 @@ pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const
                              float limit)
 {
     const bool far = from == PST_DESCENT_FAR;
+    const int first = far ? FAR : NEAR;
     const float narrowest = fmaxf(widths[STEPS - 1], lobe->width);
-    float width = fmaxf(widths[far ? FAR : NEAR], lobe->width), damping = far ? 1e-2f : 1e-3f;
+    float width = fmaxf(widths[first], lobe->width), damping = far ? 1e-2f : 1e-3f;
     int failures = 0, hopeless = 0;
     bool known = false; /* the equations there */
     pst_shading at = *start;
@@ -204,7 +204,7 @@ pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const
     equations e;
     linearize(d, lobe, &at, width, width, &here);
     at.cost = here.loss;
-    for (int k = far ? FAR : NEAR; k < STEPS; k++) {
+    for (int k = first; k < STEPS; k++) {
         float narrower = k + 1 < STEPS ? fmaxf(widths[k + 1], lobe->width) : width;
         bool last = width == narrowest;
         if (!known) add_up(&here, d->seen.padded, &e);

@@ -66,8 +66,7 @@ pst_shading pst_lobe_translate(const pst_lobe *from, const pst_lobe *to, const p
 {
     pst_shading start = *at;
     if (from->tail > 0 && to->tail > 0)
-        start.sharpness = clamp_between(at->sharpness + logf((float)from->tail / (float)to->tail), LOBE_LEAST_SHARPNESS,
-                                        LOBE_MOST_SHARPNESS);
+        start.sharpness = clamp_sharpness(at->sharpness + logf((float)from->tail / (float)to->tail));
     return start;
 }
 
@@ -150,7 +149,7 @@ static pst_shading best_sharpness(const pst_lobe_data *d, const pst_lobe *lobe, 
         trial.sharpness = trial_sharpness[k];
         trial.gloss = 0;
         find_heights(d, lobe, &trial, &h);
-        if (k == 0) best.cost = loss(d, &h, &best, PST_WIDEST);
+        if (k == 0) best.cost = loss(d, &h, &best, PST_WIDEST); /* without gloss any lobe will do */
         scale_heights(d, &h, PST_WIDEST, &trial);
         scale_heights(d, &h, PST_WIDEST, &trial);
         trial.cost = loss(d, &h, &trial, PST_WIDEST);

@@ -4,13 +4,15 @@
 
 #include "stereo/pixel_fit.h"
 
-/* Of u, from lobes wider than the hemisphere to mirrors. */
-#define LOBE_LEAST_SHARPNESS -2.3f
-#define LOBE_MOST_SHARPNESS 11.0f
-
 static inline float clamp_between(float x, float low, float high)
 {
     return x < low ? low : x > high ? high : x;
+}
+
+/* Log u, from lobes wider than the hemisphere to mirrors. */
+static inline float clamp_sharpness(float x)
+{
+    return clamp_between(x, -2.3f, 11);
 }
 
 /* What an observation that is far below the fit is charged. */

@@ -13,8 +13,7 @@
 /* Lengths are rounded up to whole vectors, so that loops over lights have no remainder; the padding is not usable. */
 enum { PST_LANES = 16, PST_MAX_LIGHTS = 1024 };
 
-/* Of an array beside others like it: at distances of a power of two all would fall into the same few lines of a cache.
- */
+/* Of arrays side by side: at distances of a power of two all would fall into the same few lines of a cache. */
 enum { PST_LIGHTS_ROOM = PST_MAX_LIGHTS + PST_LANES };
 
 /* With fewer, what is fitted beside Lambert's law is easily fitted to noise and to errors of the lights. */

@@ -22,6 +22,7 @@ status pst_check_directions(const pst_light *light, int count);
 
 /* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */
 status pst_list_pixels(const pst_capture *c, pst_problem *p);
+
 /* The rectangle that the pixels fill, all four inside it; of one pixel at least. */
 typedef struct pst_bounds {
     int left, right, top, bottom;
