@@ -42,7 +42,7 @@ typedef struct merlin_capture_files {
                             of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
     const char *mask;    /* NULL: the folder's mask.png or *.mask.png, else what is brighter than black and than a dark
                           * edge of the pictures */
-    const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png, if there is one */
+    const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png or the like, if any */
     int near_lights;     /* 1: the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
@@ -51,8 +51,8 @@ typedef struct merlin_capture_files {
                           * lights or a known field of view alone */
 } merlin_capture_files;
 
-/* PNG, JPEG, TIFF or EXR pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones are
- * linear unless a colour profile says otherwise. files NULL: the usual case. */
+/* PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones
+ * are linear unless a colour profile says otherwise, raw ones always. files NULL: the usual case. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 
 /* What holds for all pictures that are added from memory. */

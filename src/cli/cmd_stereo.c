@@ -36,7 +36,7 @@ static const char help[] =
     "                       else robust\n"
     "      --mask FILE      white on the object (default: mask.png or *.mask.png in DIR, else what\n"
     "                       is brighter than a dark background)\n"
-    "      --ambient FILE   a picture without the lights, to subtract (default: ambient.png in DIR)\n"
+    "      --ambient FILE   a picture without the lights, to subtract (default: ambient.* in DIR)\n"
     "      --linear         8-bit pictures hold linear values, not sRGB\n"
     "      --integrate HOW  ls (default) or edges: depth may jump\n"
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "

@@ -8,9 +8,11 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "image/read.h"
 
-static const char *const endings[] = {".png",  ".jpg",  ".jpeg", ".tif", ".tiff", ".webp",
-                                      ".heic", ".heif", ".avif", ".exr", ".hdr",  NULL};
+static const char *const endings[] = {IMAGE_ENDINGS, NULL};
+static const char *const camera_endings[] = {IMAGE_CAMERA_ENDINGS, NULL};
+static const char *const raw_endings[] = {IMAGE_RAW_ENDINGS, NULL};
 
 /* ---- names ---- */
 
@@ -112,6 +114,18 @@ static status add(photo_list *list, const char *photo)
     return list->at[list->count++].photo ? OK : no_memory();
 }
 
+/* Whether the camera left it beside a raw picture of the same name. */
+static bool is_beside_raw(char *const *names, size_t count, const char *photo)
+{
+    size_t stem = stem_length(photo);
+    if (!file_ends_in_any(photo, camera_endings)) return false;
+    for (size_t i = 0; i < count; i++)
+        if (stem_length(names[i]) == stem && strncmp(names[i], photo, stem) == 0 &&
+            file_ends_in_any(names[i], raw_endings))
+            return true;
+    return false;
+}
+
 /* Of a folder of maps nothing: estimate * finds those that it has made the last time. */
 static status add_folder(photo_list *list, const char *folder)
 {
@@ -122,6 +136,7 @@ static status add_folder(photo_list *list, const char *folder)
     if (s != OK) return s;
     for (size_t i = 0; i < count && s == OK; i++) {
         if (is_mask_name(names[i]) || (results && is_result_name(names[i]))) continue;
+        if (is_beside_raw(names, count, names[i])) continue;
         s = add(list, names[i]);
         if (s != OK) break;
         photo_job *job = &list->at[list->count - 1];

@@ -1,5 +1,6 @@
 /* Reading, before colour is decoded: a picture as its samples lie in the file, upright, colour and alpha apart. The
- * sources behind it, libpng, libvips and EXR, are read by picture_read_png, picture_decode and picture_read_exr. */
+ * sources behind it, libpng, libvips, EXR and LibRaw, are read by picture_read_png, picture_decode, picture_read_exr and
+ * picture_read_raw. */
 #ifndef MERLIN_IMAGE_PICTURE_H
 #define MERLIN_IMAGE_PICTURE_H
 
@@ -23,6 +24,7 @@ typedef enum picture_kind {
     PICTURE_WEBP,
     PICTURE_HEIC,
     PICTURE_HDR,
+    PICTURE_RAW,
 } picture_kind;
 
 /* What a file's head alone says; bits of a sample: 8, 16 or 32. */
@@ -35,9 +37,9 @@ typedef struct picture_head {
 /* A PNG as most are, head->plain; any other is left to picture_decode. color, alpha as below: either may be NULL. */
 status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head);
 
-/* Any kind but EXR. color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
+/* Any kind but EXR and raw. color: 1 or 3 channels; alpha: 1 channel or empty. Either may be NULL. */
 status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha);
-/* Any kind but EXR. */
+/* Any kind but EXR and raw. */
 status picture_look(const char *path, picture_kind kind, picture_head *head);
 /* Refuses Radiance pictures that would come out in wrong colours or turned. */
 status picture_check_hdr(const char *path);
@@ -45,6 +47,8 @@ status picture_check_hdr(const char *path);
 status picture_check_tiff(const char *path);
 /* Whether a TIFF's colours are multiplied by its alpha, the only band beside them. */
 bool picture_tiff_is_premultiplied(const char *path);
+/* Whether a TIFF is the frame of a raw picture: its first one is a mosaic, or a small copy of another. */
+bool picture_tiff_is_raw(const char *path);
 /* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */
 int picture_exif_orientation(void *exif, size_t size);
 /* Turns a picture that lies so upright. */
@@ -55,5 +59,9 @@ status picture_check_size(const char *path, long long width, long long height);
 void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out);
 status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
+/* Upright and linear, in sRGB's primaries, white where the sensor saturates; 3 channels, 1 if it has no mosaic. White
+ * balanced as the camera was set if linearized, for daylight otherwise: the same for all pictures of one camera. */
+status picture_read_raw(const char *path, picture_colour how, img *color);
+status picture_look_raw(const char *path, picture_head *head);
 
 #endif

@@ -8,6 +8,7 @@
 
 enum { COMPRESSION = 259, JPEG = 7, PHOTOMETRIC = 262, YCBCR = 6 };
 enum { BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
+enum { KIND = 254, REDUCED = 1, MOSAIC = 32803, LINEAR_RAW = 34892 };
 
 typedef struct tiff {
     FILE *file;
@@ -59,6 +60,18 @@ status picture_check_tiff(const char *path)
     bool ycbcr = value_of(&t, PHOTOMETRIC) == YCBCR && value_of(&t, COMPRESSION) != JPEG;
     fclose(t.file);
     return ycbcr ? fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path) : OK;
+}
+
+bool picture_tiff_is_raw(const char *path)
+{
+    tiff t = {.file = file_open(path)};
+    if (!t.file) return false;
+    unsigned meaning = value_of(&t, PHOTOMETRIC);
+    bool mosaic = meaning == MOSAIC || meaning == LINEAR_RAW;
+    bool first_is_small = value_of(&t, KIND) & REDUCED;
+    bool canon = number_at(&t, 8, 1) == 'C' && number_at(&t, 9, 1) == 'R';
+    fclose(t.file);
+    return mosaic || first_is_small || canon;
 }
 
 int picture_exif_orientation(void *exif, size_t size)

@@ -35,6 +35,7 @@ static loader *loader_of(picture_kind kind)
     case PICTURE_HEIC:
         return vips_load_heif() ? vips()->heifload : NULL;
     case PICTURE_EXR:
+    case PICTURE_RAW:
     case PICTURE_UNKNOWN:
         break;
     }

@@ -25,6 +25,21 @@ static bool is_heic(const unsigned char *head)
     return false;
 }
 
+/* Raw pictures that are no TIFFs. */
+static bool is_raw(const unsigned char *head)
+{
+    static const struct {
+        size_t at, count;
+        char bytes[HEAD_BYTES];
+    } known[] = {
+        {0, 4, "IIRO"}, {0, 4, "IIRS"},     {0, 4, "MMOR"},      {0, 4, "IIU\0"},   /* Olympus; Panasonic */
+        {0, 8, "FUJIFILM"}, {4, 8, "ftypcrx "}, {6, 4, "HEAP"}, {0, 4, "\0MRM"}, {0, 4, "FOVb"},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (memcmp(head + known[i].at, known[i].bytes, known[i].count) == 0) return true;
+    return false;
+}
+
 static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
 {
     static const struct {
@@ -41,7 +56,7 @@ static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (memcmp(head, known[i].bytes, known[i].count) == 0) return known[i].kind;
     if (memcmp(head, "RIFF", 4) == 0 && memcmp(head + 8, "WEBP", 4) == 0) return PICTURE_WEBP;
-    return is_heic(head) ? PICTURE_HEIC : PICTURE_UNKNOWN;
+    return is_heic(head) ? PICTURE_HEIC : is_raw(head) ? PICTURE_RAW : PICTURE_UNKNOWN;
 }
 
 /* Says what is wrong with a path before any decoder sees it, and which of them is to. */
@@ -62,9 +77,10 @@ static status look_at(const char *path, picture_kind *kind)
     if (!regular) return fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
     if (got == 0) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
     *kind = kind_of(head);
+    if (*kind == PICTURE_TIFF && picture_tiff_is_raw(path)) *kind = PICTURE_RAW;
     if (*kind != PICTURE_UNKNOWN) return OK;
     return fail(ERROR_INPUT,
-                "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR)",
+                "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw)",
                 path);
 }
 
@@ -94,6 +110,7 @@ void picture_take_codes(const void *codes, bool wide, int bands, int first, bool
 static status look_into(const char *path, picture_kind kind, picture_head *head)
 {
     if (kind == PICTURE_EXR) return picture_look_exr(path, head);
+    if (kind == PICTURE_RAW) return picture_look_raw(path, head);
     *head = (picture_head){.plain = false};
     if (kind != PICTURE_PNG) return picture_look(path, kind, head);
     status s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, head);
@@ -121,14 +138,20 @@ static status check_finite(const char *path, const img *image)
     return fail(ERROR_INPUT, "cannot read %s: %td of its values are not finite numbers (NaN or infinity)", path, bad);
 }
 
+static status read_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+{
+    picture_head head = {.plain = false};
+    if (kind == PICTURE_EXR) return picture_read_exr(path, how, color, alpha);
+    if (kind == PICTURE_RAW) return picture_read_raw(path, how, color);
+    status s = kind == PICTURE_PNG ? picture_read_png(path, how, color, alpha, &head) : OK;
+    return s == OK && !head.plain ? picture_decode(path, kind, how, color, alpha) : s;
+}
+
 static status read_any(const char *path, picture_colour how, img *color, img *alpha)
 {
     picture_kind kind;
-    picture_head head = {.plain = false};
     status s = look_at(path, &kind);
-    if (s == OK && kind == PICTURE_PNG) s = picture_read_png(path, how, color, alpha, &head);
-    if (s == OK && kind == PICTURE_EXR) s = picture_read_exr(path, how, color, alpha);
-    if (s == OK && kind != PICTURE_EXR && !head.plain) s = picture_decode(path, kind, how, color, alpha);
+    if (s == OK) s = read_pixels(path, kind, how, color, alpha);
     if (s == OK) s = check_finite(path, color);
     if (s == OK && alpha && alpha->data) s = check_finite(path, alpha);
     return s;
@@ -169,9 +192,9 @@ status img_read(const char *path, img *color, img *alpha)
 }
 
 /* Without a profile 16 bits are a measurement's; with one they were developed by a program that makes photographs. */
-static picture_colour colour_of_samples(const picture_head *head, bool decode)
+static picture_colour colour_of_samples(picture_kind kind, const picture_head *head, bool decode)
 {
-    return decode && (head->bits == 8 || head->profile) ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
+    return kind != PICTURE_EXR && decode && (head->bits == 8 || head->profile) ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
 }
 
 static status read_samples(const char *path, bool decode, img *color, int *bits)
@@ -182,9 +205,7 @@ static status read_samples(const char *path, bool decode, img *color, int *bits)
     if (s == OK) s = look_into(path, kind, &head);
     if (s != OK) return s;
     *bits = head.bits;
-    picture_colour how = colour_of_samples(&head, decode);
-    if (kind == PICTURE_EXR) return picture_read_exr(path, PICTURE_AS_IT_IS, color, NULL);
-    return head.plain ? picture_read_png(path, how, color, NULL, &head) : picture_decode(path, kind, how, color, NULL);
+    return read_pixels(path, kind, colour_of_samples(kind, &head, decode), color, NULL);
 }
 
 status img_read_samples(const char *path, bool decode, img *color, int *bits)

@@ -1,7 +1,7 @@
-/* Photographs and maps from disk into linear float (libpng, OpenEXR Core, libvips for all others).
+/* Photographs and maps from disk into linear float (libpng, OpenEXR Core, LibRaw, libvips for all others).
  *
- * 8- and 16-bit files are decoded from sRGB (or by their ICC profile, honoured) to linear; EXR and Radiance HDR are
- * linear already. EXIF orientation is applied. Grey becomes three equal channels. */
+ * 8- and 16-bit files are decoded from sRGB (or by their ICC profile, honoured) to linear; EXR, Radiance HDR and
+ * cameras' raw pictures are linear already. EXIF orientation is applied. Grey becomes three equal channels. */
 #ifndef MERLIN_IMAGE_READ_H
 #define MERLIN_IMAGE_READ_H
 
@@ -11,7 +11,15 @@
 
 enum { IMAGE_MAX_SIDE = 16384 };
 
-/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1] where
+/* How raw pictures' names end; for lists of endings (file_ends_in_any). */
+#define IMAGE_RAW_ENDINGS ".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".pef", ".srw", ".3fr", ".iiq"
+/* What cameras leave beside them, developed by themselves: no measurements. */
+#define IMAGE_CAMERA_ENDINGS ".jpg", ".jpeg", ".heic", ".heif"
+/* All that are read. */
+#define IMAGE_ENDINGS                                                                                                  \
+    ".png", ".tif", ".tiff", ".webp", ".avif", ".exr", ".hdr", IMAGE_CAMERA_ENDINGS, IMAGE_RAW_ENDINGS
+
+/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1] where
  * the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is not times alpha,
  * whatever the file's kind. Refuses non-images, truncated files, sides above IMAGE_MAX_SIDE and values that are NaN or
  * infinite, in one clear line. */
@@ -22,8 +30,9 @@ status img_read_size(const char *path, int *width, int *height);
  * balls' and cubes' pictures, which would be bent around the object, are refused. */
 status img_read_latlong(const char *path, img *color);
 /* A measurement rather than a photograph: 1 or 3 channels as the file has them. Decoded to linear only if asked are
- * samples that were encoded: 8-bit ones, from sRGB, and what has a colour profile; others are as they are. *bits: 8, 16
- * or 32 (floats). */
+ * samples that were encoded: 8-bit ones, from sRGB, and what has a colour profile; others are as they are. Raw ones are
+ * white balanced for daylight, not as the camera was set, which may have changed from one to the next. *bits: 8, 16 or
+ * 32 (floats). */
 status img_read_samples(const char *path, bool decode, img *color, int *bits);
 /* One channel in [0, 1] without colour decoding: a mask. */
 status img_read_mask(const char *path, img *mask);

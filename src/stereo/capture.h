@@ -61,7 +61,7 @@ typedef struct pst_capture {
 typedef struct pst_read_options {
     const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
     const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or found (pst_capture_find_mask) */
-    const char *ambient; /* picture to subtract; NULL: ambient.png in the folder if there is one */
+    const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
     bool near;           /* the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */

@@ -1,5 +1,5 @@
-/* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are read
- * one after another, and last what must have their size. On failure pst_capture_read frees what was filled. */
+/* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are read,
+ * and last what must have their size. On failure pst_capture_read frees what was filled. */
 #ifndef MERLIN_STEREO_CAPTURE_PARTS_H
 #define MERLIN_STEREO_CAPTURE_PARTS_H
 
@@ -16,6 +16,10 @@ status pst_check_pictures(const char *folder);
  * wrote there. numbered: only names that are a number. There must be as many as the file `lights` has, which may be
  * NULL. */
 status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c);
+
+/* The folder's ambient.png, .tif and so on, rather of the kind that this picture's name has; *path is NULL if there is
+ * none. Free it. */
+status pst_find_ambient(const char *folder, const char *picture, char **path);
 
 /* The folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights. */
 status pst_read_intensities(const char *folder, pst_capture *c);

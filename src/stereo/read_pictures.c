@@ -2,17 +2,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
-
-/* Endings of a capture's pictures, and of those that are taken where there are none of the first: telephones leave
- * .jpg and .heic side by side. */
-static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", NULL};
-static const char *const OTHERS[] = {".webp", ".heic", ".heif", ".avif", ".hdr", NULL};
 
 /* Unclipped floats are stored so that their brightest stays below what solvers take for saturated. */
 static const float FLOAT_CEILING = 0.97f;
@@ -20,110 +15,15 @@ static const float FLOAT_CEILING = 0.97f;
 /* Floats that are all below have a full scale of their own: in 16 bits dim ones would be a few codes, and black. */
 static const float FLOAT_DIM = 0.1f;
 
-static bool has_stem(const char *name, const char *stem)
-{
-    size_t n = strlen(stem);
-    return strncasecmp(name, stem, n) == 0 && name[n] == '.';
-}
-
-static bool is_beside_the_capture(const char *name)
-{
-    static const char *const others[] = {"mask",  "ambient",        "normal", "normals",     "normal_gt", "albedo",
-                                         "depth", "relit",          "orbit",  "calibration", "roughness", "overview",
-                                         "error", "reconstruction", "mesh",   "maps"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (has_stem(name, others[i])) return true;
-    return file_ends_in(name, ".mask.png");
-}
-
-static bool is_numbered(const char *name)
-{
-    size_t digits = strspn(name, "0123456789");
-    return digits > 0 && name[digits] == '.';
-}
-
-/* Where to look instead: in the first folder below with pictures, if there is one. */
-static status refuse_empty(const char *folder, bool numbered)
-{
-    char **names;
-    size_t count;
-    status s = file_list_deep(folder, PICTURES, &names, &count);
-    if (s != OK) return s;
-    char *below = NULL, *slash = NULL;
-    for (size_t i = 0; i < count && !slash; i++) {
-        below = names[i] + strlen(folder);
-        below += strspn(below, "/");
-        slash = strchr(below, '/');
-    }
-    if (slash && !numbered)
-        s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
-                 (int)(slash - below), below);
-    else
-        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC or HDR files", folder,
-                 numbered ? "01.png, 02.png and on, " : "");
-    file_list_free(names, count);
-    return s;
-}
-
-/* None is no failure; then *names needs no freeing. */
-static status list_kinds(const char *folder, const char *const *endings, bool numbered, char ***names, size_t *count)
-{
-    status s = file_list(folder, endings, names, count);
-    if (s != OK) return s;
-    size_t kept = 0;
-    for (size_t i = 0; i < *count; i++) {
-        char *path = (*names)[i], *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-        if (is_beside_the_capture(name) || (numbered && !is_numbered(name))) {
-            free(path);
-            continue;
-        }
-        memmove(path, name, strlen(name) + 1);
-        (*names)[kept++] = path;
-    }
-    *count = kept;
-    if (kept) return OK;
-    file_list_free(*names, 0);
-    *names = NULL;
-    return OK;
-}
-
-static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
-{
-    status s = list_kinds(folder, PICTURES, numbered, names, count);
-    if (s == OK && *count == 0) s = list_kinds(folder, OTHERS, numbered, names, count);
-    return s == OK && *count == 0 ? refuse_empty(folder, numbered) : s;
-}
-
-status pst_check_pictures(const char *folder)
-{
-    char **names;
-    size_t count;
-    status s = list_pictures(folder, false, &names, &count);
-    if (s == OK) file_list_free(names, count);
-    return s;
-}
-
-status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c)
-{
-    char **names;
-    size_t count;
-    status s = list_pictures(folder, numbered, &names, &count);
-    if (s != OK) return s;
-    if (lights && count != wanted)
-        s = fail(ERROR_INPUT, "%s has %zu %spictures, but %s has %zu lights; each picture needs one", folder, count,
-                 numbered ? "numbered " : "", lights, wanted);
-    if (s == OK) s = pst_capture_reserve(c, count);
-    for (size_t i = 0; i < count && s == OK; i++)
-        s = pst_capture_set_name(c, i, names[i]);
-    file_list_free(names, count);
-    return s;
-}
+/* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
+enum { READERS = 4, MESSAGE = 1024 };
 
 typedef struct reading {
     const char *folder;
     bool decode;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
+    pst_capture *into;
 } reading;
 
 static status read_one(const reading *r, const char *name, img *out, int *bits)
@@ -148,7 +48,7 @@ static status check_shape(const reading *r, const pst_capture *c, const char *na
 
 static status store(const reading *r, const img *picture, int bits, uint16_t **out)
 {
-    size_t count = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
+    size_t count = img_value_count(picture);
     uint16_t *codes = malloc(count * sizeof *codes);
     if (!codes) return fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
     memory_prefer_large_pages(codes, count * sizeof *codes);
@@ -165,24 +65,58 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
     return OK;
 }
 
-/* The factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. Reads only
- * floats. */
-static status measure_scale(reading *r, const pst_capture *c)
+typedef struct group {
+    const reading *reading;
+    status (*work)(const reading *r, int i, float *brightest);
+    int first;
+    status results[READERS];
+    char messages[READERS][MESSAGE];
+    float brightest[READERS];
+} group;
+
+static void work_on(void *context, size_t i)
+{
+    group *g = context;
+    g->results[i] = g->work(g->reading, g->first + (int)i, &g->brightest[i]);
+    if (g->results[i] != OK) snprintf(g->messages[i], MESSAGE, "%s", status_message());
+}
+
+/* work for all pictures; the first that fails is heard. *brightest becomes the most that any said. */
+static status for_pictures(const reading *r, status (*work)(const reading *r, int i, float *brightest),
+                           float *brightest)
+{
+    group g = {.reading = r, .work = work};
+    for (; g.first < r->into->count; g.first += READERS) {
+        int left = r->into->count - g.first;
+        size_t count = (size_t)(left < READERS ? left : READERS);
+        parallel_for(count, work_on, &g);
+        for (size_t i = 0; i < count; i++) {
+            if (g.results[i] != OK) return fail(g.results[i], "%s", g.messages[i]);
+            *brightest = fmaxf(*brightest, g.brightest[i]);
+        }
+    }
+    return OK;
+}
+
+static status find_brightest(const reading *r, int i, float *brightest)
+{
+    img picture;
+    int bits;
+    status s = read_one(r, r->into->name[i], &picture, &bits);
+    if (s != OK) return s;
+    for (size_t k = 0, n = img_value_count(&picture); k < n && bits == 32; k++)
+        *brightest = fmaxf(*brightest, picture.data[k]);
+    img_free(&picture);
+    return OK;
+}
+
+/* The factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. */
+static status measure_scale(reading *r)
 {
     float most = 0;
-    for (int i = 0; i < c->count; i++) {
-        img picture;
-        int bits;
-        status s = read_one(r, c->name[i], &picture, &bits);
-        if (s != OK) return s;
-        size_t count = (size_t)picture.width * (size_t)picture.height * (size_t)picture.channels;
-        for (size_t k = 0; k < count && bits == 32; k++)
-            most = fmaxf(most, picture.data[k]);
-        img_free(&picture);
-        if (bits != 32) break;
-    }
+    status s = for_pictures(r, find_brightest, &most);
     r->scale = most > FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? FLOAT_CEILING / most : 1;
-    return OK;
+    return s;
 }
 
 static status read_first_shape(reading *r, pst_capture *c)
@@ -200,16 +134,16 @@ static status read_first_shape(reading *r, pst_capture *c)
     c->channels = first.channels;
     img_free(&first);
     if (fits != OK) return fits;
-    return bits == 32 ? measure_scale(r, c) : OK;
+    return bits == 32 ? measure_scale(r) : OK;
 }
 
 static status read_ambient(reading *r, const char *asked, const pst_capture *c)
 {
-    char *path = asked ? strdup(asked) : file_join(r->folder, "ambient.png");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    status s = OK;
+    char *path = asked ? strdup(asked) : NULL;
+    if (asked && !path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = asked ? OK : pst_find_ambient(r->folder, c->name[0], &path);
     int bits;
-    if (asked || file_exists(path)) {
+    if (path) {
         s = img_read_samples(path, r->decode, &r->ambient, &bits);
         if (s == OK &&
             (r->ambient.width != c->width || r->ambient.height != c->height || r->ambient.channels != c->channels))
@@ -224,20 +158,26 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
     return s;
 }
 
+static status take_picture(const reading *r, int i, float *brightest)
+{
+    (void)brightest;
+    img picture;
+    int bits;
+    status s = read_one(r, r->into->name[i], &picture, &bits);
+    if (s != OK) return s;
+    s = check_shape(r, r->into, r->into->name[i], &picture);
+    if (s == OK) s = store(r, &picture, bits, &r->into->picture[i]);
+    img_free(&picture);
+    return s;
+}
+
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
 {
-    reading r = {.folder = folder, .decode = !options->linear, .scale = 1};
+    reading r = {.folder = folder, .decode = !options->linear, .scale = 1, .into = c};
+    float unused = 0;
     status s = read_first_shape(&r, c);
     if (s == OK) s = read_ambient(&r, options->ambient, c);
-    for (int i = 0; i < c->count && s == OK; i++) {
-        img picture;
-        int bits;
-        s = read_one(&r, c->name[i], &picture, &bits);
-        if (s != OK) break;
-        s = check_shape(&r, c, c->name[i], &picture);
-        if (s == OK) s = store(&r, &picture, bits, &c->picture[i]);
-        img_free(&picture);
-    }
+    if (s == OK) s = for_pictures(&r, take_picture, &unused);
     img_free(&r.ambient);
     return s;
 }

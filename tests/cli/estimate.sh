@@ -155,6 +155,15 @@ succeeds '^./disc.hdr: ./disc-2.merlin/' estimate disc.png ./disc.hdr --size 64
 cd ..
 rm -r twins
 
+echo "what a camera made of a raw picture is not taken beside it"
+mkdir camera
+cp disc.hdr camera/one.NEF # by its content a Radiance picture
+cp disc.hdr camera/one.jpg
+cp disc.hdr camera/two.jpg
+succeeds '^camera/one.NEF: ' estimate camera --size 64
+[ "$(ls -d camera/*.merlin | tr '\n' ' ')" = "camera/one.merlin camera/two.merlin " ] || complain "beside a raw picture: $(ls camera)"
+rm -r camera
+
 echo "in a folder a mask goes before the photograph's alpha, as the help says"
 mkdir cut
 cp "$MERLIN_SOURCE_DIR/examples/demo.png" cut

@@ -74,6 +74,13 @@ static void ambient_light_is_subtracted_and_clipping_stays(void **state)
     pst_capture_free(&c);
     write_flat("ambient.png", 5, 4, 3, 0.3f, IMG_LINEAR16);
     assert_refused(&PLAIN, "ambient.png is 5 x 4");
+    /* a file's kind is told by its first bytes */
+    assert_int_equal(rename(scratch_path("ambient.png"), scratch_path("ambient.TIF")), 0);
+    assert_refused(&PLAIN, "ambient.TIF is 5 x 4");
+    write_flat("ambient.png", 6, 4, 3, 0.3f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_float_equal(c.picture[1][5] / 65535.0, 0.2, 2e-5);
+    pst_capture_free(&c);
 }
 
 static void three_float_pictures(const float value[3])
@@ -324,6 +331,28 @@ static void rarer_kinds_are_taken_where_they_are_alone(void **state)
     pst_capture_free(&c);
 }
 
+/* A file's kind is told by its first bytes here, too. */
+static void raw_pictures_come_before_what_the_camera_made_of_them(void **state)
+{
+    (void)state;
+    write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
+    for (int i = 0; i < 6; i++)
+        write_flat((const char *[]){"a.nef", "b.NEF", "c.nef", "a.jpg", "b.jpg", "c.jpg"}[i], 6, 4, 3, 0.5f,
+                   IMG_LINEAR16);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_string_equal(c.name[1], "b.NEF");
+    pst_capture_free(&c);
+    three_pictures(IMG_LINEAR16);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(unlink(scratch_path((const char *[]){"a.jpg", "b.jpg", "c.jpg"}[i])), 0);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    assert_string_equal(c.name[0], "a.png");
+    pst_capture_free(&c);
+}
+
 static void black_pictures_are_called_black(void **state)
 {
     (void)state;
@@ -383,6 +412,7 @@ int main(void)
         in_scratch(a_mask_is_read_and_must_fit),
         in_scratch(results_beside_the_pictures_are_none),
         in_scratch(rarer_kinds_are_taken_where_they_are_alone),
+        in_scratch(raw_pictures_come_before_what_the_camera_made_of_them),
         in_scratch(black_pictures_are_called_black),
         in_scratch(what_does_not_fit_is_refused_in_one_line),
     };

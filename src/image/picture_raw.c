@@ -1,0 +1,116 @@
+/* What a camera's sensor saw, by LibRaw: linear, so that no camera's curve has to be guessed. */
+#include <libraw/libraw.h>
+
+#include "base/library.h"
+#include "image/picture.h"
+
+#define LIBRAW_FUNCTIONS(USE)                                                                                          \
+    USE(init)                                                                                                          \
+    USE(set_dataerror_handler)                                                                                         \
+    USE(open_file)                                                                                                     \
+    USE(unpack)                                                                                                        \
+    USE(dcraw_process)                                                                                                 \
+    USE(dcraw_make_mem_image)                                                                                          \
+    USE(dcraw_clear_mem)                                                                                               \
+    USE(strerror)                                                                                                      \
+    USE(close)
+
+#define MEMBER(name) __typeof__(libraw_##name) *name;
+#define WANTED(name) {"libraw_" #name, &raw.name},
+static struct {
+    LIBRAW_FUNCTIONS(MEMBER)
+} raw;
+static const library_function wanted[] = {LIBRAW_FUNCTIONS(WANTED)};
+static library libraw = {.file = MERLIN_LIBRAW, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
+
+static void note_damage(void *damaged, const char *file, const int offset)
+{
+    (void)file;
+    (void)offset;
+    *(bool *)damaged = true;
+}
+
+static status refusal(const char *path, int error)
+{
+    if (error == LIBRAW_FILE_UNSUPPORTED)
+        return fail(ERROR_INPUT,
+                    "cannot read %s: the LibRaw installed here knows no such raw picture; develop it to a TIFF first",
+                    path);
+    if (error == LIBRAW_IO_ERROR || error == LIBRAW_DATA_ERROR)
+        return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+    return fail(ERROR_INPUT, "cannot read %s: %s", path, raw.strerror(error));
+}
+
+/* A handle to close, with the file open in it. */
+static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
+{
+    status s = library_need(&libraw);
+    if (s != OK) return s;
+    libraw_data_t *file = raw.init(LIBRAW_OPIONS_NO_MEMERR_CALLBACK | LIBRAW_OPIONS_NO_DATAERR_CALLBACK);
+    if (!file) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    raw.set_dataerror_handler(file, note_damage, damaged);
+    int error = raw.open_file(file, path);
+    s = error ? refusal(path, error) : picture_check_size(path, file->sizes.iwidth, file->sizes.iheight);
+    if (s == OK)
+        *out = file;
+    else
+        raw.close(file);
+    return s;
+}
+
+/* Nothing may depend on what the picture shows, such as its brightest value: pictures of one set share a scale. */
+static void ask_for_light(libraw_output_params_t *p, bool white_balanced)
+{
+    const int srgb_primaries = 1;
+    p->output_color = srgb_primaries;
+    p->output_bps = 16;
+    p->gamm[0] = p->gamm[1] = 1;
+    p->no_auto_bright = 1;
+    p->adjust_maximum_thr = 0;
+    p->use_camera_wb = white_balanced;
+}
+
+static status develop(libraw_data_t *file, const char *path, bool white_balanced, libraw_processed_image_t **out)
+{
+    ask_for_light(&file->params, white_balanced);
+    int error = raw.unpack(file);
+    if (!error) error = raw.dcraw_process(file);
+    if (!error) *out = raw.dcraw_make_mem_image(file, &error);
+    return error || !*out ? refusal(path, error) : OK;
+}
+
+/* Rounding in LibRaw's matrix of colours takes a code or two off what is saturated. */
+static void take(const libraw_processed_image_t *made, img *out)
+{
+    const float saturated = 65533.0f / 65535;
+    picture_take_codes(made->data, true, made->colors, 0, false, out);
+    for (size_t i = 0, n = img_value_count(out); i < n; i++)
+        out->data[i] = out->data[i] < saturated ? out->data[i] : 1;
+}
+
+status picture_read_raw(const char *path, picture_colour how, img *color)
+{
+    bool damaged = false;
+    libraw_data_t *file;
+    libraw_processed_image_t *made = NULL;
+    status s = open_raw(path, &damaged, &file);
+    if (s != OK) return s;
+    s = develop(file, path, how == PICTURE_LINEARIZE, &made);
+    raw.close(file);
+    if (s == OK && damaged) s = refusal(path, LIBRAW_DATA_ERROR);
+    if (s == OK) s = img_new(color, made->width, made->height, made->colors < 3 ? 1 : 3);
+    if (s == OK) take(made, color);
+    if (made) raw.dcraw_clear_mem(made);
+    return s;
+}
+
+status picture_look_raw(const char *path, picture_head *head)
+{
+    bool damaged = false;
+    libraw_data_t *file;
+    status s = open_raw(path, &damaged, &file);
+    if (s != OK) return s;
+    *head = (picture_head){.width = file->sizes.iwidth, .height = file->sizes.iheight, .bits = 16};
+    raw.close(file);
+    return OK;
+}

@@ -1,0 +1,23 @@
+/* Raw pictures for tests: Adobe DNGs of a camera that sees sRGB's primaries, with a mosaic of red, green, green, blue.
+ *
+ *     dng d = {.width = 64, .height = 64, .see = grey, .neutral = {1, 1, 1}, .orientation = 1};
+ *     dng_write(scratch_path("a.dng"), &d);
+ */
+#ifndef MERLIN_TESTS_DNG_H
+#define MERLIN_TESTS_DNG_H
+
+#include <stdbool.h>
+
+typedef struct dng {
+    int width, height;
+    float (*see)(int x, int y, int channel); /* from 0, black, to 1, where the sensor saturates */
+    float neutral[3];                        /* what the camera's white balance takes for white */
+    int orientation;                         /* EXIF */
+    bool preview;                            /* a small picture comes first */
+} dng;
+
+enum { DNG_PREVIEW_SIDE = 16 };
+
+void dng_write(const char *path, const dng *d);
+
+#endif
