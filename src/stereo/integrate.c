@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "stereo/integrate_steps.h"
 
 static const double TOLERANCE = 1e-7;
@@ -84,9 +85,10 @@ static bool prior_at(const integration_steps *s, const pst_integration *o, int n
 
 /* A prior pulls every pixel it knows; a piece without one is held at its first pixel, which changes nothing but its
  * constant. held: count of pieces. */
-static void anchor(integration_steps *s, const pst_integration *o, const int *piece, int *held)
+static void anchor(integration_steps *s, const pst_integration *o, int *held)
 {
     poisson_grid *g = &s->grid;
+    const int *piece = g->piece;
     for (int i = 0; i < g->count && has_prior(o); i++) {
         float trust = o->trust ? o->trust->data[g->pixel[i]] : 1;
         double x;
@@ -109,8 +111,9 @@ static void start_from_prior(const integration_steps *s, const pst_integration *
 }
 
 /* Pieces without a prior get mean 0. */
-static status center(const poisson_grid *g, const int *piece, const int *held, int pieces, double *x)
+static status center(const poisson_grid *g, const int *held, double *x)
 {
+    const int *piece = g->piece, pieces = g->pieces;
     double *sum = calloc((size_t)pieces, sizeof *sum), *count = calloc((size_t)pieces, sizeof *count);
     if (sum && count) {
         for (int i = 0; i < g->count; i++) {
@@ -128,40 +131,37 @@ static status center(const poisson_grid *g, const int *piece, const int *held, i
 
 /* ---- the whole ---- */
 
-static void write_depth(const integration_steps *s, const int *piece, const int *held, const double *x, img *depth)
+static void write_depth(const integration_steps *s, const int *held, const double *x, img *depth)
 {
     const poisson_grid *g = &s->grid;
     double least = INFINITY, mean = s->camera.mean_distance > 0 ? (double)s->camera.mean_distance : 1;
     for (int i = 0; i < g->count; i++)
-        if (held[piece[i]] < 0 && x[i] < least) least = x[i];
+        if (held[g->piece[i]] < 0 && x[i] < least) least = x[i];
     for (int i = 0; i < g->count; i++) {
-        bool free_constant = held[piece[i]] < 0;
+        bool free_constant = held[g->piece[i]] < 0;
         double d =
             s->camera.perspective ? exp(x[i]) * (free_constant ? mean : 1) : x[i] + (free_constant ? 1 - least : 0);
         depth->data[g->pixel[i]] = (float)d;
     }
 }
 
-/* piece and x: count entries. */
-static status solve(integration_steps *s, const pst_integration *o, int *piece, double *x, img *depth)
+/* x: count entries. */
+static status solve(integration_steps *s, const pst_integration *o, double *x, img *depth)
 {
-    int pieces;
-    status result = poisson_pieces(&s->grid, piece, &pieces);
-    if (result != OK) return result;
-    int *held = calloc((size_t)pieces, sizeof *held);
+    int *held = calloc((size_t)s->grid.pieces, sizeof *held);
     if (!held) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", s->grid.count);
-    anchor(s, o, piece, held);
+    anchor(s, o, held);
     weigh_by_facing(s);
     poisson_solver *solver;
-    result = poisson_solver_new(&s->grid, &solver);
+    status result = poisson_solver_new(&s->grid, &solver);
     bool stepped = o->preserve_edges && o->from_prior && has_prior(o);
     if (result == OK && stepped) start_from_prior(s, o, x);
     if (result == OK && !stepped) result = poisson_solve(solver, TOLERANCE, x);
     if (result == OK && o->preserve_edges) result = integrate_edges(s, solver, stepped, x);
     poisson_solver_free(solver);
-    if (result == OK) result = center(&s->grid, piece, held, pieces, x);
+    if (result == OK) result = center(&s->grid, held, x);
     if (result == OK) result = img_new(depth, s->normal->width, s->normal->height, 1);
-    if (result == OK) write_depth(s, piece, held, x, depth);
+    if (result == OK) write_depth(s, held, x, depth);
     free(held);
     return result;
 }
@@ -192,12 +192,9 @@ status pst_integrate(const img *normal, const img *mask, const pst_camera *camer
     integration_steps s = {.normal = normal, .camera = *camera};
     result = poisson_grid_new(mask, &s.grid);
     if (result != OK) return result;
-    int *piece = malloc((size_t)s.grid.count * sizeof *piece);
-    double *x = calloc((size_t)s.grid.count, sizeof *x);
-    result = piece && x ? solve(&s, options, piece, x, depth)
-                        : fail(ERROR_MEMORY, "no memory to integrate %d pixels", s.grid.count);
-    free(piece);
-    free(x);
+    double *x = memory_new((size_t)s.grid.count * sizeof *x);
+    result = x ? solve(&s, options, x, depth) : fail(ERROR_MEMORY, "no memory to integrate %d pixels", s.grid.count);
+    memory_free(x);
     poisson_grid_free(&s.grid);
     return result;
 }

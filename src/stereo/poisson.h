@@ -11,22 +11,23 @@
  * minimizes  Σ weight (x_j − x_i − target)²  over pairs of neighbours  +  Σ pull (x_i − pulled_to)².
  *
  * Up to POISSON_DIRECT unknowns by sparse Cholesky factorization (CHOLMOD, ordered by AMD or METIS); above it by
- * conjugate gradients preconditioned with a W-cycle over masks of half the size, whose pieces stay apart, the coarsest
- * one factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB) and 0.3 GB at most for the factor. Where
- * that does not converge, as on one piece with many narrow slits, all unknowns are factorized, in about a kilobyte
- * each. */
+ * conjugate gradients preconditioned with a W-cycle over blocks of 2 × 2, 4 × 4 and on, in which what jumps and slits
+ * part stays apart, the coarsest level factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB). Where
+ * that does not converge, as on a band that winds to and fro, all unknowns are factorized, in about a kilobyte each. */
 #ifndef MERLIN_STEREO_POISSON_H
 #define MERLIN_STEREO_POISSON_H
 
 #include "image/image.h"
 
-enum { POISSON_DIRECT = 150000 };
+enum { POISSON_DIRECT = 8000 };
 
 /* Direction 0 is the pixel to the right, 1 the pixel below. */
 typedef struct poisson_grid {
     int count, width, height;
-    int *node;        /* width × height: number of the unknown, -1 outside */
-    int *pixel;       /* count: y × width + x */
+    int *node;  /* width × height: number of the unknown, -1 outside */
+    int *pixel; /* count: y × width + x */
+    int *piece; /* count: number of the connected piece, from 0 up to pieces - 1 */
+    int pieces;
     int *next[2];     /* count: neighbour in that direction, -1 if none */
     int *previous[2]; /* count: neighbour against it */
     float *weight[2]; /* count: of the pair with next */
@@ -39,16 +40,14 @@ typedef struct poisson_grid {
 status poisson_grid_new(const img *mask, poisson_grid *g);
 void poisson_grid_free(poisson_grid *g);
 
-/* Numbers the connected pieces: piece gets count entries. */
-status poisson_pieces(const poisson_grid *g, int *piece, int *piece_count);
-
 typedef struct poisson_solver poisson_solver;
 
-/* Borrows g. Every connected piece needs a pixel with pull > 0, else the factorization is refused. */
+/* Borrows g. */
 status poisson_solver_new(const poisson_grid *g, poisson_solver **out);
 void poisson_solver_free(poisson_solver *s);
 /* x: count values, the start and the result. tolerance: of the residual relative to the right-hand side, for the
- * iteration above POISSON_DIRECT. */
+ * iteration above POISSON_DIRECT. Every connected piece needs a pixel with pull > 0, else the factorization is
+ * refused. */
 status poisson_solve(poisson_solver *s, double tolerance, double *x);
 
 #endif

@@ -1,110 +1,249 @@
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
+#include <math.h>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "stereo/poisson_level.h"
 
-/* Nodes of a block of 2 × 2 that belong to one piece become one; pieces that only lie side by side stay apart, or no
- * coarse correction could give each its own slope. */
-typedef struct merging {
-    int *piece;  /* of each fine node, -1: of one that lies in a single block and is done with */
-    int *newest; /* of each block, the coarse node made last; -1: none yet */
-    int *before; /* of each coarse node, the one made before it in its block; then its number */
-    int *of;     /* of each coarse node, its piece */
-    int width;   /* in blocks */
-} merging;
+/* A link below this share of either end's strongest joins nothing. */
+static const float STRONG = 0.1f;
+/* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
+ * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of
+ * second order". */
+static const float STIFFNESS = 1.8f;
 
-static int block_of(const merging *m, const poisson_grid *fine, int i)
+/* ---- joining ---- */
+
+/* Strips of the fine level, on whose even number of rows no block of the coarse one is shared. */
+typedef struct coarsening {
+    poisson_level *fine;
+    poisson_graph *coarse;
+    int *block;               /* of each fine node, on the coarse level */
+    float *strongest;         /* of each fine node's links */
+    int made[POISSON_STRIPS]; /* coarse nodes of a strip; then how many there are before it */
+    int *room;                /* where the links of each coarse node may begin, several of the fine ones apart */
+    int *links;               /* how many of them there are */
+    int *neighbour;
+    float *weight;
+} coarsening;
+
+/* Of a fine node. */
+typedef struct links {
+    int count;
+    const int *node;
+    const float *weight;
+    int own_node[4];
+    float own_weight[4];
+} links;
+
+static void add_link(links *l, int node, float weight)
 {
-    return fine->pixel[i] / fine->width / 2 * m->width + fine->pixel[i] % fine->width / 2;
+    l->own_node[l->count] = node;
+    l->own_weight[l->count++] = weight;
 }
 
-/* What lies in one block has nothing left to tell a coarser grid, so that all of it may share a node there. */
-static status tell_apart(const merging *m, const poisson_grid *fine)
+static void links_of(const poisson_level *l, int i, links *out)
 {
-    int pieces;
-    status s = poisson_pieces(fine, m->piece, &pieces);
-    if (s != OK) return s;
-    bool *crosses = calloc((size_t)pieces, sizeof *crosses);
-    if (!crosses) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", fine->count);
-    for (int i = 0; i < fine->count; i++)
-        for (int k = 0; k < 2; k++) {
-            int next = fine->next[k][i];
-            if (next >= 0 && block_of(m, fine, i) != block_of(m, fine, next)) crosses[m->piece[i]] = true;
-        }
-    for (int i = 0; i < fine->count; i++)
-        if (!crosses[m->piece[i]]) m->piece[i] = -1;
-    free(crosses);
-    return OK;
-}
-
-static int parent_of(const merging *m, int block, int piece, int *count)
-{
-    int node = m->newest[block];
-    while (node >= 0 && m->of[node] != piece)
-        node = m->before[node];
-    if (node >= 0) return node;
-    node = (*count)++;
-    m->of[node] = piece;
-    m->before[node] = m->newest[block];
-    m->newest[block] = node;
-    return node;
-}
-
-/* Parents, numbered row by row as a grid's nodes are. */
-static int merge(const merging *m, const poisson_grid *fine, size_t blocks, int *parent)
-{
-    int count = 0, number = 0;
-    memset(m->newest, 0xff, blocks * sizeof *m->newest);
-    for (int i = 0; i < fine->count; i++)
-        parent[i] = parent_of(m, block_of(m, fine, i), m->piece[i], &count);
-    for (size_t b = 0; b < blocks; b++)
-        for (int node = m->newest[b], other; node >= 0; node = other) {
-            other = m->before[node];
-            m->before[node] = number++;
-        }
-    for (int i = 0; i < fine->count; i++)
-        parent[i] = m->before[parent[i]];
-    return count;
-}
-
-/* Nodes of one piece in neighbouring blocks are neighbours if any of their children are, so each has one at most. */
-static void link_parents(const merging *m, const poisson_grid *fine, const int *parent, poisson_grid *coarse)
-{
-    size_t bytes = (size_t)coarse->count * sizeof(int);
+    const poisson_grid *g = l->grid;
+    if (!g) {
+        int start = l->graph.start[i];
+        out->count = l->graph.start[i + 1] - start;
+        out->node = l->graph.neighbour + start;
+        out->weight = l->graph.weight + start;
+        return;
+    }
+    out->count = 0;
     for (int k = 0; k < 2; k++) {
-        memset(coarse->next[k], 0xff, bytes);
-        memset(coarse->previous[k], 0xff, bytes);
-        memset(coarse->weight[k], 0, (size_t)coarse->count * sizeof *coarse->weight[k]);
+        int next = g->next[k][i], previous = g->previous[k][i];
+        if (next >= 0) add_link(out, next, g->weight[k][i]);
+        if (previous >= 0) add_link(out, previous, g->weight[k][previous]);
     }
-    for (int i = 0; i < fine->count; i++) {
-        coarse->pixel[parent[i]] = block_of(m, fine, i);
-        for (int k = 0; k < 2; k++) {
-            int next = fine->next[k][i];
-            if (next < 0 || parent[next] == parent[i]) continue;
-            coarse->next[k][parent[i]] = parent[next];
-            coarse->previous[k][parent[next]] = parent[i];
+    out->node = out->own_node;
+    out->weight = out->own_weight;
+}
+
+static void look_at_nodes(const coarsening *c, int begin, int end)
+{
+    int width = poisson_width(c->fine);
+    for (int i = begin; i < end; i++) {
+        int place = poisson_place(c->fine, i), row = place / width;
+        links l;
+        links_of(c->fine, i, &l);
+        c->block[i] = row / 2 * c->coarse->width + (place - row * width) / 2;
+        c->strongest[i] = 0;
+        for (int k = 0; k < l.count; k++)
+            c->strongest[i] = fmaxf(c->strongest[i], l.weight[k]);
+    }
+}
+
+/* The least node that stands for i; the way there becomes shorter. */
+static int root_of(int *towards, int i)
+{
+    while (towards[i] != i)
+        i = towards[i] = towards[towards[i]];
+    return i;
+}
+
+static void join(const coarsening *c, int i, int j, float weight)
+{
+    int *parent = c->fine->parent;
+    if (j >= i || c->block[i] != c->block[j]) return;
+    if (!(weight > STRONG * fminf(c->strongest[i], c->strongest[j]))) return;
+    int one = root_of(parent, i), other = root_of(parent, j);
+    parent[one > other ? one : other] = one < other ? one : other;
+}
+
+/* Parents become the least node of those joined. */
+static void join_strip(void *context, size_t strip)
+{
+    coarsening *c = context;
+    int begin = c->fine->strip[strip], end = c->fine->strip[strip + 1], *parent = c->fine->parent;
+    look_at_nodes(c, begin, end);
+    for (int i = begin; i < end; i++) {
+        links l;
+        links_of(c->fine, i, &l);
+        parent[i] = i;
+        for (int k = 0; k < l.count; k++)
+            join(c, i, l.node[k], l.weight[k]);
+    }
+    c->made[strip] = 0;
+    for (int i = begin; i < end; i++) {
+        parent[i] = parent[parent[i]]; /* a root already, since smaller nodes point to theirs */
+        c->made[strip] += parent[i] == i;
+    }
+}
+
+/* And then its number. */
+static void number_strip(void *context, size_t strip)
+{
+    coarsening *c = context;
+    int number = c->made[strip], *parent = c->fine->parent;
+    for (int i = c->fine->strip[strip]; i < c->fine->strip[strip + 1]; i++) {
+        bool first = parent[i] == i;
+        parent[i] = first ? number++ : parent[parent[i]];
+        if (first) c->coarse->block[parent[i]] = c->block[i];
+    }
+}
+
+/* ---- linking ---- */
+
+static void make_room_strip(void *context, size_t strip)
+{
+    coarsening *c = context;
+    const int *parent = c->fine->parent;
+    for (int i = c->fine->strip[strip]; i < c->fine->strip[strip + 1]; i++) {
+        links l;
+        links_of(c->fine, i, &l);
+        for (int k = 0; k < l.count; k++)
+            c->room[parent[i]] += parent[l.node[k]] != parent[i];
+    }
+}
+
+static void link_to(const coarsening *c, int node, int neighbour, float weight)
+{
+    int at = c->room[node], end = at + c->links[node];
+    while (at < end && c->neighbour[at] != neighbour)
+        at++;
+    if (at == end) c->links[node]++;
+    c->neighbour[at] = neighbour;
+    c->weight[at] += weight;
+}
+
+static void link_strip(void *context, size_t strip)
+{
+    coarsening *c = context;
+    const poisson_level *fine = c->fine;
+    const int *parent = fine->parent;
+    for (int i = fine->strip[strip]; i < fine->strip[strip + 1]; i++) {
+        links l;
+        links_of(fine, i, &l);
+        c->coarse->pull[parent[i]] += fine->grid ? (double)fine->grid->pull[i] : fine->graph.pull[i];
+        for (int k = 0; k < l.count; k++)
+            if (parent[l.node[k]] != parent[i]) link_to(c, parent[i], parent[l.node[k]], l.weight[k] / STIFFNESS);
+    }
+}
+
+static void pack_links(const coarsening *c)
+{
+    poisson_graph *g = c->coarse;
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < g->count; i++) {
+        g->diagonal[i] = g->pull[i];
+        for (int k = 0; k < c->links[i]; k++) {
+            g->neighbour[g->start[i] + k] = c->neighbour[c->room[i] + k];
+            g->weight[g->start[i] + k] = c->weight[c->room[i] + k];
+            g->diagonal[i] += (double)c->weight[c->room[i] + k];
         }
     }
 }
 
-status poisson_grid_coarsen(const poisson_grid *fine, int *parent, poisson_grid *coarse)
+/* Counts become the sums of those before; returns the sum of all. */
+static int add_up(const int *count, int n, int *before)
 {
-    *coarse = (poisson_grid){.width = (fine->width + 1) / 2, .height = (fine->height + 1) / 2};
-    size_t n = (size_t)fine->count, blocks = (size_t)coarse->width * (size_t)coarse->height;
-    merging m = {malloc(n * sizeof(int)), malloc(blocks * sizeof(int)), malloc(n * sizeof(int)),
-                 malloc(n * sizeof(int)), coarse->width};
-    status s = m.piece && m.newest && m.before && m.of
-                   ? tell_apart(&m, fine)
-                   : fail(ERROR_MEMORY, "no memory to integrate %d pixels", fine->count);
-    if (s == OK) {
-        coarse->count = merge(&m, fine, blocks, parent);
-        s = poisson_grid_allocate(coarse);
+    int sum = 0;
+    for (int i = 0; i < n; i++) {
+        int here = count[i];
+        before[i] = sum;
+        sum += here;
     }
-    if (s == OK) link_parents(&m, fine, parent, coarse);
-    free(m.piece);
-    free(m.newest);
-    free(m.before);
-    free(m.of);
+    return sum;
+}
+
+static status no_memory(const coarsening *c)
+{
+    return fail(ERROR_MEMORY, "no memory to integrate %d pixels", c->fine->count);
+}
+
+static status join_nodes(coarsening *c)
+{
+    size_t n = (size_t)c->fine->count;
+    c->fine->parent = memory_new(n * sizeof *c->fine->parent);
+    c->block = memory_new(n * sizeof *c->block);
+    c->strongest = memory_new(n * sizeof *c->strongest);
+    if (!c->fine->parent || !c->block || !c->strongest) return no_memory(c);
+    parallel_for(POISSON_STRIPS, join_strip, c);
+    c->coarse->count = add_up(c->made, POISSON_STRIPS, c->made);
+    status s = poisson_graph_allocate(c->coarse);
+    if (s == OK) parallel_for(POISSON_STRIPS, number_strip, c);
     return s;
+}
+
+static status link_nodes(coarsening *c)
+{
+    poisson_graph *g = c->coarse;
+    size_t m = (size_t)g->count;
+    c->room = memory_new(m * sizeof *c->room);
+    c->links = memory_new(m * sizeof *c->links);
+    if (!c->room || !c->links) return no_memory(c);
+    parallel_for(POISSON_STRIPS, make_room_strip, c);
+    size_t most = (size_t)add_up(c->room, g->count, c->room);
+    c->neighbour = memory_new(most * sizeof *c->neighbour);
+    c->weight = memory_new(most * sizeof *c->weight);
+    if (!c->neighbour || !c->weight) return no_memory(c);
+    parallel_for(POISSON_STRIPS, link_strip, c);
+    g->start[g->count] = add_up(c->links, g->count, g->start);
+    status s = poisson_graph_allocate_links(g, g->start[g->count]);
+    if (s == OK) pack_links(c);
+    return s;
+}
+
+status poisson_level_coarsen(poisson_level *fine, poisson_level *coarse)
+{
+    *coarse = (poisson_level){0};
+    coarse->graph = (poisson_graph){.width = (poisson_width(fine) + 1) / 2, .height = (poisson_height(fine) + 1) / 2};
+    coarsening c = {.fine = fine, .coarse = &coarse->graph};
+    status s = join_nodes(&c);
+    if (s == OK) s = link_nodes(&c);
+    memory_free(c.block);
+    memory_free(c.strongest);
+    memory_free(c.room);
+    memory_free(c.links);
+    memory_free(c.neighbour);
+    memory_free(c.weight);
+    coarse->count = coarse->graph.count;
+    size_t m = (size_t)coarse->count;
+    if (s == OK) s = poisson_level_prepare(coarse);
+    if (s != OK) return s;
+    coarse->x = memory_new(m * sizeof *coarse->x);
+    coarse->b = memory_new(m * sizeof *coarse->b);
+    return coarse->x && coarse->b ? OK : no_memory(&c);
 }

@@ -32,7 +32,7 @@ static const library_function wanted[] = {
 static library libcholmod = {.file = MERLIN_CHOLMOD, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
 struct poisson_factor {
-    const poisson_grid *grid;
+    int count;
     cholmod_common common;
     cholmod_sparse *matrix; /* lower half, a column a node */
     cholmod_factor *factor;
@@ -41,54 +41,53 @@ struct poisson_factor {
 static status refuse(const poisson_factor *f)
 {
     if (f->common.status == CHOLMOD_OUT_OF_MEMORY || f->common.status == CHOLMOD_TOO_LARGE)
-        return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", f->grid->count);
-    return fail(ERROR_DEVICE, "the factorization of %d unknowns failed (CHOLMOD status %d)", f->grid->count,
+        return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", f->count);
+    return fail(ERROR_DEVICE, "the factorization of %d unknowns failed (CHOLMOD status %d)", f->count,
                 f->common.status);
 }
 
-/* Fills the numbers, and the first time around the places they stand at. Rows within a column ascend: a node's right
- * neighbour has a smaller number than the one below. */
-static void fill(poisson_factor *f)
+/* A column a node: its links to later ones. */
+static void fill(poisson_factor *f, const poisson_graph *g)
 {
-    const poisson_grid *g = f->grid;
     int *start = f->matrix->p, *row = f->matrix->i, at = 0;
     double *value = f->matrix->x;
     for (int i = 0; i < g->count; i++) {
         start[i] = at;
         row[at] = i;
-        value[at++] = poisson_diagonal(g, i);
-        for (int k = 0; k < 2; k++) {
-            if (g->next[k][i] < 0) continue;
-            row[at] = g->next[k][i];
-            value[at++] = -(double)g->weight[k][i];
+        value[at++] = g->diagonal[i];
+        for (int k = g->start[i]; k < g->start[i + 1]; k++) {
+            if (g->neighbour[k] < i) continue;
+            row[at] = g->neighbour[k];
+            value[at++] = -(double)g->weight[k];
         }
     }
     start[g->count] = at;
 }
 
-status poisson_factor_new(const poisson_grid *g, poisson_factor **out)
+status poisson_factor_new(const poisson_graph *g, poisson_factor **out)
 {
     *out = NULL;
     status s = library_need(&libcholmod);
     if (s != OK) return s;
     poisson_factor *f = calloc(1, sizeof *f);
     if (!f) return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", g->count);
-    f->grid = g;
+    f->count = g->count;
     cholmod.start(&f->common);
     f->common.print = 0;
-    size_t n = (size_t)g->count;
-    f->matrix = cholmod.allocate_sparse(n, n, 3 * n, true, true, -1, CHOLMOD_REAL, &f->common);
+    size_t n = (size_t)g->count, links = (size_t)g->start[n] / 2;
+    f->matrix = cholmod.allocate_sparse(n, n, n + links, false, true, -1, CHOLMOD_REAL, &f->common);
     if (f->matrix) {
-        fill(f);
+        fill(f, g);
         f->factor = cholmod.analyze(f->matrix, &f->common);
     }
-    if (!f->factor) {
-        s = refuse(f);
-        poisson_factor_free(f);
-        return s;
+    bool complete = f->factor && cholmod.factorize(f->matrix, f->factor, &f->common) && f->common.status == CHOLMOD_OK;
+    if (complete) {
+        *out = f;
+        return OK;
     }
-    *out = f;
-    return OK;
+    s = refuse(f);
+    poisson_factor_free(f);
+    return s;
 }
 
 void poisson_factor_free(poisson_factor *f)
@@ -100,16 +99,9 @@ void poisson_factor_free(poisson_factor *f)
     free(f);
 }
 
-status poisson_factor_update(poisson_factor *f)
-{
-    fill(f);
-    if (!cholmod.factorize(f->matrix, f->factor, &f->common) || f->common.status != CHOLMOD_OK) return refuse(f);
-    return OK;
-}
-
 status poisson_factor_solve(poisson_factor *f, const double *b, double *x)
 {
-    size_t n = (size_t)f->grid->count;
+    size_t n = (size_t)f->count;
     cholmod_dense right = {.nrow = n, .ncol = 1, .nzmax = n, .d = n, .x = (void *)b, .xtype = CHOLMOD_REAL};
     cholmod_dense *solution = cholmod.solve(CHOLMOD_A, f->factor, &right, &f->common);
     if (!solution) return refuse(f);

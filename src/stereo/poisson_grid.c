@@ -1,20 +1,21 @@
-#include <stdlib.h>
+#include <stdbool.h>
 
+#include "base/memory.h"
 #include "stereo/poisson.h"
-#include "stereo/poisson_level.h"
 
-status poisson_grid_allocate(poisson_grid *g)
+static status allocate(poisson_grid *g)
 {
     size_t n = (size_t)g->count;
-    g->pixel = calloc(n, sizeof *g->pixel);
-    g->pull = calloc(n, sizeof *g->pull);
-    g->pulled_to = calloc(n, sizeof *g->pulled_to);
-    bool complete = g->pixel && g->pull && g->pulled_to;
+    g->pixel = memory_new(n * sizeof *g->pixel);
+    g->piece = memory_new(n * sizeof *g->piece);
+    g->pull = memory_new(n * sizeof *g->pull);
+    g->pulled_to = memory_new(n * sizeof *g->pulled_to);
+    bool complete = g->pixel && g->piece && g->pull && g->pulled_to;
     for (int k = 0; k < 2; k++) {
-        g->next[k] = calloc(n, sizeof **g->next);
-        g->previous[k] = calloc(n, sizeof **g->previous);
-        g->weight[k] = malloc(n * sizeof **g->weight);
-        g->target[k] = calloc(n, sizeof **g->target);
+        g->next[k] = memory_new(n * sizeof **g->next);
+        g->previous[k] = memory_new(n * sizeof **g->previous);
+        g->weight[k] = memory_new(n * sizeof **g->weight);
+        g->target[k] = memory_new(n * sizeof **g->target);
         complete = complete && g->next[k] && g->previous[k] && g->weight[k] && g->target[k];
     }
     return complete ? OK : fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
@@ -22,6 +23,7 @@ status poisson_grid_allocate(poisson_grid *g)
 
 static void link_neighbours(poisson_grid *g)
 {
+#pragma omp parallel for schedule(static)
     for (int i = 0; i < g->count; i++) {
         int x = g->pixel[i] % g->width, y = g->pixel[i] / g->width;
         const int *at = g->node + g->pixel[i];
@@ -34,11 +36,37 @@ static void link_neighbours(poisson_grid *g)
     }
 }
 
+/* The least node that stands for i; the way there becomes shorter. */
+static int root_of(int *towards, int i)
+{
+    while (towards[i] != i)
+        i = towards[i] = towards[towards[i]];
+    return i;
+}
+
+/* Union-find: a node joins the pieces of those before it. */
+static void number_pieces(poisson_grid *g)
+{
+    int *piece = g->piece;
+    for (int i = 0; i < g->count; i++) {
+        piece[i] = i;
+        for (int k = 0; k < 2; k++) {
+            if (g->previous[k][i] < 0) continue;
+            int one = root_of(piece, i), other = root_of(piece, g->previous[k][i]);
+            piece[one > other ? one : other] = one < other ? one : other;
+        }
+    }
+    for (int i = 0; i < g->count; i++)
+        piece[i] = piece[piece[i]]; /* a root already, since smaller nodes point to theirs */
+    for (int i = 0; i < g->count; i++)
+        piece[i] = piece[i] == i ? g->pieces++ : piece[piece[i]];
+}
+
 /* Numbers and links a grid whose width, height, count and node (≥ 0 inside) are set. */
 static status number_and_link(poisson_grid *g)
 {
     size_t pixels = (size_t)g->width * (size_t)g->height;
-    status s = poisson_grid_allocate(g);
+    status s = allocate(g);
     if (s != OK) return s;
     int i = 0;
     for (size_t p = 0; p < pixels; p++) {
@@ -47,6 +75,7 @@ static status number_and_link(poisson_grid *g)
         g->node[p] = i++;
     }
     link_neighbours(g);
+    number_pieces(g);
     return OK;
 }
 
@@ -54,7 +83,7 @@ status poisson_grid_new(const img *mask, poisson_grid *g)
 {
     *g = (poisson_grid){.width = mask->width, .height = mask->height};
     size_t pixels = (size_t)mask->width * (size_t)mask->height;
-    g->node = calloc(pixels, sizeof *g->node);
+    g->node = memory_new(pixels * sizeof *g->node);
     if (!g->node) return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", pixels);
     for (size_t p = 0; p < pixels; p++) {
         bool inside = mask->data[p * (size_t)mask->channels] > 0.5f;
@@ -68,45 +97,16 @@ status poisson_grid_new(const img *mask, poisson_grid *g)
 
 void poisson_grid_free(poisson_grid *g)
 {
-    free(g->node);
-    free(g->pixel);
-    free(g->pull);
-    free(g->pulled_to);
+    memory_free(g->node);
+    memory_free(g->pixel);
+    memory_free(g->piece);
+    memory_free(g->pull);
+    memory_free(g->pulled_to);
     for (int k = 0; k < 2; k++) {
-        free(g->next[k]);
-        free(g->previous[k]);
-        free(g->weight[k]);
-        free(g->target[k]);
+        memory_free(g->next[k]);
+        memory_free(g->previous[k]);
+        memory_free(g->weight[k]);
+        memory_free(g->target[k]);
     }
     *g = (poisson_grid){0};
-}
-
-/* Gives every node reachable from `from` its number; stack has room for count entries, each node enters once. */
-static void flood(const poisson_grid *g, int from, int number, int *piece, int *stack)
-{
-    int depth = 0;
-    stack[depth++] = from;
-    piece[from] = number;
-    while (depth > 0) {
-        int i = stack[--depth];
-        int around[4] = {g->next[0][i], g->next[1][i], g->previous[0][i], g->previous[1][i]};
-        for (int k = 0; k < 4; k++) {
-            if (around[k] < 0 || piece[around[k]] >= 0) continue;
-            piece[around[k]] = number;
-            stack[depth++] = around[k];
-        }
-    }
-}
-
-status poisson_pieces(const poisson_grid *g, int *piece, int *piece_count)
-{
-    int *stack = malloc((size_t)g->count * sizeof *stack);
-    if (!stack) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
-    for (int i = 0; i < g->count; i++)
-        piece[i] = -1;
-    *piece_count = 0;
-    for (int i = 0; i < g->count; i++)
-        if (piece[i] < 0) flood(g, i, (*piece_count)++, piece, stack);
-    free(stack);
-    return OK;
 }

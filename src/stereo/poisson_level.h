@@ -1,4 +1,5 @@
-/* What the Poisson solver is made of: grids of falling size and a factorization of the smallest. Internal. */
+/* What the Poisson solver is made of: ever smaller graphs over a grid, and a factorization of the smallest. Internal.
+ */
 #ifndef MERLIN_STEREO_POISSON_LEVEL_H
 #define MERLIN_STEREO_POISSON_LEVEL_H
 
@@ -6,16 +7,67 @@
 
 #include "stereo/poisson.h"
 
-/* The arrays of count entries. */
-status poisson_grid_allocate(poisson_grid *g);
+/* Nodes are worked on in strips of whole rows, whichever thread has which: sums do not depend on their number. */
+enum { POISSON_STRIPS = 64 };
 
-/* A grid of half the size, with links but no weights yet, and the fine nodes' parents in it (fine->count). It has no
- * map of nodes, for where pieces meet a place has several. */
-status poisson_grid_coarsen(const poisson_grid *fine, int *parent, poisson_grid *coarse);
+/* A node stands for pixels of one block, of 2^k × 2^k of them; a block may have several. Links lead from a block to
+ * those beside, above and below it. */
+typedef struct poisson_graph {
+    int count, width, height; /* width, height: in blocks */
+    int *block;               /* count: y × width + x, row by row, in a row in any order */
+    int *start;               /* count + 1: where a node's links begin */
+    int *neighbour;           /* start[count] */
+    float *weight;            /* start[count]: of the link */
+    double *pull, *diagonal;  /* count */
+} poisson_graph;
+
+/* One node a pixel. */
+status poisson_graph_of(const poisson_grid *g, poisson_graph *out);
+void poisson_graph_free(poisson_graph *g);
+/* Arrays of count entries, zero; links are another matter. */
+status poisson_graph_allocate(poisson_graph *g);
+status poisson_graph_allocate_links(poisson_graph *g, int links);
+
+/* A grid, or a graph over it. */
+typedef struct poisson_level {
+    const poisson_grid *grid; /* of the finest level alone; NULL: the graph */
+    poisson_graph graph;
+    int count;
+    int *parent;                   /* count: node of the next level */
+    bool *odd;                     /* count: of the chessboard's black blocks, where no two neighbours are */
+    int strip[POISSON_STRIPS + 1]; /* first nodes; a strip has an even number of rows */
+    double *x, *b;                 /* correction and right-hand side; the finest level has none */
+} poisson_level;
+
+/* Of the grid, or in blocks. */
+static inline int poisson_width(const poisson_level *l)
+{
+    return l->grid ? l->grid->width : l->graph.width;
+}
+
+static inline int poisson_height(const poisson_level *l)
+{
+    return l->grid ? l->grid->height : l->graph.height;
+}
+
+/* y × width + x */
+static inline int poisson_place(const poisson_level *l, int i)
+{
+    return l->grid ? l->grid->pixel[i] : l->graph.block[i];
+}
+
+/* odd and strip, from grid or graph and count. */
+status poisson_level_prepare(poisson_level *l);
+/* fine->parent and the graph of half the size, prepared: nodes of a block that strong links join within it become one.
+ * What a jump or a slit parts stays apart. Call poisson_level_free whatever it returns. */
+status poisson_level_coarsen(poisson_level *fine, poisson_level *coarse);
+void poisson_level_free(poisson_level *l);
 
 /* The operator's diagonal at node i. */
-static inline double poisson_diagonal(const poisson_grid *g, int i)
+static inline double poisson_diagonal(const poisson_level *l, int i)
 {
+    const poisson_grid *g = l->grid;
+    if (!g) return l->graph.diagonal[i];
     double d = (double)g->pull[i] + (double)g->weight[0][i] + (double)g->weight[1][i];
     for (int k = 0; k < 2; k++)
         if (g->previous[k][i] >= 0) d += (double)g->weight[k][g->previous[k][i]];
@@ -23,23 +75,47 @@ static inline double poisson_diagonal(const poisson_grid *g, int i)
 }
 
 /* Σ weight × x over the neighbours of node i. */
-static inline double poisson_around(const poisson_grid *g, int i, const double *x)
+static inline double poisson_around(const poisson_level *l, int i, const double *x)
 {
+    const poisson_grid *g = l->grid;
     double sum = 0;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; g && k < 2; k++) {
         int next = g->next[k][i], previous = g->previous[k][i];
         if (next >= 0) sum += (double)g->weight[k][i] * x[next];
         if (previous >= 0) sum += (double)g->weight[k][previous] * x[previous];
     }
+    if (g) return sum;
+    for (int at = l->graph.start[i]; at < l->graph.start[i + 1]; at++)
+        sum += (double)l->graph.weight[at] * x[l->graph.neighbour[at]];
     return sum;
 }
 
-/* Sparse Cholesky of a grid's operator; the ordering is found once, the numbers as often as weights change. */
+/* b − A x at node i. */
+static inline double poisson_residual(const poisson_level *l, int i, const double *b, const double *x)
+{
+    return b[i] - poisson_diagonal(l, i) * x[i] + poisson_around(l, i, x);
+}
+
+/* Sparse Cholesky of a graph's operator. */
 typedef struct poisson_factor poisson_factor;
-status poisson_factor_new(const poisson_grid *g, poisson_factor **out);
+status poisson_factor_new(const poisson_graph *g, poisson_factor **out);
 void poisson_factor_free(poisson_factor *f);
-status poisson_factor_update(poisson_factor *f);
 /* x = A⁻¹ b; may be the same array. */
 status poisson_factor_solve(poisson_factor *f, const double *b, double *x);
+
+enum { POISSON_LEVELS = 20 };
+
+/* Multigrid: a W-cycle over the levels, the last one factorized. */
+typedef struct poisson_stack {
+    poisson_level levels[POISSON_LEVELS];
+    int depth;
+    poisson_factor *factor; /* of the last level */
+} poisson_stack;
+
+/* Call poisson_stack_free whatever it returns. */
+status poisson_stack_new(const poisson_grid *g, poisson_stack *s);
+void poisson_stack_free(poisson_stack *s);
+/* x, from zero, toward A x = b on the finest level; symmetric, fit to precondition conjugate gradients. */
+status poisson_stack_cycle(poisson_stack *s, const double *b, double *x);
 
 #endif

@@ -1,253 +1,214 @@
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "stereo/poisson_level.h"
 
-enum { MOST_LEVELS = 16, MOST_STEPS = 100 };
+/* Of conjugate gradients; more than a new stack took that an old one may take. */
+enum { MOST_STEPS = 100, MORE_STEPS = 3 };
 /* Tolerances that may be left after the last step. */
 static const double MOST_ASTRAY = 100;
-/* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
- * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of
- * second order". */
-static const float STIFFNESS = 1.8f;
-
-typedef struct level {
-    const poisson_grid *grid;
-    poisson_grid own;  /* what grid points to, but on the finest level */
-    int *parent;       /* node of the next level */
-    double *x, *b, *r; /* correction, right-hand side, residual; the finest level has r only */
-} level;
 
 struct poisson_solver {
-    level levels[MOST_LEVELS];
-    int depth;
-    poisson_factor *factor;          /* of the last level */
-    double *b, *r, *z, *p, *product; /* of the finest level; all but b only if it is not factorized itself */
+    const poisson_grid *grid;
+    poisson_stack stack;
+    double *b, *r, *z, *p, *product; /* all but b only if the grid is not factorized itself */
+    double *x;                       /* the caller's */
+    double length, turn;             /* of a step of the conjugate gradients */
+    int steps_at_first;              /* that a solution took with the stack just made; 0: it is to be made anew */
+    double sum[POISSON_STRIPS];
 };
-
-/* ---- building ---- */
-
-static status add_level(poisson_solver *s)
-{
-    level *fine = &s->levels[s->depth - 1], *coarse = &s->levels[s->depth];
-    size_t n = (size_t)fine->grid->count;
-    fine->parent = malloc(n * sizeof *fine->parent);
-    fine->r = malloc(n * sizeof *fine->r);
-    if (!fine->parent || !fine->r) return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
-    coarse->grid = &coarse->own;
-    s->depth++;
-    status result = poisson_grid_coarsen(fine->grid, fine->parent, &coarse->own);
-    if (result != OK) return result;
-    size_t m = (size_t)coarse->grid->count;
-    coarse->x = malloc(m * sizeof *coarse->x);
-    coarse->b = malloc(m * sizeof *coarse->b);
-    return coarse->x && coarse->b ? OK : fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
-}
-
-static status allocate_vectors(poisson_solver *s, size_t n)
-{
-    s->b = malloc(n * sizeof *s->b);
-    if (s->depth == 1) return s->b ? OK : fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
-    s->r = malloc(n * sizeof *s->r);
-    s->z = malloc(n * sizeof *s->z);
-    s->p = malloc(n * sizeof *s->p);
-    s->product = malloc(n * sizeof *s->product);
-    bool complete = s->b && s->r && s->z && s->p && s->product;
-    return complete ? OK : fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
-}
 
 status poisson_solver_new(const poisson_grid *g, poisson_solver **out)
 {
     poisson_solver *s = calloc(1, sizeof *s);
-    *out = NULL;
+    *out = s;
     if (!s) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
-    s->levels[0].grid = g;
-    s->depth = 1;
-    status result = OK;
-    while (result == OK && s->levels[s->depth - 1].grid->count > POISSON_DIRECT && s->depth < MOST_LEVELS)
-        result = add_level(s);
-    if (result == OK) result = poisson_factor_new(s->levels[s->depth - 1].grid, &s->factor);
-    if (result == OK) result = allocate_vectors(s, (size_t)g->count);
-    if (result != OK)
-        poisson_solver_free(s);
-    else
-        *out = s;
-    return result;
+    s->grid = g;
+    double **arrays[] = {&s->b, &s->r, &s->z, &s->p, &s->product};
+    size_t wanted = g->count <= POISSON_DIRECT ? 1 : 5, n = (size_t)g->count;
+    for (size_t i = 0; i < wanted; i++)
+        if (!(*arrays[i] = memory_new(n * sizeof(double)))) {
+            poisson_solver_free(s);
+            *out = NULL;
+            return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
+        }
+    return OK;
 }
 
 void poisson_solver_free(poisson_solver *s)
 {
     if (!s) return;
-    for (int i = 0; i < s->depth; i++) {
-        level *l = &s->levels[i];
-        poisson_grid_free(&l->own);
-        free(l->parent);
-        free(l->x);
-        free(l->b);
-        free(l->r);
-    }
-    poisson_factor_free(s->factor);
-    free(s->b);
-    free(s->r);
-    free(s->z);
-    free(s->p);
-    free(s->product);
+    poisson_stack_free(&s->stack);
+    memory_free(s->b);
+    memory_free(s->r);
+    memory_free(s->z);
+    memory_free(s->p);
+    memory_free(s->product);
     free(s);
-}
-
-/* ---- numbers ---- */
-
-/* Weights of pairs that lie across two blocks add up; pulls add up. */
-static void project_weights(const poisson_grid *fine, const int *parent, poisson_grid *coarse)
-{
-    size_t m = (size_t)coarse->count;
-    memset(coarse->pull, 0, m * sizeof *coarse->pull);
-    for (int k = 0; k < 2; k++)
-        memset(coarse->weight[k], 0, m * sizeof **coarse->weight);
-    for (int i = 0; i < fine->count; i++) {
-        coarse->pull[parent[i]] += fine->pull[i];
-        for (int k = 0; k < 2; k++) {
-            int next = fine->next[k][i];
-            if (next >= 0 && parent[next] != parent[i]) coarse->weight[k][parent[i]] += fine->weight[k][i] / STIFFNESS;
-        }
-    }
 }
 
 static void right_hand_side(const poisson_grid *g, double *b)
 {
-    for (int i = 0; i < g->count; i++)
-        b[i] = (double)g->pull[i] * (double)g->pulled_to[i];
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < g->count; i++) {
-            double flow = (double)g->weight[k][i] * (double)g->target[k][i];
-            b[i] -= flow;
-            if (g->next[k][i] >= 0) b[g->next[k][i]] += flow;
-        }
-}
-
-static void smooth_at(const poisson_grid *g, int i, const double *b, double *x)
-{
-    double d = poisson_diagonal(g, i);
-    if (d > 0) x[i] = (b[i] + poisson_around(g, i, x)) / d;
-}
-
-static void residual(const poisson_grid *g, const double *b, const double *x, double *r)
-{
 #pragma omp parallel for schedule(static)
-    for (int i = 0; i < g->count; i++)
-        r[i] = b[i] - poisson_diagonal(g, i) * x[i] + poisson_around(g, i, x);
+    for (int i = 0; i < g->count; i++) {
+        b[i] = (double)g->pull[i] * (double)g->pulled_to[i];
+        for (int k = 0; k < 2; k++) {
+            int before = g->previous[k][i];
+            b[i] -= (double)g->weight[k][i] * (double)g->target[k][i];
+            if (before >= 0) b[i] += (double)g->weight[k][before] * (double)g->target[k][before];
+        }
+    }
 }
 
-/* One W-cycle on level `at` toward A x = b: Gauss-Seidel forward, correction from the coarser level, Gauss-Seidel
- * backward, so that the whole is symmetric and fit to precondition conjugate gradients. */
-static status cycle(poisson_solver *s, int at, const double *b, double *x)
+/* ---- conjugate gradients, a strip at a time ---- */
+
+typedef double strip_work(poisson_solver *s, int begin, int end);
+
+typedef struct strip_job {
+    poisson_solver *solver;
+    strip_work *work;
+} strip_job;
+
+static void work_on(void *context, size_t i)
 {
-    if (at == s->depth - 1) return poisson_factor_solve(s->factor, b, x);
-    level *l = &s->levels[at], *below = &s->levels[at + 1];
-    const poisson_grid *g = l->grid;
-    for (int i = 0; i < g->count; i++)
-        smooth_at(g, i, b, x);
-    residual(g, b, x, l->r);
-    size_t m = (size_t)below->grid->count;
-    memset(below->b, 0, m * sizeof *below->b);
-    memset(below->x, 0, m * sizeof *below->x);
-    for (int i = 0; i < g->count; i++)
-        below->b[l->parent[i]] += l->r[i];
-    int times = at + 2 == s->depth ? 1 : 2;
-    status result = OK;
-    for (int i = 0; i < times && result == OK; i++)
-        result = cycle(s, at + 1, below->b, below->x);
-    for (int i = 0; i < g->count; i++)
-        x[i] += below->x[l->parent[i]];
-    for (int i = g->count - 1; i >= 0; i--)
-        smooth_at(g, i, b, x);
-    return result;
+    strip_job *job = context;
+    const int *strip = job->solver->stack.levels[0].strip;
+    job->solver->sum[i] = job->work(job->solver, strip[i], strip[i + 1]);
 }
 
-static double dot(const double *a, const double *b, int n)
+/* The strips' sum. */
+static double over_strips(poisson_solver *s, strip_work *work)
 {
     double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += a[i] * b[i];
+    parallel_for(POISSON_STRIPS, work_on, &(strip_job){s, work});
+    for (int i = 0; i < POISSON_STRIPS; i++)
+        sum += s->sum[i];
     return sum;
 }
 
-/* y = a y + x */
-static void scale_add(double *y, double a, const double *x, int n)
+static double square_of_b(poisson_solver *s, int begin, int end)
 {
-    for (int i = 0; i < n; i++)
-        y[i] = a * y[i] + x[i];
+    double sum = 0;
+    for (int i = begin; i < end; i++)
+        sum += s->b[i] * s->b[i];
+    return sum;
 }
 
-static status precondition(poisson_solver *s, int n)
+/* r = b − A x; r·r */
+static double start(poisson_solver *s, int begin, int end)
 {
-    memset(s->z, 0, (size_t)n * sizeof *s->z);
-    return cycle(s, 0, s->r, s->z);
+    const poisson_level *finest = &s->stack.levels[0];
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->r[i] = poisson_residual(finest, i, s->b, s->x);
+        s->p[i] = 0;
+        sum += s->r[i] * s->r[i];
+    }
+    return sum;
+}
+
+static double residual_by_preconditioned(poisson_solver *s, int begin, int end)
+{
+    double sum = 0;
+    for (int i = begin; i < end; i++)
+        sum += s->r[i] * s->z[i];
+    return sum;
+}
+
+static double turn(poisson_solver *s, int begin, int end)
+{
+    for (int i = begin; i < end; i++)
+        s->p[i] = s->turn * s->p[i] + s->z[i];
+    return 0;
 }
 
 /* p·(A p), with A p left in product. */
-static double apply(poisson_solver *s, const poisson_grid *g)
+static double apply(poisson_solver *s, int begin, int end)
 {
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < g->count; i++)
-        s->product[i] = poisson_diagonal(g, i) * s->p[i] - poisson_around(g, i, s->p);
-    return dot(s->p, s->product, g->count);
+    const poisson_level *finest = &s->stack.levels[0];
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->product[i] = poisson_diagonal(finest, i) * s->p[i] - poisson_around(finest, i, s->p);
+        sum += s->p[i] * s->product[i];
+    }
+    return sum;
 }
 
-/* *astray: how many times the tolerance is left when no more steps are allowed, or below 1. */
-static status conjugate_gradients(poisson_solver *s, double tolerance, double *x, double *astray)
+/* x and r go on; r·r */
+static double step(poisson_solver *s, int begin, int end)
 {
-    const poisson_grid *g = s->levels[0].grid;
-    int n = g->count;
-    residual(g, s->b, x, s->r);
-    double enough = tolerance * tolerance * dot(s->b, s->b, n), energy = 0;
-    memset(s->p, 0, (size_t)n * sizeof *s->p);
-    for (int step = 0; step < MOST_STEPS && dot(s->r, s->r, n) > enough; step++) {
-        status result = precondition(s, n);
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->x[i] += s->length * s->p[i];
+        s->r[i] -= s->length * s->product[i];
+        sum += s->r[i] * s->r[i];
+    }
+    return sum;
+}
+
+/* *left: of the residual's square, in times of what is enough; *steps: up to `most` that were made. */
+static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
+{
+    double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
+    for (*steps = 0; *steps < most && square > enough; ++*steps) {
+        status result = poisson_stack_cycle(&s->stack, s->r, s->z);
         if (result != OK) return result;
         double before = energy;
-        energy = dot(s->r, s->z, n);
-        scale_add(s->p, step ? energy / before : 0, s->z, n);
-        double curvature = apply(s, g);
+        energy = over_strips(s, residual_by_preconditioned);
+        s->turn = *steps ? energy / before : 0;
+        over_strips(s, turn);
+        double curvature = over_strips(s, apply);
         if (!(curvature > 0)) break;
-        double length = energy / curvature;
-        for (int i = 0; i < n; i++) {
-            x[i] += length * s->p[i];
-            s->r[i] -= length * s->product[i];
-        }
+        s->length = energy / curvature;
+        square = over_strips(s, step);
     }
-    *astray = sqrt(dot(s->r, s->r, n) / fmax(enough, 1e-300));
+    *left = square / fmax(enough, 1e-300);
     return OK;
 }
 
 /* The whole of it, whatever memory that takes. */
-static status factorize(const poisson_solver *s, double *x)
+static status factorize(const poisson_solver *s)
 {
-    poisson_factor *whole;
-    status result = poisson_factor_new(s->levels[0].grid, &whole);
-    if (result != OK) return result;
-    result = poisson_factor_update(whole);
-    if (result == OK) result = poisson_factor_solve(whole, s->b, x);
+    poisson_graph graph;
+    poisson_factor *whole = NULL;
+    status result = poisson_graph_of(s->grid, &graph);
+    if (result == OK) result = poisson_factor_new(&graph, &whole);
+    if (result == OK) result = poisson_factor_solve(whole, s->b, s->x);
     poisson_factor_free(whole);
+    poisson_graph_free(&graph);
     return result;
 }
 
-/* Coarser grids join what narrow slits part, and then are no help. */
-static status iterate(poisson_solver *s, double tolerance, double *x)
+static status build(poisson_solver *s)
 {
-    double astray = 0;
-    status result = conjugate_gradients(s, tolerance, x, &astray);
-    return result == OK && astray > MOST_ASTRAY ? factorize(s, x) : result;
+    poisson_stack_free(&s->stack);
+    return poisson_stack_new(s->grid, &s->stack);
+}
+
+/* A stack that was made for other weights is as good as any until it takes too many steps. */
+static status iterate(poisson_solver *s, double tolerance)
+{
+    int steps, most = s->steps_at_first + MORE_STEPS;
+    double left = INFINITY;
+    status result = OK;
+    if (s->steps_at_first) result = conjugate_gradients(s, tolerance, most, &steps, &left);
+    if (result != OK || left <= 1) return result;
+    result = build(s);
+    if (result == OK) result = conjugate_gradients(s, tolerance, MOST_STEPS, &s->steps_at_first, &left);
+    return result == OK && left > MOST_ASTRAY * MOST_ASTRAY ? factorize(s) : result;
+}
+
+static status solve_directly(poisson_solver *s)
+{
+    status result = build(s);
+    return result == OK ? poisson_factor_solve(s->stack.factor, s->b, s->x) : result;
 }
 
 status poisson_solve(poisson_solver *s, double tolerance, double *x)
 {
-    for (int i = 0; i + 1 < s->depth; i++)
-        project_weights(s->levels[i].grid, s->levels[i].parent, &s->levels[i + 1].own);
-    status result = poisson_factor_update(s->factor);
-    if (result != OK) return result;
-    right_hand_side(s->levels[0].grid, s->b);
-    return s->depth == 1 ? poisson_factor_solve(s->factor, s->b, x) : iterate(s, tolerance, x);
+    s->x = x;
+    right_hand_side(s->grid, s->b);
+    return s->grid->count <= POISSON_DIRECT ? solve_directly(s) : iterate(s, tolerance);
 }

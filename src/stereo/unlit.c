@@ -188,8 +188,6 @@ static status fill(const img *unlit, const img *around, img *normal)
     if (s != OK) return s;
     poisson_solver *solver = NULL;
     double *x = malloc((size_t)g.count * sizeof *x);
-    for (int i = 0; i < g.count; i++)
-        g.pull[i] = drift; /* what the solver is made for must be sound */
     s = x ? poisson_solver_new(&g, &solver) : fail(ERROR_MEMORY, "no memory for %d pixels in shadow", g.count);
     for (int k = 0; k < 3 && s == OK; k++)
         s = smooth(solver, &g, unlit, k, x, normal);
