@@ -1,12 +1,51 @@
 #include "base/parallel.h"
 
 #include <omp.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
 
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context)
 {
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < count; i++)
         body(context, i);
+}
+
+/* Words are kept per thread, and threads go away. */
+typedef struct trial {
+    status (*body)(void *context, size_t i);
+    void *context;
+    atomic_bool failed;
+    size_t first; /* that failed */
+    status result;
+    char message[1024];
+} trial;
+
+static void note_failure(trial *t, size_t i, status result)
+{
+#pragma omp critical(parallel_try)
+    if (!t->failed || i < t->first) {
+        t->failed = true;
+        t->first = i;
+        t->result = result;
+        snprintf(t->message, sizeof t->message, "%s", status_message());
+    }
+}
+
+static void try_one(void *context, size_t i)
+{
+    trial *t = context;
+    if (t->failed) return;
+    status result = t->body(t->context, i);
+    if (result != OK) note_failure(t, i, result);
+}
+
+status parallel_try(size_t count, status (*body)(void *context, size_t i), void *context)
+{
+    trial t = {.body = body, .context = context, .result = OK};
+    parallel_for(count, try_one, &t);
+    return t.failed ? fail(t.result, "%s", t.message) : OK;
 }
 
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context)

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/parallel.h"
 #include "estimate/crop.h"
 #include "estimate/map_png.h"
 #include "image/exr.h"
@@ -136,29 +137,33 @@ typedef struct output {
     status (*write)(const stereo_result *r, const char *path);
 } output;
 
+/* The slowest first, so that two processors end together; the meshes, where none was asked for by name, last. */
 static const output outputs[] = {
-    {"maps.exr", write_exr},          {"normal.png", write_normal}, {"albedo.png", write_albedo},
-    {"depth.png", write_depth},       {"mask.png", write_mask},     {"error.png", write_error},
-    {"overview.png", write_overview},
+    {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
+    {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
+    {"mask.png", write_mask},     {"mesh.obj", write_mesh},         {"mesh.glb", write_mesh},
+    {"mesh.ply", write_mesh},
 };
-static const output meshes[] = {{"mesh.ply", write_mesh}, {"mesh.obj", write_mesh}, {"mesh.glb", write_mesh}};
+enum { MESHES = 3, OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
-static status write_some(const stereo_files *files, const staging *t, const stereo_result *r, const output *some,
-                         size_t count)
+typedef struct writing {
+    const stereo_files *files;
+    const staging *staging;
+    const stereo_result *result;
+} writing;
+
+static status write_one(void *context, size_t i)
 {
-    status s = OK;
-    for (size_t i = 0; i < count && s == OK; i++) {
-        if (files->stop && files->stop()) return fail(ERROR_STOPPED, "stopped");
-        char path[PATH_MAX];
-        s = some[i].write(r, staging_path(t, some[i].name, path));
-    }
-    return s;
+    const writing *w = context;
+    char path[PATH_MAX];
+    if (w->files->stop && w->files->stop()) return fail(ERROR_STOPPED, "stopped");
+    return outputs[i].write(w->result, staging_path(w->staging, outputs[i].name, path));
 }
 
 static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
 {
-    status s = write_some(files, t, r, outputs, sizeof outputs / sizeof outputs[0]);
-    if (s == OK && files->mesh_count == 0) s = write_some(files, t, r, meshes, sizeof meshes / sizeof meshes[0]);
+    writing w = {files, t, r};
+    status s = parallel_try(files->mesh_count ? OUTPUTS - MESHES : OUTPUTS, write_one, &w);
     char path[PATH_MAX];
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }

@@ -4,13 +4,14 @@
 
 #include "cli/stereo_output.h"
 
-static const float COSINE = 0.70710678f, GROUND = 0.015f, JUMP = 10, FILL = 0.92f;
+static const float COSINE = 0.70710678f, GROUND = 0.015f, JUMP = 10, FILL = 0.92f, LEAST_SQUARE = 0.5f;
 enum { MOST_CUTS = 12 };
 
 typedef struct view {
     const stereo_result *surface;
     vec3 low, high; /* of the turned points */
     float scale;
+    int stride; /* pixels of the maps from one corner of a square to the next */
     img *out;
     float *nearest; /* z by pixel */
 } view;
@@ -35,16 +36,18 @@ static vec3 turned(const stereo_result *r, int x, int y)
     return vec3_make(COSINE * p.x + COSINE * p.z, p.y, -COSINE * p.x + COSINE * p.z);
 }
 
-static bool joined(const stereo_result *r, int x, int y)
+static bool joined(const view *v, int x, int y)
 {
+    const stereo_result *r = v->surface;
     float low = INFINITY, high = -INFINITY;
     for (int k = 0; k < 4; k++) {
-        if (!on_object(r, x + k % 2, y + k / 2)) return false;
-        float depth = *img_at(&r->depth, x + k % 2, y + k / 2);
+        int column = x + k % 2 * v->stride, row = y + k / 2 * v->stride;
+        if (!on_object(r, column, row)) return false;
+        float depth = *img_at(&r->depth, column, row);
         low = fminf(low, depth);
         high = fmaxf(high, depth);
     }
-    return high - low <= JUMP * pixel_size(r, low);
+    return high - low <= JUMP * (float)v->stride * pixel_size(r, low);
 }
 
 static void find_bounds(view *v)
@@ -52,15 +55,19 @@ static void find_bounds(view *v)
     const stereo_result *r = v->surface;
     v->low = vec3_make(INFINITY, INFINITY, INFINITY);
     v->high = vec3_scale(v->low, -1);
+    float least = INFINITY; /* pixel */
     for (int y = 0; y < r->depth.height; y++)
         for (int x = 0; x < r->depth.width; x++) {
             if (!on_object(r, x, y)) continue;
             vec3 p = turned(r, x, y);
+            least = fminf(least, pixel_size(r, *img_at(&r->depth, x, y)));
             v->low = vec3_make(fminf(v->low.x, p.x), fminf(v->low.y, p.y), fminf(v->low.z, p.z));
             v->high = vec3_make(fmaxf(v->high.x, p.x), fmaxf(v->high.y, p.y), fmaxf(v->high.z, p.z));
         }
     float extent = fmaxf(fmaxf(v->high.x - v->low.x, v->high.y - v->low.y), 1e-6f);
     v->scale = FILL * (float)v->out->width / extent;
+    float seen = v->scale * least; /* in pixels of the view */
+    v->stride = seen < LEAST_SQUARE ? (int)(LEAST_SQUARE / fmaxf(seen, 1e-3f)) : 1;
 }
 
 static void splat(view *v, vec3 p, float shade)
@@ -80,7 +87,7 @@ static void draw_square(view *v, int x, int y)
 {
     vec3 p[4];
     for (int k = 0; k < 4; k++)
-        p[k] = turned(v->surface, x + k % 2, y + k / 2);
+        p[k] = turned(v->surface, x + k % 2 * v->stride, y + k / 2 * v->stride);
     vec3 across = vec3_sub(p[1], p[0]), down = vec3_sub(p[2], p[0]);
     vec3 n = vec3_normalize(vec3_cross(down, across));
     float shade = 0.03f + 0.8f * fmaxf(n.z, 0);
@@ -110,9 +117,9 @@ status stereo_side_view(const stereo_result *r, int side, img *out)
         out->data[i] = GROUND;
     }
     find_bounds(&v);
-    for (int y = 0; y + 1 < r->depth.height; y++)
-        for (int x = 0; x + 1 < r->depth.width; x++)
-            if (joined(r, x, y)) draw_square(&v, x, y);
+    for (int y = 0; y + v.stride < r->depth.height; y += v.stride)
+        for (int x = 0; x + v.stride < r->depth.width; x += v.stride)
+            if (joined(&v, x, y)) draw_square(&v, x, y);
     free(v.nearest);
     return OK;
 }

@@ -97,14 +97,12 @@ static const output outputs[] = {
     {"roughness.png", write_roughness}, {"mask.png", write_mask},
     {"report.json", write_report},
 };
-enum { OUTPUTS = sizeof outputs / sizeof outputs[0], MESSAGE_SIZE = 512 };
+enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
 typedef struct batch {
     job job;
     staging *staging;
     const maps_output *output;
-    status results[OUTPUTS];
-    char messages[OUTPUTS][MESSAGE_SIZE]; /* words are kept per thread, and these threads go away */
 } batch;
 
 static bool stopped(const batch *b)
@@ -112,24 +110,12 @@ static bool stopped(const batch *b)
     return b->output->stop && b->output->stop();
 }
 
-static void write_one(void *context, size_t i)
+static status write_one(void *context, size_t i)
 {
-    batch *b = context;
-    if (stopped(b)) {
-        b->results[i] = fail(ERROR_STOPPED, "stopped");
-    } else {
-        char path[PATH_MAX];
-        b->results[i] = outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
-    }
-    if (b->results[i] != OK) snprintf(b->messages[i], MESSAGE_SIZE, "%s", status_message());
-}
-
-static status write_all(batch *b)
-{
-    parallel_for(OUTPUTS, write_one, b);
-    for (int i = 0; i < OUTPUTS; i++)
-        if (b->results[i] != OK) return fail(b->results[i], "%s", b->messages[i]);
-    return OK;
+    const batch *b = context;
+    char path[PATH_MAX];
+    if (stopped(b)) return fail(ERROR_STOPPED, "stopped");
+    return outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
 }
 
 /* A mesh is no part of merlin_maps_write, but of the same all or none. */
@@ -145,7 +131,7 @@ static status write_through(batch *b)
     const maps_output *o = b->output;
     status s = staging_begin(o->folder, o->inputs, &b->staging);
     if (s != OK) return s;
-    s = write_all(b);
+    s = parallel_try(OUTPUTS, write_one, b);
     if (s == OK) s = write_more(b);
     if (s == OK && stopped(b)) s = fail(ERROR_STOPPED, "stopped");
     return s == OK ? staging_commit(b->staging, o->written) : staging_abort(b->staging, s);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/file.h"
 #include "image/write.h"
 #include "stereo/mesh_build.h"
@@ -27,25 +28,51 @@ typedef struct obj {
     const char *material;
 } obj;
 
+static char *put_numbers(char *to, const char *kind, const double *number, int count, int digits)
+{
+    to = stpcpy(to, kind);
+    for (int i = 0; i < count; i++) {
+        *to++ = ' ';
+        to = decimal_put(to, number[i], digits);
+    }
+    *to++ = '\n';
+    return to;
+}
+
+static void print_vertex(FILE *f, const obj *o, size_t v)
+{
+    const float *p = o->mesh->position + 3 * v, *t = o->mesh->texture + 2 * v;
+    vec3 n = surface_mesh_normal(o->mesh, o->from, v);
+    const double place[] = {(double)p[0], (double)p[1], (double)p[2]}, texture[] = {(double)t[0], 1 - (double)t[1]};
+    const double normal[] = {(double)n.x, (double)n.y, (double)n.z};
+    char lines[9 * DECIMAL_ROOM], *end = put_numbers(lines, "v", place, 3, 7);
+    end = put_numbers(end, "vt", texture, 2, 7);
+    end = put_numbers(end, "vn", normal, 3, 5);
+    fwrite(lines, 1, (size_t)(end - lines), f);
+}
+
+/* Places, texture coordinates and normals have the same numbers. */
+static void print_triangle(FILE *f, const uint32_t *corner)
+{
+    char line[10 * DECIMAL_ROOM], *end = stpcpy(line, "f");
+    for (int k = 0; k < 3; k++)
+        for (int same = 0; same < 3; same++) {
+            *end++ = same ? '/' : ' ';
+            end = decimal_put_count(end, corner[k] + 1);
+        }
+    *end++ = '\n';
+    fwrite(line, 1, (size_t)(end - line), f);
+}
+
 static void print_mesh(FILE *f, const void *context)
 {
     const obj *o = context;
     const surface_mesh *m = o->mesh;
     fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", base_name(o->material));
-    for (size_t v = 0; v < m->vertices; v++) {
-        const float *p = m->position + 3 * v, *t = m->texture + 2 * v;
-        vec3 n = surface_mesh_normal(m, o->from, v);
-        fprintf(f, "v %.7g %.7g %.7g\nvt %.7g %.7g\nvn %.5g %.5g %.5g\n", (double)p[0], (double)p[1], (double)p[2],
-                (double)t[0], 1 - (double)t[1], (double)n.x, (double)n.y, (double)n.z);
-    }
-    for (size_t t = 0; t < m->triangles; t++) {
-        fputc('f', f);
-        for (int k = 0; k < 3; k++) {
-            unsigned i = m->index[3 * t + (size_t)k] + 1;
-            fprintf(f, " %u/%u/%u", i, i, i);
-        }
-        fputc('\n', f);
-    }
+    for (size_t v = 0; v < m->vertices; v++)
+        print_vertex(f, o, v);
+    for (size_t t = 0; t < m->triangles; t++)
+        print_triangle(f, m->index + 3 * t);
 }
 
 static status write_texture(const char *path, const img *albedo)

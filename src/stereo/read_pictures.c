@@ -16,7 +16,7 @@ static const float FLOAT_CEILING = 0.97f;
 static const float FLOAT_DIM = 0.1f;
 
 /* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
-enum { READERS = 4, MESSAGE = 1024 };
+enum { READERS = 4 };
 
 typedef struct reading {
     const char *folder;
@@ -55,11 +55,9 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
     const float *ambient = r->ambient.data;
     float scale = bits == 32 ? r->scale : 1;
     for (size_t i = 0; i < count; i++) {
-        float value = picture->data[i] * scale;
+        float value = picture->data[i] * scale, left = ambient ? value - ambient[i] : value;
         /* what the sensor clipped stays recognizable after the subtraction */
-        bool clipped = value >= 1;
-        if (ambient) value -= ambient[i];
-        codes[i] = clipped ? 65535 : (uint16_t)lroundf(fminf(fmaxf(value, 0), 1) * 65535);
+        codes[i] = value >= 1 ? 65535 : left > 0 ? (uint16_t)(left * 65535 + 0.5f) : 0;
     }
     *out = codes;
     return OK;
@@ -69,33 +67,28 @@ typedef struct group {
     const reading *reading;
     status (*work)(const reading *r, int i, float *brightest);
     int first;
-    status results[READERS];
-    char messages[READERS][MESSAGE];
     float brightest[READERS];
 } group;
 
-static void work_on(void *context, size_t i)
+static status work_on(void *context, size_t i)
 {
     group *g = context;
-    g->results[i] = g->work(g->reading, g->first + (int)i, &g->brightest[i]);
-    if (g->results[i] != OK) snprintf(g->messages[i], MESSAGE, "%s", status_message());
+    return g->work(g->reading, g->first + (int)i, &g->brightest[i]);
 }
 
-/* work for all pictures; the first that fails is heard. *brightest becomes the most that any said. */
+/* work for all pictures. *brightest becomes the most that any said. */
 static status for_pictures(const reading *r, status (*work)(const reading *r, int i, float *brightest),
                            float *brightest)
 {
     group g = {.reading = r, .work = work};
-    for (; g.first < r->into->count; g.first += READERS) {
+    status s = OK;
+    for (; g.first < r->into->count && s == OK; g.first += READERS) {
         int left = r->into->count - g.first;
-        size_t count = (size_t)(left < READERS ? left : READERS);
-        parallel_for(count, work_on, &g);
-        for (size_t i = 0; i < count; i++) {
-            if (g.results[i] != OK) return fail(g.results[i], "%s", g.messages[i]);
-            *brightest = fmaxf(*brightest, g.brightest[i]);
-        }
+        s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &g);
     }
-    return OK;
+    for (int i = 0; i < READERS; i++)
+        *brightest = fmaxf(*brightest, g.brightest[i]);
+    return s;
 }
 
 static status find_brightest(const reading *r, int i, float *brightest)

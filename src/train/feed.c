@@ -9,15 +9,13 @@
 #include "train/motion.h"
 #include "train/prepare.h"
 
-enum { MESSAGE = 512, POINT_BUFFERS = 12, BUFFERS = 15 };
+enum { POINT_BUFFERS = 12, BUFFERS = 15 };
 
 /* What one thread does for one place of the batch. Failures keep their words, which are per thread. */
 typedef struct item {
     trn_view view;
     size_t sample;
     uint64_t presentation;
-    status result;
-    char message[MESSAGE];
 } item;
 
 struct trn_feed {
@@ -136,7 +134,7 @@ static status add_faults(const trn_feed *f, const item *it, trn_camera *lens)
     return trn_motion_moves(&motion) ? trn_move(&it->view, &motion) : OK;
 }
 
-static void fill_item(void *context, size_t i)
+static status fill_item(void *context, size_t i)
 {
     trn_feed *f = context;
     item *it = &f->items[i];
@@ -145,18 +143,16 @@ static void fill_item(void *context, size_t i)
     trn_lighting lighting = {.target = trn_draw_light(&r)};
     int orientation = f->validation ? 0 : rng_below(&r, ORIENTATIONS);
     trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
-    it->result = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
-    if (it->result == OK && f->source.environment) it->result = draw_environments(f, it, &lighting);
-    if (it->result == OK && !f->validation) it->result = add_faults(f, it, &lens);
-    if (it->result == OK) it->result = trn_prepare(&it->view, f->source.input_global, &lens, &lighting, &r);
-    if (it->result != OK) snprintf(it->message, MESSAGE, "%s", status_message());
+    status s = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
+    if (s == OK && f->source.environment) s = draw_environments(f, it, &lighting);
+    if (s == OK && !f->validation) s = add_faults(f, it, &lens);
+    return s == OK ? trn_prepare(&it->view, f->source.input_global, &lens, &lighting, &r) : s;
 }
 
 static status fill(trn_feed *f)
 {
-    parallel_for(f->batch, fill_item, f);
-    for (size_t i = 0; i < f->batch; i++)
-        if (f->items[i].result != OK) return fail(f->items[i].result, "%s", f->items[i].message);
+    status s = parallel_try(f->batch, fill_item, f);
+    if (s != OK) return s;
     size_t code = f->source.environment ? 3 + MODEL_SH : 3;
     for (size_t i = 0; i < f->batch && f->light_code; i++) {
         memcpy(f->light_code + code * i, f->items[i].view.light, 3 * sizeof(float));
