@@ -11,7 +11,7 @@ _merlin() {
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
             --threads --json --quiet --help"
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
-        [eval]="--data --model --means-file --count --white --environments --views --precision --figure --figure-rows --means --output
+        [eval]="--data --model --means-file --count --white --given --environments --views --precision --figure --figure-rows --means --output
             --json --quiet --help"
         ["eval stereo"]="--data --model --count --figure --json --quiet --help"
         ["eval solvers"]="--count --seed --size --json --quiet --help"

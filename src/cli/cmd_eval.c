@@ -28,6 +28,8 @@ static const char help[] =
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
     "  --white W          the photograph is exposed so that radiance W saturates (default 1, as in the paper)\n"
+    "  --given MAP        the true albedo, normal, roughness or depth in place of the estimated one; may be repeated:\n"
+    "                     how well a model relights that errs in the others alone\n"
     "  --environments N   relight the first N samples by environments, too (seconds each)\n"
     "  --views N          maps as merlin estimate --views N makes them (default 4, as there)\n"
     "  --precision P      float32 (default) or bfloat16\n"
@@ -59,6 +61,13 @@ static status take_precision(const char *text, void *into)
     return OK;
 }
 
+static status take_given(const char *text, void *into)
+{
+    int map = eval_given_of(text), *set = into;
+    *set |= map;
+    return map ? OK : fail(ERROR_USAGE, "--given wants albedo, normal, roughness or depth, not \"%s\"", text);
+}
+
 /* Every EXR of a folder of samples is taken for one, and must be: means among them would end training. */
 static status check_means_apart(const request *r)
 {
@@ -78,8 +87,8 @@ static status check(const request *r)
     if (!r->means_folder && r->output)
         return fail(ERROR_USAGE, "-o is for --means; an evaluation prints its report, with --json for a program");
     if (!r->means_folder) return OK;
-    bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->views || o->figure ||
-                     o->figure_rows || o->type != NN_FLOAT32;
+    bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->given || o->views ||
+                     o->figure || o->figure_rows || o->type != NN_FLOAT32;
     if (evaluates || r->json) return fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone");
     if (!r->output) return fail(ERROR_USAGE, "--means needs -o FILE.exr");
     if (!file_ends_in(r->output, ".exr"))
@@ -96,6 +105,7 @@ static status parse(int argc, char **argv, request *r)
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"environments", .count = &r->options.environments, .low = 1, .high = 100000000},
         {"white", .real = &r->options.white, .low = 1, .high = 16},
+        {"given", .take = take_given, .into = &r->options.given},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
         {"figure", .picture = &r->options.figure},

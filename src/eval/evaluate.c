@@ -83,6 +83,7 @@ static status begin(evaluation *e, const char *first_path)
     e->report->size = first.mask.width;
     e->scorer.environments = o->environments;
     e->scorer.white = e->report->white = o->white > 0 ? o->white : 1;
+    e->scorer.given = e->report->given = o->given;
     sample_free(&first);
     e->report->views = o->views > 0 ? o->views : NETWORK_VIEWS;
     s = eval_model_open(o->weights, e->report->size, o->type, e->report->views, &e->scorer.model);

@@ -65,6 +65,7 @@ typedef struct eval_report {
     int size;             /* of the samples, pixels a side */
     int views;            /* orientations of a picture whose mean the maps are */
     float white;          /* radiance at which the photographs saturate */
+    int given;            /* set of EVAL_GIVEN_* */
     bool means_from_data; /* the mean maps are those of the evaluated samples themselves */
     size_t means_samples; /* how many samples the mean maps were taken over */
     eval_scores all;
@@ -81,6 +82,7 @@ typedef struct eval_options {
     size_t count;        /* the first so many samples; 0: all */
     float white;         /* radiance at which the photograph saturates, from 1, the paper's, on; 0 counts as 1 */
     size_t environments; /* so many of them, from the first on, are relit by environments too */
+    int given;           /* set of EVAL_GIVEN_*: the true maps take the place of the estimated ones */
     nn_type type;
     int views;          /* orientations of each picture whose mean the maps are, to 8; 0: as merlin estimate */
     const char *figure; /* PNG of predictions beside the truth; NULL: none */

@@ -1,5 +1,7 @@
 #include "eval/maps.h"
 
+#include <string.h>
+
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "eval/metrics.h"
@@ -38,6 +40,19 @@ void eval_to_network_range(img *map)
 {
     for (size_t i = 0, n = img_value_count(map); i < n; i++)
         map->data[i] = 2 * map->data[i] - 1;
+}
+
+static void take(const img *from, img *to)
+{
+    memcpy(to->data, from->data, img_value_count(to) * sizeof *to->data);
+}
+
+void eval_maps_take(const eval_maps *from, int set, eval_maps *to)
+{
+    if (set & EVAL_GIVEN_ALBEDO) take(&from->albedo, &to->albedo);
+    if (set & EVAL_GIVEN_NORMAL) take(&from->normal, &to->normal);
+    if (set & EVAL_GIVEN_ROUGHNESS) take(&from->roughness, &to->roughness);
+    if (set & EVAL_GIVEN_DEPTH) take(&from->depth, &to->depth);
 }
 
 status eval_maps_of_sample(const sample *s, eval_maps *out)

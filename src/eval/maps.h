@@ -19,6 +19,12 @@ typedef struct eval_maps {
     img depth;     /* 1, scene units */
 } eval_maps;
 
+/* Sets of them. */
+enum { EVAL_GIVEN_ALBEDO = 1, EVAL_GIVEN_NORMAL = 2, EVAL_GIVEN_ROUGHNESS = 4, EVAL_GIVEN_DEPTH = 8 };
+
+/* Copies those of the set, which must be of the same size. */
+void eval_maps_take(const eval_maps *from, int set, eval_maps *to);
+
 /* Zero-filled. On failure nothing is held. */
 status eval_maps_new(eval_maps *out, int width, int height);
 void eval_maps_free(eval_maps *maps);

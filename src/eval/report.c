@@ -2,6 +2,9 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <string.h>
+
+#include "eval/maps.h"
 
 typedef struct row_text {
     const char *key, *label;
@@ -145,6 +148,21 @@ static size_t environments(const eval_report *report)
     return report->all.count[EVAL_ENVIRONMENT_BRDF][EVAL_MODEL];
 }
 
+static const struct {
+    int map;
+    const char *name;
+} given[] = {{EVAL_GIVEN_ALBEDO, "albedo"},
+             {EVAL_GIVEN_NORMAL, "normal"},
+             {EVAL_GIVEN_ROUGHNESS, "roughness"},
+             {EVAL_GIVEN_DEPTH, "depth"}};
+
+int eval_given_of(const char *name)
+{
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        if (strcmp(given[i].name, name) == 0) return given[i].map;
+    return 0;
+}
+
 void eval_print_table(const eval_report *report, FILE *stream)
 {
     fprintf(stream, "%s (views: %d) on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model,
@@ -152,6 +170,9 @@ void eval_print_table(const eval_report *report, FILE *stream)
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
     if (report->white > 1)
         fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        if (report->given & given[i].map)
+            fprintf(stream, "the true %s is given: relighting shows what the rest lacks\n\n", given[i].name);
     size_t relit = environments(report);
     if (relit) fprintf(stream, "relit by environments: the first %zu sample%s\n\n", relit, relit == 1 ? "" : "s");
     print_rows(&report->all, stream);
@@ -190,6 +211,9 @@ char *eval_report_json(const eval_report *report)
     cJSON_AddNumberToObject(o, "size", report->size);
     cJSON_AddNumberToObject(o, "views", report->views);
     cJSON_AddNumberToObject(o, "white", (double)report->white);
+    cJSON *list = cJSON_AddArrayToObject(o, "given");
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        if (report->given & given[i].map) cJSON_AddItemToArray(list, cJSON_CreateString(given[i].name));
     cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
     cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
     cJSON_AddNumberToObject(o, "environments", (double)environments(report));

@@ -21,6 +21,9 @@ typedef struct eval_verdict {
 /* The goals of docs/evaluation.md held against the scores. */
 eval_verdict eval_judge(const eval_scores *scores, eval_row row);
 
+/* EVAL_GIVEN_* of "albedo", "normal", "roughness" or "depth"; 0 for anything else. */
+int eval_given_of(const char *name);
+
 void eval_print_table(const eval_report *report, FILE *stream);
 /* malloc'ed; NULL if memory ran out. */
 char *eval_report_json(const eval_report *report);

@@ -228,6 +228,7 @@ status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores)
     if (st == OK) st = eval_maps_of_sample(s, &on.truth);
     if (st == OK) st = eval_inflate(&on.photo, &on.mask, &e->means, s->fov, s->light_power, &on.inflated);
     if (st == OK) st = eval_estimate(e->model, &on.photo, &on.mask, &e->prediction);
+    if (st == OK) eval_maps_take(&on.truth, e->given, &e->prediction.maps);
     if (st == OK) st = score_brdf_targets(e, &on);
     if (st == OK) st = score_traced_targets(e, &on);
     if (st == OK && eval_model_config(e->model)->lighting == MODEL_LIGHT_BOTH) st = eval_score_both_lights(e, &on);

@@ -14,6 +14,7 @@ typedef struct eval_scorer {
     eval_prediction prediction;
     sheet_rows *sheet;   /* NULL: no picture wanted */
     float white;         /* radiance at which the photograph saturates */
+    int given;           /* set of EVAL_GIVEN_*: true maps that take the place of the estimated ones */
     size_t environments; /* samples that are still to be relit by environments */
 } eval_scorer;
 

@@ -13,6 +13,8 @@ succeeds "^albedo error" "$MERLIN" eval --data "$samples" --model "$weights" --q
 succeeds "favours that answer" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1
 succeeds "environments: the first 2 samples" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --environments 2
 succeeds "saturate at radiance 1.5" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1 --white 1.5
+succeeds "the true normal is given" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1 --given depth --given normal
+succeeds "^normal error .1e-2.  *0.0000" "$MERLIN" eval --data "$samples" --model "$weights" --quiet --count 1 --given normal
 options=(--data "$samples" --model "$weights" --environments 1 --quiet --json)
 OMP_NUM_THREADS=1 "$MERLIN" eval "${options[@]}" >"$scratch/a.json"
 OMP_NUM_THREADS=2 "$MERLIN" eval "${options[@]}" >"$scratch/b.json"
@@ -31,6 +33,7 @@ refuses 2 "-o is for --means" "$MERLIN" eval --data "$samples" --model "$weights
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 0
 refuses 2 "--count wants" "$MERLIN" eval --data "$samples" --model "$weights" --count 3x
 refuses 2 "--white wants" "$MERLIN" eval --data "$samples" --model "$weights" --white 0.5
+refuses 2 "--given wants" "$MERLIN" eval --data "$samples" --model "$weights" --given light
 refuses 2 "--environments wants" "$MERLIN" eval --data "$samples" --model "$weights" --environments none
 refuses 2 "end in .png" "$MERLIN" eval --data "$samples" --model "$weights" --figure sheet.jpg
 refuses 2 "--precision wants" "$MERLIN" eval --data "$samples" --model "$weights" --precision float16
