@@ -38,7 +38,7 @@ char *decimal_put(char *to, double value, int digits)
     int decimals = digits - 1; /* below 10; each digit more before the point is one less behind it */
     while (decimals > 0 && size >= power[digits - decimals])
         decimals--;
-    for (double least = 1; size < least; least /= 10)
+    for (int zeros = 0; size * power[zeros] < 1; zeros++)
         decimals++;
     uint64_t scaled = (uint64_t)(size * power[decimals] + 0.5), unit = (uint64_t)power[decimals];
     if (value < 0) *to++ = '-';

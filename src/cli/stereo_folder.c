@@ -8,29 +8,32 @@
 
 static const float RESIDUAL_WHITE = 0.25f;
 
+static void exchange(double *a, double *b)
+{
+    double old = *a;
+    *a = *b;
+    *b = old;
+}
+
 /* The value that would stand at place k if they were sorted, which they become a little (Hoare's selection). */
 static double of_rank(double *values, size_t count, size_t k)
 {
-    size_t low = 0, high = count - 1;
-    while (low < high) {
-        double pivot = values[low + (high - low) / 2];
-        size_t i = low, j = high;
-        for (;; i++, j--) {
-            while (values[i] < pivot)
+    size_t low = 0, end = count;
+    for (;;) {
+        double pivot = values[low + (end - low) / 2];
+        size_t less = low, more = end;
+        for (size_t i = low; i < more;) {
+            if (values[i] < pivot)
+                exchange(&values[i++], &values[less++]);
+            else if (values[i] > pivot)
+                exchange(&values[i], &values[--more]);
+            else
                 i++;
-            while (values[j] > pivot)
-                j--;
-            if (i >= j) break;
-            double swapped = values[i];
-            values[i] = values[j];
-            values[j] = swapped;
         }
-        if (k <= j)
-            high = j;
-        else
-            low = j + 1;
+        if (k >= less && k < more) return pivot;
+        low = k < less ? low : more;
+        end = k < less ? less : end;
     }
-    return values[k];
 }
 
 /* The values change places. */

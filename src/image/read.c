@@ -25,15 +25,15 @@ static bool is_heic(const unsigned char *head)
     return false;
 }
 
-/* Raw pictures that are no TIFFs. */
+/* Raw pictures that are no TIFFs: of Olympus, Panasonic, Fujifilm, Canon (two kinds), Minolta and Sigma. */
 static bool is_raw(const unsigned char *head)
 {
     static const struct {
         size_t at, count;
         char bytes[HEAD_BYTES];
     } known[] = {
-        {0, 4, "IIRO"}, {0, 4, "IIRS"},     {0, 4, "MMOR"},      {0, 4, "IIU\0"},   /* Olympus; Panasonic */
-        {0, 8, "FUJIFILM"}, {4, 8, "ftypcrx "}, {6, 4, "HEAP"}, {0, 4, "\0MRM"}, {0, 4, "FOVb"},
+        {0, 4, "IIRO"},     {0, 4, "IIRS"}, {0, 4, "MMOR"},  {0, 4, "IIU\0"}, {0, 8, "FUJIFILM"},
+        {4, 8, "ftypcrx "}, {6, 4, "HEAP"}, {0, 4, "\0MRM"}, {0, 4, "FOVb"},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (memcmp(head + known[i].at, known[i].bytes, known[i].count) == 0) return true;

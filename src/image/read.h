@@ -16,13 +16,12 @@ enum { IMAGE_MAX_SIDE = 16384 };
 /* What cameras leave beside them, developed by themselves: no measurements. */
 #define IMAGE_CAMERA_ENDINGS ".jpg", ".jpeg", ".heic", ".heif"
 /* All that are read. */
-#define IMAGE_ENDINGS                                                                                                  \
-    ".png", ".tif", ".tiff", ".webp", ".avif", ".exr", ".hdr", IMAGE_CAMERA_ENDINGS, IMAGE_RAW_ENDINGS
+#define IMAGE_ENDINGS ".png", ".tif", ".tiff", ".webp", ".avif", ".exr", ".hdr", IMAGE_CAMERA_ENDINGS, IMAGE_RAW_ENDINGS
 
-/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1] where
- * the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is not times alpha,
- * whatever the file's kind. Refuses non-images, truncated files, sides above IMAGE_MAX_SIDE and values that are NaN or
- * infinite, in one clear line. */
+/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1]
+ * where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is not times
+ * alpha, whatever the file's kind. Refuses non-images, truncated files, sides above IMAGE_MAX_SIDE and values that are
+ * NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
 /* Its size from the file's head alone, the longer side perhaps as height: before an orientation is applied. */
 status img_read_size(const char *path, int *width, int *height);

@@ -1,5 +1,5 @@
-/* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are read,
- * and last what must have their size. On failure pst_capture_read frees what was filled. */
+/* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are
+ * read, and last what must have their size. On failure pst_capture_read frees what was filled. */
 #ifndef MERLIN_STEREO_CAPTURE_PARTS_H
 #define MERLIN_STEREO_CAPTURE_PARTS_H
 

@@ -55,8 +55,8 @@ static status refuse_empty(const char *folder, bool numbered)
         s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
                  (int)(slash - below), below);
     else
-        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files", folder,
-                 numbered ? "01.png, 02.png and on, " : "");
+        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files",
+                 folder, numbered ? "01.png, 02.png and on, " : "");
     file_list_free(names, count);
     return s;
 }

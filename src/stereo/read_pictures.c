@@ -23,6 +23,7 @@ typedef struct reading {
     bool decode;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
+    float *brightest; /* of every picture, of floats */
     pst_capture *into;
 } reading;
 
@@ -57,7 +58,8 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
     for (size_t i = 0; i < count; i++) {
         float value = picture->data[i] * scale, left = ambient ? value - ambient[i] : value;
         /* what the sensor clipped stays recognizable after the subtraction */
-        codes[i] = value >= 1 ? 65535 : left > 0 ? (uint16_t)(left * 65535 + 0.5f) : 0;
+        float code = left * 65535 + 0.5f;
+        codes[i] = value >= 1 ? 65535 : code > 0 ? (uint16_t)code : 0;
     }
     *out = codes;
     return OK;
@@ -65,40 +67,34 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
 
 typedef struct group {
     const reading *reading;
-    status (*work)(const reading *r, int i, float *brightest);
+    status (*work)(const reading *r, int i);
     int first;
-    float brightest[READERS];
 } group;
 
 static status work_on(void *context, size_t i)
 {
-    group *g = context;
-    return g->work(g->reading, g->first + (int)i, &g->brightest[i]);
+    const group *g = context;
+    return g->work(g->reading, g->first + (int)i);
 }
 
-/* work for all pictures. *brightest becomes the most that any said. */
-static status for_pictures(const reading *r, status (*work)(const reading *r, int i, float *brightest),
-                           float *brightest)
+static status for_pictures(const reading *r, status (*work)(const reading *r, int i))
 {
-    group g = {.reading = r, .work = work};
     status s = OK;
-    for (; g.first < r->into->count && s == OK; g.first += READERS) {
-        int left = r->into->count - g.first;
-        s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &g);
+    for (int i = 0; i < r->into->count && s == OK; i += READERS) {
+        int left = r->into->count - i;
+        s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
     }
-    for (int i = 0; i < READERS; i++)
-        *brightest = fmaxf(*brightest, g.brightest[i]);
     return s;
 }
 
-static status find_brightest(const reading *r, int i, float *brightest)
+static status find_brightest(const reading *r, int i)
 {
     img picture;
     int bits;
     status s = read_one(r, r->into->name[i], &picture, &bits);
     if (s != OK) return s;
     for (size_t k = 0, n = img_value_count(&picture); k < n && bits == 32; k++)
-        *brightest = fmaxf(*brightest, picture.data[k]);
+        r->brightest[i] = fmaxf(r->brightest[i], picture.data[k]);
     img_free(&picture);
     return OK;
 }
@@ -107,7 +103,12 @@ static status find_brightest(const reading *r, int i, float *brightest)
 static status measure_scale(reading *r)
 {
     float most = 0;
-    status s = for_pictures(r, find_brightest, &most);
+    r->brightest = calloc((size_t)r->into->count, sizeof *r->brightest);
+    if (!r->brightest) return fail(ERROR_MEMORY, "no memory for %d pictures", r->into->count);
+    status s = for_pictures(r, find_brightest);
+    for (int i = 0; i < r->into->count; i++)
+        most = fmaxf(most, r->brightest[i]);
+    free(r->brightest);
     r->scale = most > FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? FLOAT_CEILING / most : 1;
     return s;
 }
@@ -151,9 +152,8 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
     return s;
 }
 
-static status take_picture(const reading *r, int i, float *brightest)
+static status take_picture(const reading *r, int i)
 {
-    (void)brightest;
     img picture;
     int bits;
     status s = read_one(r, r->into->name[i], &picture, &bits);
@@ -167,10 +167,9 @@ static status take_picture(const reading *r, int i, float *brightest)
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
 {
     reading r = {.folder = folder, .decode = !options->linear, .scale = 1, .into = c};
-    float unused = 0;
     status s = read_first_shape(&r, c);
     if (s == OK) s = read_ambient(&r, options->ambient, c);
-    if (s == OK) s = for_pictures(&r, take_picture, &unused);
+    if (s == OK) s = for_pictures(&r, take_picture);
     img_free(&r.ambient);
     return s;
 }

@@ -88,7 +88,8 @@ static void add_size(tiff *t, uint32_t width, uint32_t height, uint32_t bits, ui
 static void add_camera(tiff *t, const dng *d)
 {
     static const uint32_t version[4] = {1, 4, 0, 0};
-    static const float from_xyz[9] = {3.2405f, -1.5371f, -0.4985f, -0.9693f, 1.8760f, 0.0416f, 0.0556f, -0.2040f, 1.0572f};
+    static const float from_xyz[9] = {3.2405f, -1.5371f, -0.4985f, -0.9693f, 1.8760f,
+                                      0.0416f, 0.0556f,  -0.2040f, 1.0572f};
     add_words(t, 271, "Merlin");
     add_words(t, 272, "Test camera");
     add_one(t, 274, SHORT, (uint32_t)d->orientation);
