@@ -2,7 +2,7 @@
 
 #include <omp.h>
 #include <stdatomic.h>
-#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context)
@@ -16,8 +16,7 @@ void parallel_for(size_t count, void (*body)(void *context, size_t i), void *con
 typedef struct trial {
     status (*body)(void *context, size_t i);
     void *context;
-    atomic_bool failed;
-    size_t first; /* that failed */
+    atomic_size_t first; /* that failed; SIZE_MAX: none */
     status result;
     char message[1024];
 } trial;
@@ -25,27 +24,27 @@ typedef struct trial {
 static void note_failure(trial *t, size_t i, status result)
 {
 #pragma omp critical(parallel_try)
-    if (!t->failed || i < t->first) {
-        t->failed = true;
+    if (i < t->first) {
         t->first = i;
         t->result = result;
         snprintf(t->message, sizeof t->message, "%s", status_message());
     }
 }
 
+/* Those before one that failed are done all the same: they may fail too, and then are to be heard. */
 static void try_one(void *context, size_t i)
 {
     trial *t = context;
-    if (t->failed) return;
+    if (i > t->first) return;
     status result = t->body(t->context, i);
     if (result != OK) note_failure(t, i, result);
 }
 
 status parallel_try(size_t count, status (*body)(void *context, size_t i), void *context)
 {
-    trial t = {.body = body, .context = context, .result = OK};
+    trial t = {.body = body, .context = context, .first = SIZE_MAX, .result = OK};
     parallel_for(count, try_one, &t);
-    return t.failed ? fail(t.result, "%s", t.message) : OK;
+    return t.result == OK ? OK : fail(t.result, "%s", t.message);
 }
 
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context)

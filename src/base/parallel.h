@@ -9,8 +9,8 @@
 /* body(context, i) for every i in [0, count), iterations handed out one by one. */
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context);
 
-/* The same with bodies that can fail. When one has, none is begun any more; what the first of those that failed, by i,
- * returned and said is what the caller hears. */
+/* The same with bodies that can fail: the caller hears what the first of them, by i, returned and said. Those behind it
+ * may not have been begun. */
 status parallel_try(size_t count, status (*body)(void *context, size_t i), void *context);
 
 /* body(context, begin, end) over contiguous blocks that tile [0, count), one block a thread. */

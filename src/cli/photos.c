@@ -134,9 +134,12 @@ static status add_folder(photo_list *list, const char *folder)
     bool results = file_is_in(folder, "maps.exr");
     status s = file_list(folder, endings, &names, &count);
     if (s != OK) return s;
+    bool raws = false;
+    for (size_t i = 0; i < count; i++)
+        raws |= file_ends_in_any(names[i], raw_endings);
     for (size_t i = 0; i < count && s == OK; i++) {
         if (is_mask_name(names[i]) || (results && is_result_name(names[i]))) continue;
-        if (is_beside_raw(names, count, names[i])) continue;
+        if (raws && is_beside_raw(names, count, names[i])) continue;
         s = add(list, names[i]);
         if (s != OK) break;
         photo_job *job = &list->at[list->count - 1];

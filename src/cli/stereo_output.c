@@ -137,12 +137,13 @@ typedef struct output {
     status (*write)(const stereo_result *r, const char *path);
 } output;
 
-/* The slowest first, so that two processors end together; the meshes, where none was asked for by name, last. */
+/* The slowest first, so that two processors end together; of these the meshes, which others replace if they are asked
+ * for by name. */
 static const output outputs[] = {
+    {"mesh.obj", write_mesh},     {"mesh.glb", write_mesh},         {"mesh.ply", write_mesh},
     {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
     {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
-    {"mask.png", write_mask},     {"mesh.obj", write_mesh},         {"mesh.glb", write_mesh},
-    {"mesh.ply", write_mesh},
+    {"mask.png", write_mask},
 };
 enum { MESHES = 3, OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
@@ -150,6 +151,7 @@ typedef struct writing {
     const stereo_files *files;
     const staging *staging;
     const stereo_result *result;
+    size_t first; /* output */
 } writing;
 
 static status write_one(void *context, size_t i)
@@ -157,13 +159,14 @@ static status write_one(void *context, size_t i)
     const writing *w = context;
     char path[PATH_MAX];
     if (w->files->stop && w->files->stop()) return fail(ERROR_STOPPED, "stopped");
-    return outputs[i].write(w->result, staging_path(w->staging, outputs[i].name, path));
+    const output *o = &outputs[w->first + i];
+    return o->write(w->result, staging_path(w->staging, o->name, path));
 }
 
 static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
 {
-    writing w = {files, t, r};
-    status s = parallel_try(files->mesh_count ? OUTPUTS - MESHES : OUTPUTS, write_one, &w);
+    writing w = {files, t, r, files->mesh_count ? MESHES : 0};
+    status s = parallel_try(OUTPUTS - w.first, write_one, &w);
     char path[PATH_MAX];
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }

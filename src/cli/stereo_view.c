@@ -55,18 +55,18 @@ static void find_bounds(view *v)
     const stereo_result *r = v->surface;
     v->low = vec3_make(INFINITY, INFINITY, INFINITY);
     v->high = vec3_scale(v->low, -1);
-    float least = INFINITY; /* pixel */
+    float pixel = 0; /* the largest */
     for (int y = 0; y < r->depth.height; y++)
         for (int x = 0; x < r->depth.width; x++) {
             if (!on_object(r, x, y)) continue;
             vec3 p = turned(r, x, y);
-            least = fminf(least, pixel_size(r, *img_at(&r->depth, x, y)));
+            pixel = fmaxf(pixel, pixel_size(r, *img_at(&r->depth, x, y)));
             v->low = vec3_make(fminf(v->low.x, p.x), fminf(v->low.y, p.y), fminf(v->low.z, p.z));
             v->high = vec3_make(fmaxf(v->high.x, p.x), fmaxf(v->high.y, p.y), fmaxf(v->high.z, p.z));
         }
     float extent = fmaxf(fmaxf(v->high.x - v->low.x, v->high.y - v->low.y), 1e-6f);
     v->scale = FILL * (float)v->out->width / extent;
-    float seen = v->scale * least; /* in pixels of the view */
+    float seen = v->scale * pixel; /* in pixels of the view */
     v->stride = seen < LEAST_SQUARE ? (int)(LEAST_SQUARE / fmaxf(seen, 1e-3f)) : 1;
 }
 
@@ -82,7 +82,7 @@ static void splat(view *v, vec3 p, float shade)
     *img_at(v->out, x, y) = shade;
 }
 
-/* A square of four pixels, covered by as many points as its projection has pixels across. */
+/* A square with pixels for corners, covered by as many points as its projection has pixels across. */
 static void draw_square(view *v, int x, int y)
 {
     vec3 p[4];

@@ -1,6 +1,5 @@
 /* merlin_maps_write: a folder with everything, or nothing. */
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

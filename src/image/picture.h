@@ -60,7 +60,8 @@ void picture_take_codes(const void *codes, bool wide, int bands, int first, bool
 status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
 /* Upright and linear, in sRGB's primaries, white where the sensor saturates; 3 channels, 1 if it has no mosaic. White
- * balanced as the camera was set if linearized, for daylight otherwise: the same for all pictures of one camera. */
+ * balanced as the camera was set if linearized, for daylight otherwise: the same for all pictures of one camera. Then
+ * a pixel of which any colour is saturated is white. */
 status picture_read_raw(const char *path, picture_colour how, img *color);
 status picture_look_raw(const char *path, picture_head *head);
 

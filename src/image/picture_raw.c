@@ -36,6 +36,7 @@ static status refusal(const char *path, int error)
         return fail(ERROR_INPUT,
                     "cannot read %s: the LibRaw installed here knows no such raw picture; develop it to a TIFF first",
                     path);
+    if (error == LIBRAW_UNSUFFICIENT_MEMORY) return fail(ERROR_MEMORY, "no memory to read %s", path);
     if (error == LIBRAW_IO_ERROR || error == LIBRAW_DATA_ERROR)
         return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
     return fail(ERROR_INPUT, "cannot read %s: %s", path, raw.strerror(error));
@@ -61,8 +62,8 @@ static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
 /* Nothing may depend on what the picture shows, such as its brightest value: pictures of one set share a scale. */
 static void ask_for_light(libraw_output_params_t *p, bool white_balanced)
 {
-    const int srgb_primaries = 1;
-    p->output_color = srgb_primaries;
+    const int the_cameras = 0;
+    p->output_color = the_cameras;
     p->output_bps = 16;
     p->gamm[0] = p->gamm[1] = 1;
     p->no_auto_bright = 1;
@@ -76,16 +77,35 @@ static status develop(libraw_data_t *file, const char *path, bool white_balanced
     int error = raw.unpack(file);
     if (!error) error = raw.dcraw_process(file);
     if (!error) *out = raw.dcraw_make_mem_image(file, &error);
-    return error || !*out ? refusal(path, error) : OK;
+    if (!error && !*out) error = LIBRAW_UNSUFFICIENT_MEMORY;
+    return error ? refusal(path, error) : OK;
 }
 
-/* Rounding in LibRaw's matrix of colours takes a code or two off what is saturated. */
-static void take(const libraw_processed_image_t *made, img *out)
+/* One pixel from the camera's colours to sRGB's primaries. In a measurement one saturated channel makes all saturated,
+ * which mixing them would hide. */
+static void mix(const float (*matrix)[4], const float *seen, int colors, bool measured, float *out, int channels)
 {
-    const float saturated = 65533.0f / 65535;
-    picture_take_codes(made->data, true, made->colors, 0, false, out);
-    for (size_t i = 0, n = img_value_count(out); i < n; i++)
-        out->data[i] = out->data[i] < saturated ? out->data[i] : 1;
+    float most = 0;
+    for (int k = 0; k < colors; k++)
+        most = seen[k] > most ? seen[k] : most;
+    for (int c = 0; c < channels; c++) {
+        float sum = 0;
+        for (int k = 0; k < colors; k++)
+            sum += (colors == 1 ? 1 : matrix[c][k]) * seen[k];
+        out[c] = sum > 1 || (measured && most >= 1) ? 1 : sum > 0 ? sum : 0;
+    }
+}
+
+static void take(const libraw_processed_image_t *made, const float (*matrix)[4], bool measured, img *out)
+{
+    const uint16_t *codes = (const void *)made->data;
+    size_t colors = made->colors, channels = (size_t)out->channels;
+    for (size_t i = 0, pixels = (size_t)out->width * (size_t)out->height; i < pixels; i++) {
+        float seen[4];
+        for (size_t k = 0; k < colors; k++)
+            seen[k] = (float)codes[i * colors + k] / 65535;
+        mix(matrix, seen, (int)colors, measured, out->data + i * channels, (int)channels);
+    }
 }
 
 status picture_read_raw(const char *path, picture_colour how, img *color)
@@ -96,11 +116,12 @@ status picture_read_raw(const char *path, picture_colour how, img *color)
     status s = open_raw(path, &damaged, &file);
     if (s != OK) return s;
     s = develop(file, path, how == PICTURE_LINEARIZE, &made);
-    raw.close(file);
     if (s == OK && damaged) s = refusal(path, LIBRAW_DATA_ERROR);
+    if (s == OK && (made->colors < 1 || made->colors > 4)) s = refusal(path, LIBRAW_FILE_UNSUPPORTED);
     if (s == OK) s = img_new(color, made->width, made->height, made->colors < 3 ? 1 : 3);
-    if (s == OK) take(made, color);
+    if (s == OK) take(made, (const float(*)[4])file->color.rgb_cam, how == PICTURE_AS_IT_IS, color);
     if (made) raw.dcraw_clear_mem(made);
+    raw.close(file);
     return s;
 }
 

@@ -7,7 +7,7 @@
 #include "image/picture.h"
 
 enum { COMPRESSION = 259, JPEG = 7, PHOTOMETRIC = 262, YCBCR = 6 };
-enum { BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
+enum { LONG = 4, BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
 enum { KIND = 254, REDUCED = 1, MOSAIC = 32803, LINEAR_RAW = 34892 };
 
 typedef struct tiff {
@@ -27,7 +27,7 @@ static uint64_t number_at(const tiff *t, uint64_t at, int bytes)
     return number;
 }
 
-/* The value of an entry that holds one number of 16 bits; 0 where there is none such. */
+/* The value of an entry that holds one number of 16 or 32 bits; 0 where there is none such. */
 static unsigned value_of(tiff *t, unsigned tag)
 {
     t->big_endian = number_at(t, 0, 1) == 'M';
@@ -38,7 +38,7 @@ static unsigned value_of(tiff *t, unsigned tag)
         uint64_t at = folder + (uint64_t)counter + i * (uint64_t)entry;
         if (number_at(t, at, 2) != tag) continue;
         if (number_at(t, at + 4, offset) != 1) return 0;
-        return (unsigned)number_at(t, at + 4 + (uint64_t)offset, 2);
+        return (unsigned)number_at(t, at + 4 + (uint64_t)offset, number_at(t, at + 2, 2) == LONG ? 4 : 2);
     }
     return 0;
 }
@@ -69,7 +69,9 @@ bool picture_tiff_is_raw(const char *path)
     unsigned meaning = value_of(&t, PHOTOMETRIC);
     bool mosaic = meaning == MOSAIC || meaning == LINEAR_RAW;
     bool first_is_small = value_of(&t, KIND) & REDUCED;
-    bool canon = number_at(&t, 8, 1) == 'C' && number_at(&t, 9, 1) == 'R';
+    /* behind the head, "CR" and its version, where TIFFs may have pixels */
+    bool canon = number_at(&t, 4, 4) == 16 && number_at(&t, 8, 1) == 'C' && number_at(&t, 9, 1) == 'R' &&
+                 number_at(&t, 10, 1) == 2;
     fclose(t.file);
     return mosaic || first_is_small || canon;
 }

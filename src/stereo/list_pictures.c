@@ -1,6 +1,5 @@
 /* Which files of a folder are a capture's pictures. */
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -10,10 +9,12 @@
 #include "stereo/capture_parts.h"
 
 /* Endings of a capture's pictures, and of those that are taken where there are none of the first: telephones leave
- * .jpg and .heic side by side. Raw ones come before what cameras develop, and behind what somebody developed. */
+ * .jpg and .heic side by side. Raw ones come before what cameras develop, and behind what somebody
+ * developed, if that is all of them. */
 static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", NULL};
 static const char *const DEVELOPED[] = {".png", ".tif", ".tiff", ".exr", NULL};
 static const char *const RAWS[] = {IMAGE_RAW_ENDINGS, NULL};
+static const char *const ANY[] = {IMAGE_ENDINGS, NULL};
 static const char *const OTHERS[] = {".webp", ".heic", ".heif", ".avif", ".hdr", NULL};
 
 static bool has_stem(const char *name, const char *stem)
@@ -43,7 +44,7 @@ static status refuse_empty(const char *folder, bool numbered)
 {
     char **names;
     size_t count;
-    status s = file_list_deep(folder, PICTURES, &names, &count);
+    status s = file_list_deep(folder, ANY, &names, &count);
     if (s != OK) return s;
     char *below = NULL, *slash = NULL;
     for (size_t i = 0; i < count && !slash; i++) {
@@ -83,14 +84,22 @@ static status list_kinds(const char *folder, const char *const *endings, bool nu
     return OK;
 }
 
+static status count_kinds(const char *folder, const char *const *endings, bool numbered, size_t *count)
+{
+    char **names;
+    status s = list_kinds(folder, endings, numbered, &names, count);
+    if (s == OK && *count) file_list_free(names, *count);
+    return s;
+}
+
 static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
 {
     static const char *const *const kinds[] = {RAWS, PICTURES, OTHERS};
-    status s = list_kinds(folder, DEVELOPED, numbered, names, count);
-    bool developed = s == OK && *count > 0;
-    if (developed) file_list_free(*names, *count);
+    size_t developed = 0, raw = 0;
+    status s = count_kinds(folder, DEVELOPED, numbered, &developed);
+    if (s == OK) s = count_kinds(folder, RAWS, numbered, &raw);
     *count = 0;
-    for (int i = developed; i < 3 && s == OK && *count == 0; i++)
+    for (int i = raw <= developed; i < 3 && s == OK && *count == 0; i++)
         s = list_kinds(folder, kinds[i], numbered, names, count);
     return s == OK && *count == 0 ? refuse_empty(folder, numbered) : s;
 }
@@ -112,11 +121,10 @@ static bool ends_as(const char *name, const char *other)
 
 status pst_find_ambient(const char *folder, const char *picture, char **path)
 {
-    static const char *const any[] = {IMAGE_ENDINGS, NULL};
     char **names;
     size_t count, found = SIZE_MAX;
     *path = NULL;
-    status s = file_list(folder, any, &names, &count);
+    status s = file_list(folder, ANY, &names, &count);
     if (s != OK) return s;
     for (size_t i = 0; i < count; i++) {
         const char *slash = strrchr(names[i], '/'), *name = slash ? slash + 1 : names[i];

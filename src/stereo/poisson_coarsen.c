@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "stereo/poisson_level.h"
 
-/* A link below this share of either end's strongest joins nothing. */
+/* A link below this share of the strongest of both its ends joins nothing. */
 static const float STRONG = 0.1f;
 /* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
  * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of
@@ -75,21 +75,12 @@ static void look_at_nodes(const coarsening *c, int begin, int end)
     }
 }
 
-/* The least node that stands for i; the way there becomes shorter. */
-static int root_of(int *towards, int i)
+/* begin: the strip's first node, before which another thread is at work. */
+static void join(const coarsening *c, int begin, int i, int j, float weight)
 {
-    while (towards[i] != i)
-        i = towards[i] = towards[towards[i]];
-    return i;
-}
-
-static void join(const coarsening *c, int i, int j, float weight)
-{
-    int *parent = c->fine->parent;
-    if (j >= i || c->block[i] != c->block[j]) return;
+    if (j < begin || j >= i || c->block[i] != c->block[j]) return;
     if (!(weight > STRONG * fminf(c->strongest[i], c->strongest[j]))) return;
-    int one = root_of(parent, i), other = root_of(parent, j);
-    parent[one > other ? one : other] = one < other ? one : other;
+    poisson_join(c->fine->parent, i, j);
 }
 
 /* Parents become the least node of those joined. */
@@ -103,7 +94,7 @@ static void join_strip(void *context, size_t strip)
         links_of(c->fine, i, &l);
         parent[i] = i;
         for (int k = 0; k < l.count; k++)
-            join(c, i, l.node[k], l.weight[k]);
+            join(c, begin, i, l.node[k], l.weight[k]);
     }
     c->made[strip] = 0;
     for (int i = begin; i < end; i++) {

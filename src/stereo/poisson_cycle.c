@@ -41,40 +41,52 @@ typedef struct passage {
     bool odd; /* which half of the chessboard */
 } passage;
 
-/* Gauss-Seidel on one half of the chessboard, whose nodes have their neighbours in the other. */
+/* Gauss-Seidel on one half of the chessboard, whose nodes have their neighbours in the other, or in their own block. */
+static void smooth_at(const passage *p, int i)
+{
+    const poisson_level *l = p->fine;
+    if (l->odd[i] != p->odd) return;
+    double d = poisson_diagonal(l, i);
+    if (d > 0) p->x[i] = (p->b[i] + poisson_around(l, i, p->x)) / d;
+}
+
 static void smooth_strip(void *context, size_t strip)
 {
     const passage *p = context;
-    const poisson_level *l = p->fine;
-    for (int i = l->strip[strip]; i < l->strip[strip + 1]; i++) {
-        if (l->odd[i] != p->odd) continue;
-        double d = poisson_diagonal(l, i);
-        if (d > 0) p->x[i] = (p->b[i] + poisson_around(l, i, p->x)) / d;
-    }
+    for (int i = p->fine->strip[strip]; i < p->fine->strip[strip + 1]; i++)
+        smooth_at(p, i);
 }
 
-/* The half that was smoothed last has no residual. */
+/* The other way around, so that the cycle as a whole is symmetric. */
+static void smooth_strip_back(void *context, size_t strip)
+{
+    const passage *p = context;
+    for (int i = p->fine->strip[strip + 1] - 1; i >= p->fine->strip[strip]; i--)
+        smooth_at(p, i);
+}
+
+/* The pixels that were smoothed last have no residual. */
 static void restrict_strip(void *context, size_t strip)
 {
     const passage *p = context;
     const poisson_level *l = p->fine;
     for (int i = l->strip[strip]; i < l->strip[strip + 1]; i++)
-        if (!l->odd[i]) p->coarse->b[l->parent[i]] += poisson_residual(l, i, p->b, p->x);
+        if (!l->grid || !l->odd[i]) p->coarse->b[l->parent[i]] += poisson_residual(l, i, p->b, p->x);
 }
 
-/* The half that is smoothed first needs no correction. */
+/* The pixels that are smoothed first need no correction. */
 static void correct_strip(void *context, size_t strip)
 {
     const passage *p = context;
     const poisson_level *l = p->fine;
     for (int i = l->strip[strip]; i < l->strip[strip + 1]; i++)
-        if (!l->odd[i]) p->x[i] += p->coarse->x[l->parent[i]];
+        if (!l->grid || !l->odd[i]) p->x[i] += p->coarse->x[l->parent[i]];
 }
 
-static void smooth(passage *p, bool odd)
+static void smooth(passage *p, bool odd, void (*strip)(void *context, size_t i))
 {
     p->odd = odd;
-    parallel_for(POISSON_STRIPS, smooth_strip, p);
+    parallel_for(POISSON_STRIPS, strip, p);
 }
 
 /* Even and odd nodes, correction from the coarser level, odd and even nodes. */
@@ -83,8 +95,8 @@ static status cycle(poisson_stack *s, int at, const double *b, double *x)
     if (at == s->depth - 1) return poisson_factor_solve(s->factor, b, x);
     passage p = {.fine = &s->levels[at], .coarse = &s->levels[at + 1], .b = b, .x = x};
     size_t bytes = (size_t)p.coarse->count * sizeof *p.coarse->b;
-    smooth(&p, false);
-    smooth(&p, true);
+    smooth(&p, false, smooth_strip);
+    smooth(&p, true, smooth_strip);
     memset(p.coarse->b, 0, bytes);
     memset(p.coarse->x, 0, bytes);
     parallel_for(POISSON_STRIPS, restrict_strip, &p);
@@ -93,8 +105,8 @@ static status cycle(poisson_stack *s, int at, const double *b, double *x)
     for (int i = 0; i < times && result == OK; i++)
         result = cycle(s, at + 1, p.coarse->b, p.coarse->x);
     parallel_for(POISSON_STRIPS, correct_strip, &p);
-    smooth(&p, true);
-    smooth(&p, false);
+    smooth(&p, true, smooth_strip_back);
+    smooth(&p, false, smooth_strip_back);
     return result;
 }
 

@@ -46,7 +46,8 @@ static status refuse(const poisson_factor *f)
                 f->common.status);
 }
 
-/* A column a node: its links to later ones. */
+/* A column a node: its links to later ones. The diagonal is summed up from what stands there, since a link's weight may
+ * be rounded another way at its other end, and weak ones must not make the whole indefinite. */
 static void fill(poisson_factor *f, const poisson_graph *g)
 {
     int *start = f->matrix->p, *row = f->matrix->i, at = 0;
@@ -54,7 +55,7 @@ static void fill(poisson_factor *f, const poisson_graph *g)
     for (int i = 0; i < g->count; i++) {
         start[i] = at;
         row[at] = i;
-        value[at++] = g->diagonal[i];
+        value[at++] = g->pull[i];
         for (int k = g->start[i]; k < g->start[i + 1]; k++) {
             if (g->neighbour[k] < i) continue;
             row[at] = g->neighbour[k];
@@ -62,6 +63,11 @@ static void fill(poisson_factor *f, const poisson_graph *g)
         }
     }
     start[g->count] = at;
+    for (int i = 0; i < g->count; i++)
+        for (int k = start[i] + 1; k < start[i + 1]; k++) {
+            value[start[i]] -= value[k];
+            value[start[row[k]]] -= value[k];
+        }
 }
 
 status poisson_factor_new(const poisson_graph *g, poisson_factor **out)

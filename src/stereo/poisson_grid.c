@@ -1,7 +1,7 @@
 #include <stdbool.h>
 
 #include "base/memory.h"
-#include "stereo/poisson.h"
+#include "stereo/poisson_level.h"
 
 static status allocate(poisson_grid *g)
 {
@@ -36,25 +36,14 @@ static void link_neighbours(poisson_grid *g)
     }
 }
 
-/* The least node that stands for i; the way there becomes shorter. */
-static int root_of(int *towards, int i)
-{
-    while (towards[i] != i)
-        i = towards[i] = towards[towards[i]];
-    return i;
-}
-
 /* Union-find: a node joins the pieces of those before it. */
 static void number_pieces(poisson_grid *g)
 {
     int *piece = g->piece;
     for (int i = 0; i < g->count; i++) {
         piece[i] = i;
-        for (int k = 0; k < 2; k++) {
-            if (g->previous[k][i] < 0) continue;
-            int one = root_of(piece, i), other = root_of(piece, g->previous[k][i]);
-            piece[one > other ? one : other] = one < other ? one : other;
-        }
+        for (int k = 0; k < 2; k++)
+            if (g->previous[k][i] >= 0) poisson_join(piece, i, g->previous[k][i]);
     }
     for (int i = 0; i < g->count; i++)
         piece[i] = piece[piece[i]]; /* a root already, since smaller nodes point to theirs */

@@ -11,7 +11,7 @@
 enum { POISSON_STRIPS = 64 };
 
 /* A node stands for pixels of one block, of 2^k × 2^k of them; a block may have several. Links lead from a block to
- * those beside, above and below it. */
+ * those beside, above and below it; weak ones, at a jump, also from node to node of one block. */
 typedef struct poisson_graph {
     int count, width, height; /* width, height: in blocks */
     int *block;               /* count: y × width + x, row by row, in a row in any order */
@@ -34,7 +34,7 @@ typedef struct poisson_level {
     poisson_graph graph;
     int count;
     int *parent;                   /* count: node of the next level */
-    bool *odd;                     /* count: of the chessboard's black blocks, where no two neighbours are */
+    bool *odd;                     /* count: of the chessboard's black blocks, none of which lies beside another */
     int strip[POISSON_STRIPS + 1]; /* first nodes; a strip has an even number of rows */
     double *x, *b;                 /* correction and right-hand side; the finest level has none */
 } poisson_level;
@@ -94,6 +94,21 @@ static inline double poisson_around(const poisson_level *l, int i, const double 
 static inline double poisson_residual(const poisson_level *l, int i, const double *b, const double *x)
 {
     return b[i] - poisson_diagonal(l, i) * x[i] + poisson_around(l, i, x);
+}
+
+/* Union-find over nodes that point to smaller ones of their set, or to themselves. The way to the least one becomes
+ * shorter. */
+static inline int poisson_root(int *towards, int i)
+{
+    while (towards[i] != i)
+        i = towards[i] = towards[towards[i]];
+    return i;
+}
+
+static inline void poisson_join(int *towards, int i, int j)
+{
+    int one = poisson_root(towards, i), other = poisson_root(towards, j);
+    towards[one > other ? one : other] = one < other ? one : other;
 }
 
 /* Sparse Cholesky of a graph's operator. */

@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -152,6 +153,8 @@ static double step(poisson_solver *s, int begin, int end)
 static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
 {
     double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
+    if (!(enough > 0)) memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
+    if (!(enough > 0)) square = 0;
     for (*steps = 0; *steps < most && square > enough; ++*steps) {
         status result = poisson_stack_cycle(&s->stack, s->r, s->z);
         if (result != OK) return result;
@@ -196,6 +199,7 @@ static status iterate(poisson_solver *s, double tolerance)
     if (s->steps_at_first) result = conjugate_gradients(s, tolerance, most, &steps, &left);
     if (result != OK || left <= 1) return result;
     result = build(s);
+    if (result == ERROR_DEVICE) return factorize(s);
     if (result == OK) result = conjugate_gradients(s, tolerance, MOST_STEPS, &s->steps_at_first, &left);
     return result == OK && left > MOST_ASTRAY * MOST_ASTRAY ? factorize(s) : result;
 }

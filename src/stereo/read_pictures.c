@@ -1,5 +1,4 @@
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,7 +58,7 @@ static status store(const reading *r, const img *picture, int bits, uint16_t **o
         float value = picture->data[i] * scale, left = ambient ? value - ambient[i] : value;
         /* what the sensor clipped stays recognizable after the subtraction */
         float code = left * 65535 + 0.5f;
-        codes[i] = value >= 1 ? 65535 : code > 0 ? (uint16_t)code : 0;
+        codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
     }
     *out = codes;
     return OK;

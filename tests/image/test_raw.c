@@ -81,6 +81,27 @@ static void what_the_sensor_saw_is_read_to_scale(void **state)
     img_free(&image);
 }
 
+static float too_green(int x, int y, int channel)
+{
+    (void)x;
+    (void)y;
+    return channel == 1 ? 2 : 0.25f;
+}
+
+static void what_saturates_in_one_colour_is_no_measurement(void **state)
+{
+    (void)state;
+    const float green[3] = {0.25f, 1, 0.25f}, white[3] = {1, 1, 1};
+    dng d = picture(too_green);
+    img image = {0};
+    read_measured(&d, &image);
+    assert_colour(&image, WIDTH / 2, HEIGHT / 2, white, 1);
+    img_free(&image);
+    assert_int_equal(img_read(scratch_path("a.dng"), &image, NULL), OK);
+    assert_colour(&image, WIDTH / 2, HEIGHT / 2, green, 1);
+    img_free(&image);
+}
+
 /* A set's pictures keep their colours against each other, whatever each one's white balance. */
 static void photographs_are_white_balanced_and_measurements_are_not(void **state)
 {
@@ -122,10 +143,13 @@ static void a_preview_is_not_the_picture(void **state)
     img image = {0};
     dng d = picture(plain);
     d.preview = true;
-    read_measured(&d, &image);
-    assert_int_equal(image.width, WIDTH);
-    assert_colour(&image, WIDTH / 2, HEIGHT / 2, orange, 1);
-    img_free(&image);
+    for (int i = 0; i < 2; i++) {
+        d.big_endian = i;
+        read_measured(&d, &image);
+        assert_int_equal(image.width, WIDTH);
+        assert_colour(&image, WIDTH / 2, HEIGHT / 2, orange, 1);
+        img_free(&image);
+    }
 }
 
 static void cut(const char *name, off_t bytes)
@@ -157,6 +181,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         in_scratch(what_the_sensor_saw_is_read_to_scale),
+        in_scratch(what_saturates_in_one_colour_is_no_measurement),
         in_scratch(photographs_are_white_balanced_and_measurements_are_not),
         in_scratch(a_camera_on_its_side_gives_an_upright_picture),
         in_scratch(a_preview_is_not_the_picture),

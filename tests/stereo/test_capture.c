@@ -344,6 +344,11 @@ static void raw_pictures_come_before_what_the_camera_made_of_them(void **state)
     assert_int_equal(c.count, 3);
     assert_string_equal(c.name[1], "b.NEF");
     pst_capture_free(&c);
+    write_flat("chart.png", 6, 4, 3, 0.5f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_string_equal(c.name[1], "b.NEF");
+    pst_capture_free(&c);
+    assert_int_equal(unlink(scratch_path("chart.png")), 0);
     three_pictures(IMG_LINEAR16);
     for (int i = 0; i < 3; i++)
         assert_int_equal(unlink(scratch_path((const char *[]){"a.jpg", "b.jpg", "c.jpg"}[i])), 0);

@@ -12,13 +12,14 @@ enum { BLACK = 512, WHITE = 16000, ENTRIES = 32, ROOM = 8192 };
 /* A TIFF in the making: folders of entries, then their values, then pixels. */
 typedef struct tiff {
     uint8_t *data;
-    uint32_t size, entries_at, room_left;
+    uint32_t size, entries_at;
+    bool big_endian;
 } tiff;
 
 static void put(tiff *t, uint32_t at, uint32_t value, int bytes)
 {
     for (int i = 0; i < bytes; i++)
-        t->data[at + (uint32_t)i] = (uint8_t)(value >> 8 * i);
+        t->data[at + (uint32_t)(t->big_endian ? bytes - 1 - i : i)] = (uint8_t)(value >> 8 * i);
 }
 
 static void open_folder(tiff *t)
@@ -33,7 +34,7 @@ static void add(tiff *t, uint32_t tag, uint32_t type, uint32_t count, const uint
 {
     const int bytes = type == SHORT ? 2 : type == BYTE || type == ASCII ? 1 : 4;
     uint32_t numbers = type == RATIONAL || type == SIGNED_RATIONAL ? 2 * count : count, folder = t->entries_at - 2;
-    uint32_t at, entry, used = (uint32_t)t->data[folder];
+    uint32_t at, entry, used = (uint32_t)t->data[folder + t->big_endian];
     entry = t->entries_at + 12 * used;
     put(t, folder, used + 1, 2);
     put(t, entry, tag, 2);
@@ -133,9 +134,12 @@ static void put_preview(tiff *t)
 
 void dng_write(const char *path, const dng *d)
 {
-    tiff t = {.data = calloc(1, ROOM + 2 * (size_t)d->width * (size_t)d->height), .size = 8};
+    tiff t = {
+        .data = calloc(1, ROOM + 2 * (size_t)d->width * (size_t)d->height), .size = 8, .big_endian = d->big_endian};
     if (!t.data) abort();
-    memcpy(t.data, "II*\0\10", 5);
+    memcpy(t.data, d->big_endian ? "MM" : "II", 2);
+    put(&t, 2, 42, 2);
+    put(&t, 4, 8, 4);
     open_folder(&t);
     add_camera(&t, d);
     if (d->preview) {

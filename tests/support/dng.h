@@ -14,6 +14,7 @@ typedef struct dng {
     float neutral[3];                        /* what the camera's white balance takes for white */
     int orientation;                         /* EXIF */
     bool preview;                            /* a small picture comes first */
+    bool big_endian;
 } dng;
 
 enum { DNG_PREVIEW_SIDE = 16 };
