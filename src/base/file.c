@@ -89,6 +89,12 @@ char *file_folder_of(const char *path)
     return slash ? strndup(path, slash > path ? (size_t)(slash - path) : 1) : strdup(".");
 }
 
+const char *file_name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 size_t file_text_mark(const char *text, size_t size)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};
@@ -145,7 +151,7 @@ static const char *end_of_long_name(const char *name)
 
 status file_temporary(const char *path, char **temporary)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = file_name_of(path);
     char *out = NULL;
     status s = check_replaceable(path);
     if (s != OK) return s;

@@ -17,6 +17,8 @@ FILE *file_open(const char *path);
 status file_read(const char *path, size_t limit, char **data, size_t *size);
 /* The folder that a path lies in, malloc'ed: "." of a name alone, "/" of what is there; NULL without memory. */
 char *file_folder_of(const char *path);
+/* What stands behind the last slash, in the path itself. */
+const char *file_name_of(const char *path);
 /* Bytes of the mark of UTF-8 that Windows puts before a text; 0 without one. */
 size_t file_text_mark(const char *text, size_t size);
 

@@ -16,16 +16,10 @@ static const char *const raw_endings[] = {IMAGE_RAW_ENDINGS, NULL};
 
 /* ---- names ---- */
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Length of path without its last ending. */
 static size_t stem_length(const char *path)
 {
-    const char *name = base_name(path), *dot = strrchr(name, '.');
+    const char *name = file_name_of(path), *dot = strrchr(name, '.');
     return dot && dot > name ? (size_t)(dot - path) : strlen(path);
 }
 
@@ -52,7 +46,7 @@ char *photo_output_inside(const char *input, const char *name, const char *asked
 const char *photo_without_maps_name(char *input)
 {
     char *slash = strrchr(input, '/');
-    if (strcmp(base_name(input), "maps.exr") != 0 || !file_exists(input)) return input;
+    if (strcmp(file_name_of(input), "maps.exr") != 0 || !file_exists(input)) return input;
     if (!slash) return ".";
     slash[slash == input] = 0;
     return input;
@@ -71,14 +65,14 @@ static bool is_result_name(const char *path)
                                           "mask.png",           "mesh.png",     "normal.png", "overview.png",
                                           "reconstruction.png", "roughness.png"};
     for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
-        if (strcmp(base_name(path), results[i]) == 0) return true;
+        if (strcmp(file_name_of(path), results[i]) == 0) return true;
     return false;
 }
 
 /* folder/NAME + suffix if that file exists, else NULL; *memory says whether NULL means no memory. */
 static char *companion(const char *folder, const char *photo, const char *suffix, bool *memory)
 {
-    const char *name = base_name(photo);
+    const char *name = file_name_of(photo);
     char *stem = format_name(name, stem_length(name), suffix), *path = stem ? file_join(folder, stem) : NULL;
     free(stem);
     *memory = path != NULL;
@@ -186,7 +180,7 @@ static status choose_masks(photo_list *list, const char *mask, bool batch)
 static bool is_same_place(const char *one, const char *other)
 {
     if (strcmp(one, other) == 0) return true;
-    if (strcmp(base_name(one), base_name(other)) != 0) return false;
+    if (strcmp(file_name_of(one), file_name_of(other)) != 0) return false;
     char *a = file_folder_of(one), *b = file_folder_of(other);
     bool same = a && b && file_is_same(a, b);
     free(a);
@@ -213,7 +207,7 @@ static status choose_output(photo_list *list, size_t i, const char *folder)
         else
             snprintf(suffix, sizeof suffix, "%s", ending);
         if (folder) {
-            const char *photo = base_name(job->photo);
+            const char *photo = file_name_of(job->photo);
             char *last = format_name(photo, stem_length(photo), suffix);
             name = last ? file_join(folder, last) : NULL;
             free(last);
@@ -271,7 +265,7 @@ static status find_shipped(const char *name, char **path)
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return OK;
     program[length] = 0;
-    int folder = (int)(base_name(program) - program);
+    int folder = (int)(file_name_of(program) - program);
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         if (asprintf(path, "%.*s%s/%s.safetensors", folder, program, places[i], name) < 0) return no_memory();
         if (file_exists(*path)) return OK;

@@ -175,7 +175,7 @@ static status write_all(const stereo_files *files, const staging *t, const stere
  * that are solved, where it would replace one of them or be one more the next time. */
 static status check_texture(const stereo_files *files, const staging *maps, const char *mesh, const char *folder)
 {
-    const char *slash = strrchr(mesh, '/'), *name = slash ? slash + 1 : mesh, *input = files->inputs[0];
+    const char *name = file_name_of(mesh), *input = files->inputs[0];
     char texture[NAME_MAX + 1], aside[PATH_MAX];
     if (!file_ends_in(name, ".obj")) return OK;
     snprintf(texture, sizeof texture, "%.*s.png", (int)strlen(name) - 4, name);
@@ -195,14 +195,13 @@ static status stage_mesh(const stereo_files *files, const staging *maps, const c
 {
     *out = NULL;
     if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
-    const char *slash = strrchr(path, '/');
     char *folder = file_folder_of(path);
     status s = folder ? staging_begin(folder, files->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
     s = s == OK ? check_texture(files, maps, path, folder) : fail_in(s, "cannot write %s", path);
     free(folder);
     if (s != OK) return s;
     char aside[PATH_MAX];
-    return write_mesh(r, staging_path(*out, slash ? slash + 1 : path, aside));
+    return write_mesh(r, staging_path(*out, file_name_of(path), aside));
 }
 
 /* The folder first: it has the most to fail. */

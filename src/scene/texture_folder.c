@@ -84,8 +84,7 @@ static bool is_bare(const char *name, size_t length)
 /* The last word that names a map decides, and not the first of several: a material may be called "metal". */
 static source classify(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    size_t start = slash ? (size_t)(slash + 1 - path) : 0, end = (size_t)(strrchr(path, '.') - path);
+    size_t start = (size_t)(file_name_of(path) - path), end = (size_t)(strrchr(path, '.') - path);
     source s = {.path = path, .kind = MAP_ALBEDO, .stem = end};
     for (size_t at = is_bare(path + start, end - start) ? start : start + strcspn(path + start, "_- ."); at < end;) {
         size_t length = strcspn(path + at, "_- .");

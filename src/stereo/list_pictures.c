@@ -9,8 +9,8 @@
 #include "stereo/capture_parts.h"
 
 /* Endings of a capture's pictures, and of those that are taken where there are none of the first: telephones leave
- * .jpg and .heic side by side. Raw ones come before what cameras develop, and behind what somebody
- * developed, if that is all of them. */
+ * .jpg and .heic side by side. Raw ones come before what cameras develop, and behind what somebody developed, if that
+ * is all of them. */
 static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", NULL};
 static const char *const DEVELOPED[] = {".png", ".tif", ".tiff", ".exr", NULL};
 static const char *const RAWS[] = {IMAGE_RAW_ENDINGS, NULL};
@@ -69,7 +69,8 @@ static status list_kinds(const char *folder, const char *const *endings, bool nu
     if (s != OK) return s;
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
-        char *path = (*names)[i], *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+        char *path = (*names)[i];
+        const char *name = file_name_of(path);
         if (is_beside_the_capture(name) || (numbered && !is_numbered(name))) {
             free(path);
             continue;
@@ -127,7 +128,7 @@ status pst_find_ambient(const char *folder, const char *picture, char **path)
     status s = file_list(folder, ANY, &names, &count);
     if (s != OK) return s;
     for (size_t i = 0; i < count; i++) {
-        const char *slash = strrchr(names[i], '/'), *name = slash ? slash + 1 : names[i];
+        const char *name = file_name_of(names[i]);
         if (has_stem(name, "ambient") && (found == SIZE_MAX || ends_as(name, picture))) found = i;
     }
     if (found != SIZE_MAX && !(*path = strdup(names[found]))) s = fail(ERROR_MEMORY, "no memory for a file name");

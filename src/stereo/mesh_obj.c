@@ -16,12 +16,6 @@ static char *with_ending(const char *path, const char *ending)
     return out;
 }
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 typedef struct obj {
     const surface_mesh *mesh;
     const pst_mesh_source *from;
@@ -68,7 +62,7 @@ static void print_mesh(FILE *f, const void *context)
 {
     const obj *o = context;
     const surface_mesh *m = o->mesh;
-    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", base_name(o->material));
+    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", file_name_of(o->material));
     for (size_t v = 0; v < m->vertices; v++)
         print_vertex(f, o, v);
     for (size_t t = 0; t < m->triangles; t++)
@@ -89,7 +83,7 @@ static status write_material(const char *path, const char *texture)
     char *text = NULL;
     int length = asprintf(&text, "# written by merlin\nnewmtl surface\nKa 0 0 0\n%s\nKs 0 0 0\nillum 1\n%s%s%s",
                           texture ? "Kd 1 1 1" : "Kd 0.6 0.6 0.6", texture ? "map_Kd " : "",
-                          texture ? base_name(texture) : "", texture ? "\n" : "");
+                          texture ? file_name_of(texture) : "", texture ? "\n" : "");
     if (length < 0) return fail(ERROR_MEMORY, "no memory to write %s", path);
     status s = file_write(path, text, (size_t)length);
     free(text);

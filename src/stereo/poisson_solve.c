@@ -153,8 +153,10 @@ static double step(poisson_solver *s, int begin, int end)
 static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
 {
     double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
-    if (!(enough > 0)) memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
-    if (!(enough > 0)) square = 0;
+    if (!(enough > 0)) { /* b = 0 */
+        memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
+        square = 0;
+    }
     for (*steps = 0; *steps < most && square > enough; ++*steps) {
         status result = poisson_stack_cycle(&s->stack, s->r, s->z);
         if (result != OK) return result;

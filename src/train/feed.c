@@ -10,7 +10,7 @@
 
 enum { POINT_BUFFERS = 12, BUFFERS = 15 };
 
-/* What one thread does for one place of the batch. Failures keep their words, which are per thread. */
+/* What one thread does for one place of the batch. */
 typedef struct item {
     trn_view view;
     size_t sample;
