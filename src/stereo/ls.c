@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "stereo/ls_lanes.h"
 #include "stereo/ls_sums.h"
 
 /* Pixels looked at to choose what counts as dark. */
@@ -90,25 +91,11 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-/* A component of sixteen pixels, zero outside the mask. */
+/* A component of LANES pixels, zero outside the mask. */
 static inline void take(const float *from, const lane_bits *counts, lanes *to)
 {
     memcpy(to, from, sizeof *to);
     *to = (lanes)((lane_bits)*to & *counts);
-}
-
-/* Three components side by side, each store a whole register: compilers weave them value by value. */
-static inline void weave(const lanes *x, const lanes *y, const lanes *z, float *to)
-{
-    lanes some = __builtin_shufflevector(*x, *y, 0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
-    lanes all = __builtin_shufflevector(some, *z, 0, 1, 16, 3, 4, 17, 6, 7, 18, 9, 10, 19, 12, 13, 20, 15);
-    memcpy(to, &all, sizeof all);
-    some = __builtin_shufflevector(*x, *y, 21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
-    all = __builtin_shufflevector(some, *z, 0, 21, 2, 3, 22, 5, 6, 23, 8, 9, 24, 11, 12, 25, 14, 15);
-    memcpy(to + LANES, &all, sizeof all);
-    some = __builtin_shufflevector(*x, *y, 0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
-    all = __builtin_shufflevector(some, *z, 26, 1, 2, 27, 4, 5, 28, 7, 8, 29, 10, 11, 30, 13, 14, 31);
-    memcpy(to + 2 * LANES, &all, sizeof all);
 }
 
 static void store_triples(const float from[3][LS_BLOCK], int count, const float *mask, float *to)
@@ -121,7 +108,7 @@ static void store_triples(const float from[3][LS_BLOCK], int count, const float 
         take(from[0] + i, &counts, &x);
         take(from[1] + i, &counts, &y);
         take(from[2] + i, &counts, &z);
-        weave(&x, &y, &z, to + (size_t)i * 3);
+        lanes_weave(&x, &y, &z, to + (size_t)i * 3);
     }
     for (; i < count; i++)
         for (int c = 0; c < 3; c++)

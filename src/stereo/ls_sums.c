@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stereo/ls_lanes.h"
+
 /* Pictures added at once; pictures whose bits fill a word; pixels side by side. */
 enum { TOGETHER = 2, WORD = 32, PRODUCTS = 8, CACHE_LINE = 64 };
 
@@ -55,107 +57,83 @@ void ls_lights_free(ls_lights *l)
 
 /* ---- right sides ---- */
 
-typedef uint32_t lane_words __attribute__((vector_size(LANES * sizeof(uint32_t))));
-typedef uint16_t lane_codes __attribute__((vector_size(2 * LANES * sizeof(uint16_t)))); /* of twice as many pixels */
-
-/* Sums of LANES pixels while pictures are added. */
-typedef struct lane_sums {
-    lanes right[3][3], square;
-    lane_bits lit;
-} lane_sums;
-
-static inline void load(lane_sums *to, const ls_sums *s, const uint32_t *lit, int channels, int i)
+static inline void which_grey(const lane_colour *codes, ls_limits limits, lane_bits *counts)
 {
-    for (int c = 0; c < channels; c++)
-        for (int k = 0; k < 3; k++)
-            memcpy(&to->right[c][k], &s->right[c][k][i], sizeof(lanes));
-    memcpy(&to->square, &s->square[i], sizeof(lanes));
-    memcpy(&to->lit, &lit[i], sizeof(lane_bits));
+    *counts = (codes->r > limits.low) & (codes->r < limits.high);
 }
 
-static inline void store(const lane_sums *from, ls_sums *s, uint32_t *lit, int channels, int i)
+static inline void which_colour(const lane_colour *codes, ls_limits limits, lane_bits *counts)
 {
-    for (int c = 0; c < channels; c++)
-        for (int k = 0; k < 3; k++)
-            memcpy(&s->right[c][k][i], &from->right[c][k], sizeof(lanes));
-    memcpy(&s->square[i], &from->square, sizeof(lanes));
-    memcpy(&lit[i], &from->lit, sizeof(lane_bits));
+    *counts = (codes->r + codes->g + codes->b > limits.low) & (codes->r < limits.high) & (codes->g < limits.high) &
+              (codes->b < limits.high);
 }
 
-/* Codes of one channel as radiance, zero where they do not count. */
-static inline void add_channel(lane_sums *s, int channel, const lanes *codes, const lane_bits *counts,
-                               const ls_light *l)
+static inline void add_lit(uint32_t *lit, const lane_bits *a, const lane_bits *b, const ls_light *l)
 {
-    lanes v = *codes * l->scale[channel];
-    v = (lanes)((lane_bits)v & *counts);
-    s->right[channel][0] += v * l->x;
-    s->right[channel][1] += v * l->y;
-    s->right[channel][2] += v * l->z;
-    s->square += v * v;
+    lane_bits sum;
+    memcpy(&sum, lit, sizeof sum);
+    sum |= (*a & l[0].bit) | (*b & l[1].bit);
+    memcpy(lit, &sum, sizeof sum);
 }
 
-/* LANES pixels' codes; a grey picture has only the first. */
-typedef struct lane_colour {
-    lanes r, g, b;
-} lane_colour;
-
-/* The even codes of a vector, and the odd ones. */
-static inline void widen(const lane_codes *codes, lanes *even, lanes *odd)
+/* Codes as radiance, zero where they do not count. */
+static inline void radiance(const lanes *codes, const lane_bits *counts, float scale, lanes *out)
 {
-    *even = __builtin_convertvector((lane_bits)((lane_words)*codes & 0xffff), lanes);
-    *odd = __builtin_convertvector((lane_bits)((lane_words)*codes >> 16), lanes);
+    lanes v = *codes * scale;
+    *out = (lanes)((lane_bits)v & *counts);
 }
 
-/* Twice LANES pixels from here on: the first half's and the second's. Before codes are widened the halves' alternate.
- */
-static inline void take_grey(const uint16_t *from, lane_colour *first, lane_colour *second)
+static inline void add_component(float *sums, const lanes *a, const lanes *b, float of_a, float of_b)
 {
-    lane_codes in;
-    memcpy(&in, from, sizeof in);
-    lane_codes mixed = __builtin_shufflevector(in, in, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23, 8, 24, 9,
-                                               25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
-    widen(&mixed, &first->r, &second->r);
+    lanes sum;
+    memcpy(&sum, sums, sizeof sum);
+    sum += *a * of_a;
+    sum += *b * of_b;
+    memcpy(sums, &sum, sizeof sum);
 }
 
-/* Every third code of 96: from the first two vectors what they have, the rest from the last one. */
-static inline void take_colour(const uint16_t *from, lane_colour *first, lane_colour *second)
+/* Which of LANES pixels count in each of two pictures. */
+typedef struct lane_counts {
+    lane_bits a, b;
+} lane_counts;
+
+/* One channel in two pictures: its sums travel between registers and cache once for both, and only while it is its
+ * turn, because there are sixteen registers in some processors. */
+static inline void add_channel(ls_sums *s, int channel, int i, const lanes *codes_a, const lanes *codes_b,
+                               const lane_counts *counts, const ls_light *l)
 {
-    lane_codes p, q, s;
-    memcpy(&p, from, sizeof p);
-    memcpy(&q, from + 2 * LANES, sizeof q);
-    memcpy(&s, from + 4 * LANES, sizeof s);
-    lane_codes some = __builtin_shufflevector(p, q, 0, 48, 3, 51, 6, 54, 9, 57, 12, 60, 15, 63, 18, 0, 21, 0, 24, 0, 27,
-                                              0, 30, 0, 33, 0, 36, 0, 39, 0, 42, 0, 45, 0);
-    lane_codes red = __builtin_shufflevector(some, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 34, 14, 37, 16, 40, 18,
-                                             43, 20, 46, 22, 49, 24, 52, 26, 55, 28, 58, 30, 61);
-    some = __builtin_shufflevector(p, q, 1, 49, 4, 52, 7, 55, 10, 58, 13, 61, 16, 0, 19, 0, 22, 0, 25, 0, 28, 0, 31, 0,
-                                   34, 0, 37, 0, 40, 0, 43, 0, 46, 0);
-    lane_codes green = __builtin_shufflevector(some, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 32, 12, 35, 14, 38, 16, 41,
-                                               18, 44, 20, 47, 22, 50, 24, 53, 26, 56, 28, 59, 30, 62);
-    some = __builtin_shufflevector(p, q, 2, 50, 5, 53, 8, 56, 11, 59, 14, 62, 17, 0, 20, 0, 23, 0, 26, 0, 29, 0, 32, 0,
-                                   35, 0, 38, 0, 41, 0, 44, 0, 47, 0);
-    lane_codes blue = __builtin_shufflevector(some, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 33, 12, 36, 14, 39, 16, 42, 18,
-                                              45, 20, 48, 22, 51, 24, 54, 26, 57, 28, 60, 30, 63);
-    widen(&red, &first->r, &second->r);
-    widen(&green, &first->g, &second->g);
-    widen(&blue, &first->b, &second->b);
+    lanes a, b, square;
+    radiance(codes_a, &counts->a, l[0].scale[channel], &a);
+    radiance(codes_b, &counts->b, l[1].scale[channel], &b);
+    add_component(&s->right[channel][0][i], &a, &b, l[0].x, l[1].x);
+    add_component(&s->right[channel][1][i], &a, &b, l[0].y, l[1].y);
+    add_component(&s->right[channel][2][i], &a, &b, l[0].z, l[1].z);
+    memcpy(&square, &s->square[i], sizeof square);
+    square += a * a;
+    square += b * b;
+    memcpy(&s->square[i], &square, sizeof square);
 }
 
-static inline void add_grey(lane_sums *s, const lane_colour *codes, const ls_light *l, ls_limits limits)
+static inline void add_grey(ls_sums *s, uint32_t *lit, int i, const lane_colour *a, const lane_colour *b,
+                            const ls_light *l, ls_limits limits)
 {
-    lane_bits counts = (codes->r > limits.low) & (codes->r < limits.high);
-    s->lit |= counts & l->bit;
-    add_channel(s, 0, &codes->r, &counts, l);
+    lane_counts counts;
+    which_grey(a, limits, &counts.a);
+    which_grey(b, limits, &counts.b);
+    add_lit(lit + i, &counts.a, &counts.b, l);
+    add_channel(s, 0, i, &a->r, &b->r, &counts, l);
 }
 
-static inline void add_colour(lane_sums *s, const lane_colour *codes, const ls_light *l, ls_limits limits)
+static inline void add_colour(ls_sums *s, uint32_t *lit, int i, const lane_colour *a, const lane_colour *b,
+                              const ls_light *l, ls_limits limits)
 {
-    lane_bits counts = (codes->r + codes->g + codes->b > limits.low) & (codes->r < limits.high) &
-                       (codes->g < limits.high) & (codes->b < limits.high);
-    s->lit |= counts & l->bit;
-    add_channel(s, 0, &codes->r, &counts, l);
-    add_channel(s, 1, &codes->g, &counts, l);
-    add_channel(s, 2, &codes->b, &counts, l);
+    lane_counts counts;
+    which_colour(a, limits, &counts.a);
+    which_colour(b, limits, &counts.b);
+    add_lit(lit + i, &counts.a, &counts.b, l);
+    add_channel(s, 0, i, &a->r, &b->r, &counts, l);
+    add_channel(s, 1, i, &a->g, &b->g, &counts, l);
+    add_channel(s, 2, i, &a->b, &b->b, &counts, l);
 }
 
 /* Values of the same pixels in TOGETHER pictures. */
@@ -171,34 +149,20 @@ static inline places places_from(const ls_light *l, size_t value)
     return p;
 }
 
-/* Pixels i .. i + 2 LANES - 1 of a block; the values are theirs. Written out, because sums in arrays that a loop walks
- * through would not stay in registers. */
+/* Pixels i .. i + 2 LANES - 1 of a block; the values are theirs. */
 static inline void add_lanes(const ls_lights *all, const ls_light *l, places values, ls_sums *s, uint32_t *lit, int i)
 {
-    lane_sums first, second;
-    lane_colour a[TOGETHER], b[TOGETHER]; /* the first half's and the second's, a picture each */
+    lane_colour a[2], b[2]; /* halves of either picture's */
     if (all->channels == 1) {
-        take_grey(values.at[0], &a[0], &b[0]);
-        take_grey(values.at[1], &a[1], &b[1]);
-        load(&first, s, lit, 1, i);
-        add_grey(&first, &a[0], l, all->limits);
-        add_grey(&first, &a[1], l + 1, all->limits);
-        store(&first, s, lit, 1, i);
-        load(&second, s, lit, 1, i + LANES);
-        add_grey(&second, &b[0], l, all->limits);
-        add_grey(&second, &b[1], l + 1, all->limits);
-        store(&second, s, lit, 1, i + LANES);
+        lanes_of_grey(values.at[0], &a[0], &a[1]);
+        lanes_of_grey(values.at[1], &b[0], &b[1]);
+        add_grey(s, lit, i, &a[0], &b[0], l, all->limits);
+        add_grey(s, lit, i + LANES, &a[1], &b[1], l, all->limits);
     } else {
-        take_colour(values.at[0], &a[0], &b[0]);
-        take_colour(values.at[1], &a[1], &b[1]);
-        load(&first, s, lit, 3, i);
-        add_colour(&first, &a[0], l, all->limits);
-        add_colour(&first, &a[1], l + 1, all->limits);
-        store(&first, s, lit, 3, i);
-        load(&second, s, lit, 3, i + LANES);
-        add_colour(&second, &b[0], l, all->limits);
-        add_colour(&second, &b[1], l + 1, all->limits);
-        store(&second, s, lit, 3, i + LANES);
+        lanes_of_colour(values.at[0], &a[0], &a[1]);
+        lanes_of_colour(values.at[1], &b[0], &b[1]);
+        add_colour(s, lit, i, &a[0], &b[0], l, all->limits);
+        add_colour(s, lit, i + LANES, &a[1], &b[1], l, all->limits);
     }
 }
 

@@ -14,15 +14,9 @@
 
 #include "stereo/solve_parts.h"
 
-/* Pixels a block: the 11 sums of a pixel that every picture changes (22 KiB) and the values of now and next (12 KiB)
- * stay in a first-level cache of 48 KiB. */
-enum { LS_BLOCK = 512 };
-
-/* LANES pixels side by side: vectors of the compiler's, wide registers where the processor has them. They are handed on
- * by address, because how they are passed by value depends on the processor. */
-enum { LANES = 16 };
-typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
-typedef int32_t lane_bits __attribute__((vector_size(LANES * sizeof(int32_t))));
+/* Pixels a block: the 11 sums of a pixel that every picture changes (11 KiB) and the values of now and next (6 KiB)
+ * stay in a first-level cache of 32 KiB. */
+enum { LS_BLOCK = 256 };
 
 typedef struct ls_sums {
     float matrix[6][LS_BLOCK];   /* Σ l lᵀ: xx, xy, xz, yy, yz, zz */
