@@ -1,8 +1,8 @@
 /* What least squares does by whole vector registers: pictures' codes taken apart into channels, answers woven together.
  * Sixteen pixels side by side where registers are that wide, else eight; the order in which values are fetched from
- * registers is written down for each, because compilers turn what is not made for their registers into a value after the
- * other (which took 18 times as long). Vectors are handed on by address: how they are passed by value depends on the
- * processor. */
+ * registers is written down for each, because compilers turn what is not made for their registers into a value after
+ * the other (which took 18 times as long). Vectors are handed on by address: how they are passed by value depends on
+ * the processor. */
 #ifndef MERLIN_STEREO_LS_LANES_H
 #define MERLIN_STEREO_LS_LANES_H
 

@@ -37,9 +37,21 @@ static nn_type fastest_type(void)
     return (isa & products) == products && is_amd() ? NN_BFLOAT16 : NN_FLOAT32;
 }
 
+/* Winograd's filtering is written for registers of eight floats: where oneDNN has wider ones, and bfloat16, its own
+ * sums are as fast. */
+static bool registers_of_eight(void)
+{
+#if defined(__AVX2__) && defined(__FMA__) && !defined(__AVX512F__)
+    return usable_type(NN_BFLOAT16) == NN_FLOAT32;
+#else
+    return false;
+#endif
+}
+
 static status create(nn_step *step)
 {
-    if (op_is_conv(step->op)) return conv_create(step);
+    if (op_is_conv(step->op))
+        return registers_of_eight() && winograd_suits(step) ? winograd_create(step) : conv_create(step);
     if (step->op == OP_NORM) return norm_create(step);
     return kernel_create(step);
 }

@@ -3,14 +3,12 @@
  * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
  * layout and type it asked for, made anew after every change. Batch norm by running statistics is folded into weights
  * and bias: w' = w γ/√(σ² + ε), b' = β + (b - μ) γ/√(σ² + ε). */
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "nn/cpu/chunk.h"
+#include "nn/cpu/conv_parts.h"
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/kernels.h"
-#include "nn/cpu/norm.h"
 #include "nn/cpu/steps.h"
 
 typedef struct conv {
@@ -121,20 +119,6 @@ static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
     return s == OK ? dnn_describe(&state->weights, step->context, &descriptor, false, hint) : s;
 }
 
-static size_t align64(size_t bytes)
-{
-    return (bytes + 63) / 64 * 64;
-}
-
-/* Bytes of the output's gradient once it is in the compute type and masked by the fused ReLU; 0 if it already is. */
-static size_t prepared_bytes(const nn_step *step)
-{
-    if (!step->relu && step->out_gradient.type == step->compute) return 0;
-    nn_tensor t = step->out;
-    t.type = step->compute;
-    return align64(tensor_bytes(&t));
-}
-
 static void own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
 {
     size_t bytes = dnnl_memory_desc_get_size(layout);
@@ -157,7 +141,7 @@ static status describe_backward(nn_step *step, conv *state)
     size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
     /* prepared gradient, unaccumulated gradient of the input, oneDNN's own */
     step->backward_scratch =
-        prepared_bytes(step) + align64(tensor_bytes(&step->in[0])) + (data > weights ? data : weights);
+        conv_prepared_bytes(step) + conv_align(tensor_bytes(&step->in[0])) + (data > weights ? data : weights);
     return OK;
 }
 
@@ -206,17 +190,17 @@ static char *prepared_place(const nn_step *step)
 
 static char *unaccumulated_place(const nn_step *step)
 {
-    return prepared_place(step) + prepared_bytes(step);
+    return prepared_place(step) + conv_prepared_bytes(step);
 }
 
 static char *library_place(const nn_step *step)
 {
-    return unaccumulated_place(step) + align64(tensor_bytes(&step->in[0]));
+    return unaccumulated_place(step) + conv_align(tensor_bytes(&step->in[0]));
 }
 
 static void *gradient_place(const nn_step *step)
 {
-    return prepared_bytes(step) ? prepared_place(step) : step->out_gradient.data;
+    return conv_prepared(step, prepared_place(step));
 }
 
 static status bind_data(nn_step *step, conv *state)
@@ -264,27 +248,11 @@ static status conv_bind(nn_step *step)
     return s;
 }
 
-/* Into the scratch of forward, which is free between runs. */
-static void fold(const nn_step *step)
-{
-    const conv *state = step->state;
-    float *folded = step->forward_space;
-    int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
-#pragma omp parallel for schedule(static) if (step->params.weight->count > CPU_PARALLEL_MIN)
-    for (int o = 0; o < out; o++) {
-        float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
-        float bias = step->params.bias ? step->params.bias->value[o] : 0;
-        state->folded_bias[o] = step->folded.bias->value[o] + (bias - step->folded.running_mean->value[o]) * factor;
-        size_t row = (size_t)in * (size_t)taps, at = (size_t)o * row;
-        for (size_t i = at; i < at + row; i++)
-            folded[i] = step->params.weight->value[i] * factor;
-    }
-}
-
 static status conv_refresh(nn_step *step)
 {
     conv *state = step->state;
-    if (step->folded.weight) fold(step);
+    /* into the scratch of forward, which is free between runs */
+    if (step->folded.weight) conv_fold(step, step->forward_space, state->folded_bias);
     status s = dnn_run(&state->convert, step->context);
     if (s == OK && state->convert_back.primitive) s = dnn_run(&state->convert_back, step->context);
     return s;
@@ -316,32 +284,9 @@ status conv_backward_weights(nn_step *step)
 
 static status conv_backward(nn_step *step)
 {
-    if (prepared_bytes(step)) {
-        nn_tensor prepared = step->out;
-        prepared.data = prepared_place(step);
-        prepared.type = step->compute;
-        if (step->relu)
-            cpu_relu_backward(&step->out, &step->out_gradient, &prepared, false);
-        else
-            cpu_cast(&step->out_gradient, &prepared, false);
-    }
+    conv_prepare(step, prepared_place(step));
     status s = conv_backward_weights(step);
     return s == OK && step->wants[0] ? conv_backward_data(step) : s;
-}
-
-static void count_flops(nn_step *step)
-{
-    const nn_tensor *x = &step->in[0], *y = &step->out;
-    double pixels = (double)y->n * y->h * y->w;
-    step->forward_flops = 2 * pixels * x->c * y->c * step->at.kernel * step->at.kernel;
-    if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
-}
-
-static status allocate_folded(nn_step *step, conv *state)
-{
-    state->folded_bias = calloc((size_t)step->out.c, sizeof(float));
-    step->own_bytes += (size_t)step->out.c * sizeof(float);
-    return state->folded_bias ? OK : fail(ERROR_MEMORY, "no memory for weights");
 }
 
 status conv_create(nn_step *step)
@@ -353,14 +298,13 @@ status conv_create(nn_step *step)
     step->state = state;
     state->has_bias = step->at.bias || step->folded.weight;
     state->plain = weights_layout(step);
-    count_flops(step);
-    status s = step->folded.weight ? allocate_folded(step, state) : OK;
+    conv_count_flops(step);
+    status s = conv_new_folded_bias(step, &state->folded_bias);
     if (s == OK) s = describe_forward(step, state);
     if (s != OK) return s;
     own(step, &state->forward_weights, dnn_query(&state->forward, dnnl_query_weights_md));
     if (!state->forward_weights) return fail(ERROR_MEMORY, "no memory for weights");
     step->forward_scratch = dnn_scratch_bytes(&state->forward);
-    size_t folded = step->folded.weight ? step->params.weight->count * sizeof(float) : 0;
-    if (step->forward_scratch < folded) step->forward_scratch = folded;
+    if (step->forward_scratch < conv_folded_bytes(step)) step->forward_scratch = conv_folded_bytes(step);
     return step->backs ? describe_backward(step, state) : OK;
 }

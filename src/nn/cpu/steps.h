@@ -11,6 +11,10 @@ status conv_create(nn_step *step);
 status conv_backward_data(nn_step *step);
 status conv_backward_weights(nn_step *step);
 
+/* The same by Winograd's filtering, where that is the faster one. */
+bool winograd_suits(const nn_step *step);
+status winograd_create(nn_step *step);
+
 status norm_create(nn_step *step);
 /* All that nn/cpu/kernels.h computes. */
 status kernel_create(nn_step *step);

@@ -1,0 +1,28 @@
+/* What a convolution does whatever computes it: batch norm folded into the weights, ReLU undone in the gradient, work
+ * counted. Internal to src/nn/cpu. */
+#ifndef MERLIN_NN_CPU_CONV_PARTS_H
+#define MERLIN_NN_CPU_CONV_PARTS_H
+
+#include "nn/device.h"
+
+/* Up to a whole cache line. */
+static inline size_t conv_align(size_t bytes)
+{
+    return (bytes + 63) / 64 * 64;
+}
+
+void conv_count_flops(nn_step *step);
+
+/* Batch norm by running statistics: w' = w γ/√(σ² + ε), b' = β + (b - μ) γ/√(σ² + ε). A bias for it is allocated where
+ * there is one to fold, else NULL. */
+size_t conv_folded_bytes(const nn_step *step);
+status conv_new_folded_bias(nn_step *step, float **bias);
+void conv_fold(const nn_step *step, float *weights, float *bias);
+
+/* The output's gradient in the compute type and masked by the fused ReLU: made at `place`, for which it has so many
+ * bytes, or the gradient itself where these are 0. */
+size_t conv_prepared_bytes(const nn_step *step);
+void *conv_prepared(const nn_step *step, void *place);
+void conv_prepare(const nn_step *step, void *place);
+
+#endif

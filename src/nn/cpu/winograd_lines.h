@@ -1,0 +1,83 @@
+/* The linear maps of F(4, 3), a line of six values or of what becomes of them, eight channels side by side. */
+#ifndef MERLIN_NN_CPU_WINOGRAD_LINES_H
+#define MERLIN_NN_CPU_WINOGRAD_LINES_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/inline.h"
+
+enum { EIGHT = 8 };
+
+/* Handed on by address, because how it is passed by value depends on the processor. */
+typedef float eight __attribute__((vector_size(EIGHT * sizeof(float))));
+typedef int32_t eight_bits __attribute__((vector_size(EIGHT * sizeof(int32_t))));
+
+ALWAYS_INLINE void eight_load(eight *v, const float *from)
+{
+    memcpy(v, from, sizeof *v);
+}
+
+ALWAYS_INLINE void eight_store(const eight *v, float *to)
+{
+    memcpy(to, v, sizeof *v);
+}
+
+/* Bᵀ d */
+ALWAYS_INLINE void input_line(const eight d[6], eight v[6])
+{
+    eight even = d[4] - 4 * d[2], odd = d[3] - 4 * d[1], wide = d[4] - d[2], twice = 2 * (d[3] - d[1]);
+    v[0] = 4 * d[0] - 5 * d[2] + d[4];
+    v[1] = even + odd;
+    v[2] = even - odd;
+    v[3] = wide + twice;
+    v[4] = wide - twice;
+    v[5] = 4 * d[1] - 5 * d[3] + d[5];
+}
+
+/* Aᵀ m */
+ALWAYS_INLINE void output_line(const eight m[6], eight y[4])
+{
+    eight sum = m[1] + m[2], difference = m[1] - m[2], far_sum = m[3] + m[4], far_difference = m[3] - m[4];
+    y[0] = m[0] + sum + far_sum;
+    y[1] = difference + 2 * far_difference;
+    y[2] = sum + 4 * far_sum;
+    y[3] = difference + 8 * far_difference + m[5];
+}
+
+/* A y */
+ALWAYS_INLINE void output_line_back(const eight y[4], eight m[6])
+{
+    eight even = y[0] + y[2], odd = y[1] + y[3], far_even = y[0] + 4 * y[2], far_odd = 2 * y[1] + 8 * y[3];
+    m[0] = y[0];
+    m[1] = even + odd;
+    m[2] = even - odd;
+    m[3] = far_even + far_odd;
+    m[4] = far_even - far_odd;
+    m[5] = y[3];
+}
+
+/* G g */
+ALWAYS_INLINE void kernel_line(const eight g[3], eight u[6])
+{
+    eight even = (g[0] + g[2]) * (-1.0f / 6), odd = g[1] * (-1.0f / 6),
+          far_even = g[0] * (1.0f / 24) + g[2] * (1.0f / 6), far_odd = g[1] * (1.0f / 12);
+    u[0] = g[0] * 0.25f;
+    u[1] = even + odd;
+    u[2] = even - odd;
+    u[3] = far_even + far_odd;
+    u[4] = far_even - far_odd;
+    u[5] = g[2];
+}
+
+/* Gᵀ u */
+ALWAYS_INLINE void kernel_line_back(const eight u[6], eight g[3])
+{
+    eight sum = (u[1] + u[2]) * (-1.0f / 6), difference = (u[2] - u[1]) * (1.0f / 6), far_sum = u[3] + u[4],
+          far_difference = u[3] - u[4];
+    g[0] = u[0] * 0.25f + sum + far_sum * (1.0f / 24);
+    g[1] = difference + far_difference * (1.0f / 12);
+    g[2] = sum + far_sum * (1.0f / 6) + u[5];
+}
+
+#endif

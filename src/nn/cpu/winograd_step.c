@@ -1,0 +1,131 @@
+/* A convolution as a step of the device, by Winograd's filtering. */
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "nn/cpu/chunk.h"
+#include "nn/cpu/conv_parts.h"
+#include "nn/cpu/steps.h"
+#include "nn/cpu/winograd.h"
+
+/* With fewer tiles the weights, four times as many as without it, cost more to make and to read than is gained; where
+ * nothing is trained, more to hold. */
+enum { LEAST_TILES = 128, LEAST_TILES_TRAINED = 48 };
+
+typedef struct state {
+    winograd forward, back; /* back: from the output's gradient to the input's */
+    float *weights, *weights_back, *folded_bias;
+} state;
+
+static winograd shape_of(const nn_step *step)
+{
+    const nn_tensor *x = &step->in[0];
+    return (winograd){x->n, x->h, x->w, x->c, step->out.c, parallel_threads()};
+}
+
+static bool is_whole(int channels)
+{
+    return channels % WINOGRAD_CHANNELS == 0 && channels <= CPU_MAX_CHANNELS;
+}
+
+bool winograd_suits(const nn_step *step)
+{
+    const winograd shape = shape_of(step);
+    return step->at.kernel == 3 && step->at.stride == 1 && step->compute == NN_FLOAT32 &&
+           step->in[0].type == NN_FLOAT32 && step->out.type == NN_FLOAT32 && is_whole(shape.in) &&
+           is_whole(shape.out) && winograd_tiles(&shape) >= (step->backs ? LEAST_TILES_TRAINED : LEAST_TILES);
+}
+
+static void release(nn_step *step)
+{
+    state *own = step->state;
+    memory_free(own->weights);
+    memory_free(own->weights_back);
+    free(own->folded_bias);
+    free(own);
+}
+
+static status refresh(nn_step *step)
+{
+    const state *own = step->state;
+    const winograd *g = &own->forward;
+    const float *weight = step->params.weight->value;
+    if (step->folded.weight) {
+        conv_fold(step, step->forward_space, own->folded_bias);
+        weight = step->forward_space;
+    }
+    winograd_transform(weight, g->in, g->out, own->weights);
+    if (own->weights_back) winograd_transform_back(weight, g->in, g->out, own->weights_back);
+    return OK;
+}
+
+static status forward(nn_step *step)
+{
+    const state *own = step->state;
+    winograd_after after = {.bias = own->folded_bias, .relu = step->relu};
+    if (!after.bias && step->params.bias) after.bias = step->params.bias->value;
+    winograd_convolve(&own->forward, step->in[0].data, own->weights, &after, step->out.data, step->forward_space);
+    return OK;
+}
+
+/* Of all pixels, in their order. */
+static void sum_to_bias(const nn_tensor *dy, const float *from, float *to)
+{
+    const size_t pixels = tensor_count(dy) / (size_t)dy->c;
+#pragma omp parallel for schedule(static)
+    for (int first = 0; first < dy->c; first += WINOGRAD_CHANNELS) {
+        float sum[WINOGRAD_CHANNELS] = {0};
+        for (size_t i = 0; i < pixels; i++)
+            for (int c = 0; c < WINOGRAD_CHANNELS; c++)
+                sum[c] += from[i * (size_t)dy->c + (size_t)(first + c)];
+        for (int c = 0; c < WINOGRAD_CHANNELS; c++)
+            to[first + c] = sum[c];
+    }
+}
+
+static status backward(nn_step *step)
+{
+    const state *own = step->state;
+    float *prepared = step->backward_space, *dy = conv_prepared(step, prepared);
+    float *room = prepared + conv_prepared_bytes(step) / sizeof *prepared;
+    conv_prepare(step, prepared);
+    winograd_gradient(&own->forward, step->in[0].data, dy, step->params.weight->gradient, room);
+    if (step->params.bias) sum_to_bias(&step->out, dy, step->params.bias->gradient);
+    const winograd_after after = {.accumulate = step->accumulate[0]};
+    if (step->wants[0]) winograd_convolve(&own->back, dy, own->weights_back, &after, step->in_gradient[0].data, room);
+    return OK;
+}
+
+static status own_weights(nn_step *step, float **weights)
+{
+    size_t bytes = winograd_weights(step->in[0].c, step->out.c) * sizeof **weights;
+    *weights = memory_new(bytes);
+    step->own_bytes += bytes;
+    return *weights ? OK : fail(ERROR_MEMORY, "no memory for weights");
+}
+
+static void plan_scratch(nn_step *step, const state *own)
+{
+    size_t room = winograd_room(&own->forward) * sizeof(float), folded = conv_folded_bytes(step);
+    step->forward_scratch = room > folded ? room : folded;
+    if (!step->backs) return;
+    size_t back = winograd_room(&own->back), gradient = winograd_gradient_room(&own->forward);
+    step->backward_scratch = conv_prepared_bytes(step) + (back > gradient ? back : gradient) * sizeof(float);
+}
+
+status winograd_create(nn_step *step)
+{
+    static const step_functions functions = {NULL, refresh, forward, backward, release};
+    state *own = calloc(1, sizeof *own);
+    if (!own) return fail(ERROR_MEMORY, "no memory for a convolution");
+    step->run = &functions;
+    step->state = own;
+    own->forward = own->back = shape_of(step);
+    own->back.in = own->forward.out;
+    own->back.out = own->forward.in;
+    conv_count_flops(step);
+    plan_scratch(step, own);
+    status s = conv_new_folded_bias(step, &own->folded_bias);
+    if (s == OK) s = own_weights(step, &own->weights);
+    return s == OK && step->backs && step->wants[0] ? own_weights(step, &own->weights_back) : s;
+}
