@@ -35,9 +35,7 @@ static fixture open_fixture(winograd g)
 {
     size_t pixels = (size_t)g.n * (size_t)g.h * (size_t)g.w, in = (size_t)g.in, out = (size_t)g.out;
     fixture f = {.g = g, .inputs = pixels * in, .outputs = pixels * out, .taps = 9 * in * out};
-    winograd back = g;
-    back.in = g.out;
-    back.out = g.in;
+    const winograd back = winograd_back(&g);
     size_t rooms[] = {winograd_room(&g), winograd_room(&back), winograd_gradient_room(&g)}, most = 0;
     for (int i = 0; i < 3; i++)
         most = rooms[i] > most ? rooms[i] : most;
@@ -169,9 +167,7 @@ static void input_gradient_matches_the_definition(void **state)
     for (int k = 0; k < SHAPES; k++) {
         fixture f = open_fixture(shapes[k]);
         double *sums = new_sums(f.inputs);
-        winograd back = f.g;
-        back.in = f.g.out;
-        back.out = f.g.in;
+        const winograd back = winograd_back(&f.g);
         for_all_pairs(&f, add_input_gradient, sums);
         winograd_transform_back(f.weight, f.g.in, f.g.out, f.u);
         winograd_convolve(&back, f.dy, f.u, &(winograd_after){0}, f.x, f.room);

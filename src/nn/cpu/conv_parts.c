@@ -1,8 +1,8 @@
 #include "nn/cpu/conv_parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "nn/cpu/chunk.h"
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/norm.h"
@@ -15,18 +15,22 @@ void conv_count_flops(nn_step *step)
     if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
 }
 
+status conv_own(nn_step *step, size_t bytes, void **memory)
+{
+    *memory = memory_new(bytes);
+    step->own_bytes += bytes;
+    return *memory ? OK : fail(ERROR_MEMORY, "no memory for weights");
+}
+
 size_t conv_folded_bytes(const nn_step *step)
 {
     return step->folded.weight ? step->params.weight->count * sizeof(float) : 0;
 }
 
-status conv_new_folded_bias(nn_step *step, float **bias)
+status conv_own_folded_bias(nn_step *step, void **bias)
 {
     *bias = NULL;
-    if (!step->folded.weight) return OK;
-    *bias = calloc((size_t)step->out.c, sizeof **bias);
-    step->own_bytes += (size_t)step->out.c * sizeof **bias;
-    return *bias ? OK : fail(ERROR_MEMORY, "no memory for weights");
+    return step->folded.weight ? conv_own(step, (size_t)step->out.c * sizeof(float), bias) : OK;
 }
 
 void conv_fold(const nn_step *step, float *weights, float *folded_bias)

@@ -13,10 +13,13 @@ static inline size_t conv_align(size_t bytes)
 
 void conv_count_flops(nn_step *step);
 
+/* Memory that the step keeps (base/memory.h), counted as its own. */
+status conv_own(nn_step *step, size_t bytes, void **memory);
+
 /* Batch norm by running statistics: w' = w γ/√(σ² + ε), b' = β + (b - μ) γ/√(σ² + ε). A bias for it is allocated where
  * there is one to fold, else NULL. */
 size_t conv_folded_bytes(const nn_step *step);
-status conv_new_folded_bias(nn_step *step, float **bias);
+status conv_own_folded_bias(nn_step *step, void **bias);
 void conv_fold(const nn_step *step, float *weights, float *bias);
 
 /* The output's gradient in the compute type and masked by the fused ReLU: made at `place`, for which it has so many

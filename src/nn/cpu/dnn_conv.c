@@ -1,8 +1,7 @@
 /* Convolutions by oneDNN.
  *
  * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
- * layout and type it asked for, made anew after every change. Batch norm by running statistics is folded into weights
- * and bias: w' = w γ/√(σ² + ε), b' = β + (b - μ) γ/√(σ² + ε). */
+ * layout and type it asked for, made anew after every change, with batch norm by running statistics folded into it. */
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -15,8 +14,7 @@ typedef struct conv {
     dnn_call forward, data, weights;
     dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
     dnnl_memory_desc_t plain;                /* the float32 weights */
-    float *folded_bias;
-    void *forward_weights, *data_weights, *weight_gradient;
+    void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
     bool has_bias;
 } conv;
 
@@ -119,11 +117,9 @@ static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
     return s == OK ? dnn_describe(&state->weights, step->context, &descriptor, false, hint) : s;
 }
 
-static void own(nn_step *step, void **memory, const dnnl_memory_desc_t *layout)
+static status own(nn_step *step, const dnnl_memory_desc_t *layout, void **memory)
 {
-    size_t bytes = dnnl_memory_desc_get_size(layout);
-    *memory = memory_new(bytes);
-    step->own_bytes += bytes;
+    return conv_own(step, dnnl_memory_desc_get_size(layout), memory);
 }
 
 static status describe_backward(nn_step *step, conv *state)
@@ -134,10 +130,9 @@ static status describe_backward(nn_step *step, conv *state)
     if (s == OK) s = describe_weights(step, state, &hint);
     dnn_release(&hint);
     if (s != OK) return s;
-    own(step, &state->weight_gradient, dnn_query(&state->weights, dnnl_query_diff_weights_md));
-    if (step->wants[0]) own(step, &state->data_weights, dnn_query(&state->data, dnnl_query_weights_md));
-    if (!state->weight_gradient || (step->wants[0] && !state->data_weights))
-        return fail(ERROR_MEMORY, "no memory for weights");
+    s = own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
+    if (s == OK && step->wants[0]) s = own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
+    if (s != OK) return s;
     size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
     /* prepared gradient, unaccumulated gradient of the input, oneDNN's own */
     step->backward_scratch =
@@ -152,7 +147,7 @@ static void conv_release(nn_step *step)
                          &state->convert, &state->convert_back, &state->collect};
     for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
         dnn_release(calls[i]);
-    free(state->folded_bias);
+    memory_free(state->folded_bias);
     memory_free(state->forward_weights);
     memory_free(state->data_weights);
     memory_free(state->weight_gradient);
@@ -299,11 +294,10 @@ status conv_create(nn_step *step)
     state->has_bias = step->at.bias || step->folded.weight;
     state->plain = weights_layout(step);
     conv_count_flops(step);
-    status s = conv_new_folded_bias(step, &state->folded_bias);
+    status s = conv_own_folded_bias(step, &state->folded_bias);
     if (s == OK) s = describe_forward(step, state);
+    if (s == OK) s = own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
     if (s != OK) return s;
-    own(step, &state->forward_weights, dnn_query(&state->forward, dnnl_query_weights_md));
-    if (!state->forward_weights) return fail(ERROR_MEMORY, "no memory for weights");
     step->forward_scratch = dnn_scratch_bytes(&state->forward);
     if (step->forward_scratch < conv_folded_bytes(step)) step->forward_scratch = conv_folded_bytes(step);
     return step->backs ? describe_backward(step, state) : OK;

@@ -6,9 +6,17 @@
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/winograd_lines.h"
 
-/* A tile of the result, of what it is made of, of the kernel; values of a tile; channels that the products' innermost
- * loop makes at once, and tiles. */
-enum { TILE = 4, WINDOW = 6, KERNEL = 3, POINTS = WINDOW * WINDOW, PANEL = WINOGRAD_CHANNELS, ROWS = 6 };
+/* A tile of the result, of what it is made of, of the kernel; values of the last two; channels that the products'
+ * innermost loop makes at once, and tiles. */
+enum {
+    TILE = 4,
+    WINDOW = 6,
+    KERNEL = 3,
+    POINTS = WINDOW * WINDOW,
+    TAPS = KERNEL * KERNEL,
+    PANEL = WINOGRAD_CHANNELS,
+    ROWS = 6
+};
 
 /* Floats between the points' matrices beyond their size, which would be a multiple of 4 KiB: then all were kept in the
  * same few lines of a cache. */
@@ -68,59 +76,64 @@ static square look_at(const winograd *g, const float *x, int channels, corner at
     return (square){copy, (size_t)side * pixel};
 }
 
-/* A tile's values at the points, each a matrix's stride behind the one before. */
+/* Eight channels of a square of so many pixels a side to the points, each `stride` floats behind the one before. side
+ * and map are constants where this is called. */
+ALWAYS_INLINE void to_points(square from, size_t pixel, const size_t side, line_map map, float *to, size_t stride)
+{
+    eight half[WINDOW][WINDOW];
+    for (size_t j = 0; j < side; j++) {
+        eight column[WINDOW], mapped[WINDOW];
+#pragma GCC unroll 6
+        for (size_t i = 0; i < side; i++)
+            eight_load(&column[i], from.first + i * from.row + j * pixel);
+        map(column, mapped);
+#pragma GCC unroll 6
+        for (size_t i = 0; i < WINDOW; i++)
+            half[i][j] = mapped[i];
+    }
+    for (size_t i = 0; i < WINDOW; i++) {
+        eight mapped[WINDOW];
+        map(half[i], mapped);
+#pragma GCC unroll 6
+        for (size_t j = 0; j < WINDOW; j++)
+            eight_store(&mapped[j], to + (i * WINDOW + j) * stride);
+    }
+}
+
+/* And back: `to` holds side × side. */
+ALWAYS_INLINE void from_points(const float *from, size_t stride, const size_t side, line_map map, eight *to)
+{
+    eight half[WINDOW][WINDOW];
+    for (size_t j = 0; j < WINDOW; j++) {
+        eight column[WINDOW], mapped[WINDOW];
+#pragma GCC unroll 6
+        for (size_t i = 0; i < WINDOW; i++)
+            eight_load(&column[i], from + (i * WINDOW + j) * stride);
+        map(column, mapped);
+#pragma GCC unroll 6
+        for (size_t i = 0; i < side; i++)
+            half[i][j] = mapped[i];
+    }
+#pragma GCC unroll 6
+    for (size_t i = 0; i < side; i++)
+        map(half[i], to + i * side);
+}
+
 static void take_window(const winograd *g, const float *x, size_t tile, float *copy, float *to, size_t stride)
 {
     const size_t channels = (size_t)g->in;
     corner at = corner_of(g, tile);
-    const square from = look_at(g, x, g->in, (corner){at.image, at.y - 1, at.x - 1}, WINDOW, copy);
-    for (size_t c = 0; c < channels; c += EIGHT) {
-        eight half[WINDOW][WINDOW];
-        for (size_t j = 0; j < WINDOW; j++) {
-            eight d[WINDOW], v[WINDOW];
-#pragma GCC unroll 6
-            for (size_t i = 0; i < WINDOW; i++)
-                eight_load(&d[i], from.first + i * from.row + j * channels + c);
-            input_line(d, v);
-#pragma GCC unroll 6
-            for (size_t i = 0; i < WINDOW; i++)
-                half[i][j] = v[i];
-        }
-        for (size_t i = 0; i < WINDOW; i++) {
-            eight v[WINDOW];
-            input_line(half[i], v);
-#pragma GCC unroll 6
-            for (size_t j = 0; j < WINDOW; j++)
-                eight_store(&v[j], to + (i * WINDOW + j) * stride + c);
-        }
-    }
+    square from = look_at(g, x, g->in, (corner){at.image, at.y - 1, at.x - 1}, WINDOW, copy);
+    for (size_t c = 0; c < channels; c += EIGHT, from.first += EIGHT)
+        to_points(from, channels, WINDOW, input_line, to + c, stride);
 }
 
-/* The same of a result's gradient. */
 static void take_result_back(const winograd *g, const float *dy, size_t tile, float *copy, float *to, size_t stride)
 {
     const size_t channels = (size_t)g->out;
-    const square from = look_at(g, dy, g->out, corner_of(g, tile), TILE, copy);
-    for (size_t c = 0; c < channels; c += EIGHT) {
-        eight half[WINDOW][TILE];
-        for (size_t j = 0; j < TILE; j++) {
-            eight y[TILE], m[WINDOW];
-#pragma GCC unroll 6
-            for (size_t i = 0; i < TILE; i++)
-                eight_load(&y[i], from.first + i * from.row + j * channels + c);
-            output_line_back(y, m);
-#pragma GCC unroll 6
-            for (size_t i = 0; i < WINDOW; i++)
-                half[i][j] = m[i];
-        }
-        for (size_t i = 0; i < WINDOW; i++) {
-            eight m[WINDOW];
-            output_line_back(half[i], m);
-#pragma GCC unroll 6
-            for (size_t j = 0; j < WINDOW; j++)
-                eight_store(&m[j], to + (i * WINDOW + j) * stride + c);
-        }
-    }
+    square from = look_at(g, dy, g->out, corner_of(g, tile), TILE, copy);
+    for (size_t c = 0; c < channels; c += EIGHT, from.first += EIGHT)
+        to_points(from, channels, TILE, output_line_back, to + c, stride);
 }
 
 ALWAYS_INLINE void finish(eight *v, const winograd_after *after, size_t c, float *to)
@@ -147,24 +160,12 @@ static void put_result(const winograd *g, const float *from, size_t stride, cons
     const size_t rows = (size_t)(g->h - at.y), columns = (size_t)(g->w - at.x); /* that there are */
     float *to = y + (pixel_at(g, y, g->out, at) - y);
     for (size_t c = 0; c < channels; c += EIGHT) {
-        eight half[TILE][WINDOW];
-        for (size_t j = 0; j < WINDOW; j++) {
-            eight m[WINDOW], v[TILE];
-#pragma GCC unroll 6
-            for (size_t i = 0; i < WINDOW; i++)
-                eight_load(&m[i], from + (i * WINDOW + j) * stride + c);
-            output_line(m, v);
-#pragma GCC unroll 6
-            for (size_t i = 0; i < TILE; i++)
-                half[i][j] = v[i];
-        }
-        for (size_t i = 0; i < TILE && i < rows; i++) {
-            eight v[TILE];
-            output_line(half[i], v);
+        eight pixel[TILE][TILE];
+        from_points(from + c, stride, TILE, output_line, pixel[0]);
+        for (size_t i = 0; i < TILE && i < rows; i++)
 #pragma GCC unroll 6
             for (size_t j = 0; j < TILE; j++)
-                if (j < columns) finish(&v[j], after, c, to + i * row + j * channels + c);
-        }
+                if (j < columns) finish(&pixel[i][j], after, c, to + i * row + j * channels + c);
     }
 }
 
@@ -245,64 +246,39 @@ size_t winograd_weights(int in, int out)
     return (size_t)POINTS * (size_t)in * (size_t)out;
 }
 
-/* Eight kernels, a tap after the other, to the points; stride floats from one point to the next. */
-static void take_kernels(float tap[KERNEL * KERNEL][EIGHT], float *to, size_t stride)
-{
-    eight half[WINDOW][KERNEL];
-    for (int j = 0; j < KERNEL; j++) {
-        eight k[KERNEL], u[WINDOW];
-#pragma GCC unroll 6
-        for (int i = 0; i < KERNEL; i++)
-            eight_load(&k[i], tap[i * KERNEL + j]);
-        kernel_line(k, u);
-#pragma GCC unroll 6
-        for (int i = 0; i < WINDOW; i++)
-            half[i][j] = u[i];
-    }
-    for (int i = 0; i < WINDOW; i++) {
-        eight u[WINDOW];
-        kernel_line(half[i], u);
-#pragma GCC unroll 6
-        for (int j = 0; j < WINDOW; j++)
-            eight_store(&u[j], to + (size_t)(i * WINDOW + j) * stride);
-    }
-}
-
 /* Where the weights of eight outputs for an input begin: [point][panel of outputs][input][output in it]. */
 static float *weights_at(float *u, int inputs, int input, int output)
 {
     return u + ((size_t)(output / PANEL) * (size_t)inputs + (size_t)input) * PANEL + output % PANEL;
 }
 
-void winograd_transform(const float *weight, int in, int out, float *u)
+/* Eight kernels, `apart` floats from one to the next, to the points; turned by half a turn or not. */
+ALWAYS_INLINE void take_kernels(const float *kernel, size_t apart, const bool turned, float *to, size_t stride)
 {
-    enum { TAPS = KERNEL * KERNEL };
-    size_t stride = (size_t)in * (size_t)out;
-#pragma omp parallel for schedule(static)
-    for (int o = 0; o < out; o += EIGHT)
-        for (int i = 0; i < in; i++) {
-            float tap[TAPS][EIGHT];
-            for (int k = 0; k < EIGHT; k++)
-                for (int t = 0; t < TAPS; t++)
-                    tap[t][k] = weight[((size_t)(o + k) * (size_t)in + (size_t)i) * TAPS + (size_t)t];
-            take_kernels(tap, weights_at(u, in, i, o), stride);
-        }
+    float tap[TAPS][EIGHT];
+    for (size_t k = 0; k < EIGHT; k++)
+        for (size_t t = 0; t < TAPS; t++)
+            tap[turned ? TAPS - 1 - t : t][k] = kernel[k * apart + t];
+    to_points((square){tap[0], KERNEL * EIGHT}, EIGHT, KERNEL, kernel_line, to, stride);
 }
 
-/* Inputs and outputs change places and kernels are turned by half a turn. */
+void winograd_transform(const float *weight, int in, int out, float *u)
+{
+    const size_t row = (size_t)in * TAPS, stride = (size_t)in * (size_t)out;
+#pragma omp parallel for schedule(static)
+    for (int o = 0; o < out; o += EIGHT)
+        for (int i = 0; i < in; i++)
+            take_kernels(weight + (size_t)o * row + (size_t)i * TAPS, row, false, weights_at(u, in, i, o), stride);
+}
+
+/* Inputs and outputs change places. */
 void winograd_transform_back(const float *weight, int in, int out, float *u)
 {
-    enum { TAPS = KERNEL * KERNEL };
-    size_t stride = (size_t)in * (size_t)out;
+    const size_t row = (size_t)in * TAPS, stride = (size_t)in * (size_t)out;
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < in; i += EIGHT)
-        for (int o = 0; o < out; o++) {
-            float tap[TAPS][EIGHT];
-            for (int k = 0; k < EIGHT; k++)
-                for (int t = 0; t < TAPS; t++)
-                    tap[TAPS - 1 - t][k] = weight[((size_t)o * (size_t)in + (size_t)(i + k)) * TAPS + (size_t)t];
-            take_kernels(tap, weights_at(u, out, o, i), stride);
-        }
+        for (int o = 0; o < out; o++)
+            take_kernels(weight + (size_t)o * row + (size_t)i * TAPS, TAPS, true, weights_at(u, out, o, i), stride);
 }
 
 /* ---- the convolution ---- */
@@ -317,10 +293,15 @@ static size_t block_tiles(const winograd *g)
     return most > ROWS ? most : ROWS;
 }
 
-/* Floats of a block's tiles at all points. */
+/* Floats of a block's tiles at one point, and at all. */
+static size_t point_stride(size_t tiles, int channels)
+{
+    return tiles * (size_t)channels + APART;
+}
+
 static size_t points_room(size_t tiles, int channels)
 {
-    return POINTS * (tiles * (size_t)channels + APART);
+    return POINTS * point_stride(tiles, channels);
 }
 
 /* Of a square at the border. */
@@ -360,7 +341,7 @@ void winograd_convolve(const winograd *g, const float *x, const float *u, const 
                        float *room)
 {
     const size_t tiles = winograd_tiles(g), size = block_tiles(g), blocks = (tiles + size - 1) / size;
-    const size_t v_stride = size * (size_t)g->in + APART, m_stride = size * (size_t)g->out + APART;
+    const size_t v_stride = point_stride(size, g->in), m_stride = point_stride(size, g->out);
 #pragma omp parallel num_threads(g->threads)
     {
         float *v = room + (size_t)omp_get_thread_num() * thread_room(g), *m = v + points_room(size, g->in),
@@ -382,26 +363,13 @@ void winograd_convolve(const winograd *g, const float *x, const float *u, const 
 /* Of eight outputs for an input: what the points have back to taps. */
 static void put_kernels(const float *from, size_t stride, int in, int input, int output, float *dw)
 {
-    eight half[KERNEL][WINDOW];
-    for (int j = 0; j < WINDOW; j++) {
-        eight u[WINDOW], k[KERNEL];
-#pragma GCC unroll 6
-        for (int i = 0; i < WINDOW; i++)
-            eight_load(&u[i], from + (size_t)(i * WINDOW + j) * stride);
-        kernel_line_back(u, k);
-#pragma GCC unroll 6
-        for (int i = 0; i < KERNEL; i++)
-            half[i][j] = k[i];
-    }
-    for (int i = 0; i < KERNEL; i++) {
-        eight k[KERNEL];
-        kernel_line_back(half[i], k);
-#pragma GCC unroll 6
-        for (int j = 0; j < KERNEL; j++)
-            for (int o = 0; o < EIGHT; o++)
-                dw[(((size_t)(output + o) * (size_t)in + (size_t)input) * KERNEL + (size_t)i) * KERNEL + (size_t)j] =
-                    k[j][o];
-    }
+    const size_t row = (size_t)in * TAPS;
+    float *to = dw + (size_t)output * row + (size_t)input * TAPS;
+    eight tap[TAPS];
+    from_points(from, stride, KERNEL, kernel_line_back, tap);
+    for (size_t k = 0; k < EIGHT; k++)
+        for (size_t t = 0; t < TAPS; t++)
+            to[k * row + t] = tap[t][k];
 }
 
 size_t winograd_gradient_room(const winograd *g)
@@ -431,7 +399,7 @@ static void add_products(const winograd *g, size_t tiles, const float *v, const 
 void winograd_gradient(const winograd *g, const float *x, const float *dy, float *dw, float *room)
 {
     const size_t tiles = winograd_tiles(g), in = (size_t)g->in, out = (size_t)g->out, matrix = in * out;
-    const size_t v_stride = GRADIENT_TILES * in + APART, m_stride = GRADIENT_TILES * out + APART;
+    const size_t v_stride = point_stride(GRADIENT_TILES, g->in), m_stride = point_stride(GRADIENT_TILES, g->out);
     float *sums = room, *v = sums + POINTS * matrix, *m = v + points_room(GRADIENT_TILES, g->in),
           *copies = m + points_room(GRADIENT_TILES, g->out);
 #pragma omp parallel num_threads(g->threads)

@@ -31,10 +31,16 @@ typedef struct winograd_after {
     bool accumulate; /* add to what is there */
 } winograd_after;
 
+/* The convolution that takes g's output's gradient to its input's. */
+static inline winograd winograd_back(const winograd *g)
+{
+    return (winograd){g->n, g->h, g->w, g->out, g->in, g->threads};
+}
+
 size_t winograd_tiles(const winograd *g);
 size_t winograd_weights(int in, int out);
 
-/* For the convolution itself, and for the one that takes its output's gradient (out channels) to its input's (in). */
+/* For the convolution of so many channels, and for its winograd_back. */
 void winograd_transform(const float *weight, int in, int out, float *u);
 void winograd_transform_back(const float *weight, int in, int out, float *u);
 

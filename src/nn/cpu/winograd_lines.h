@@ -1,4 +1,4 @@
-/* The linear maps of F(4, 3), a line of six values or of what becomes of them, eight channels side by side. */
+/* The linear maps of F(4, 3), a line of values to six points or of six back, eight channels side by side. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_LINES_H
 #define MERLIN_NN_CPU_WINOGRAD_LINES_H
 
@@ -23,8 +23,10 @@ ALWAYS_INLINE void eight_store(const eight *v, float *to)
     memcpy(to, v, sizeof *v);
 }
 
-/* Bᵀ d */
-ALWAYS_INLINE void input_line(const eight d[6], eight v[6])
+typedef void line_map(const eight *from, eight *to);
+
+/* Bᵀ d, of six */
+ALWAYS_INLINE void input_line(const eight *d, eight *v)
 {
     eight even = d[4] - 4 * d[2], odd = d[3] - 4 * d[1], wide = d[4] - d[2], twice = 2 * (d[3] - d[1]);
     v[0] = 4 * d[0] - 5 * d[2] + d[4];
@@ -35,8 +37,8 @@ ALWAYS_INLINE void input_line(const eight d[6], eight v[6])
     v[5] = 4 * d[1] - 5 * d[3] + d[5];
 }
 
-/* Aᵀ m */
-ALWAYS_INLINE void output_line(const eight m[6], eight y[4])
+/* Aᵀ m, to four */
+ALWAYS_INLINE void output_line(const eight *m, eight *y)
 {
     eight sum = m[1] + m[2], difference = m[1] - m[2], far_sum = m[3] + m[4], far_difference = m[3] - m[4];
     y[0] = m[0] + sum + far_sum;
@@ -45,8 +47,8 @@ ALWAYS_INLINE void output_line(const eight m[6], eight y[4])
     y[3] = difference + 8 * far_difference + m[5];
 }
 
-/* A y */
-ALWAYS_INLINE void output_line_back(const eight y[4], eight m[6])
+/* A y, of four */
+ALWAYS_INLINE void output_line_back(const eight *y, eight *m)
 {
     eight even = y[0] + y[2], odd = y[1] + y[3], far_even = y[0] + 4 * y[2], far_odd = 2 * y[1] + 8 * y[3];
     m[0] = y[0];
@@ -57,8 +59,8 @@ ALWAYS_INLINE void output_line_back(const eight y[4], eight m[6])
     m[5] = y[3];
 }
 
-/* G g */
-ALWAYS_INLINE void kernel_line(const eight g[3], eight u[6])
+/* G g, of three */
+ALWAYS_INLINE void kernel_line(const eight *g, eight *u)
 {
     eight even = (g[0] + g[2]) * (-1.0f / 6), odd = g[1] * (-1.0f / 6),
           far_even = g[0] * (1.0f / 24) + g[2] * (1.0f / 6), far_odd = g[1] * (1.0f / 12);
@@ -70,8 +72,8 @@ ALWAYS_INLINE void kernel_line(const eight g[3], eight u[6])
     u[5] = g[2];
 }
 
-/* Gᵀ u */
-ALWAYS_INLINE void kernel_line_back(const eight u[6], eight g[3])
+/* Gᵀ u, to three */
+ALWAYS_INLINE void kernel_line_back(const eight *u, eight *g)
 {
     eight sum = (u[1] + u[2]) * (-1.0f / 6), difference = (u[2] - u[1]) * (1.0f / 6), far_sum = u[3] + u[4],
           far_difference = u[3] - u[4];

@@ -13,8 +13,8 @@
 enum { LEAST_TILES = 128, LEAST_TILES_TRAINED = 48 };
 
 typedef struct state {
-    winograd forward, back; /* back: from the output's gradient to the input's */
-    float *weights, *weights_back, *folded_bias;
+    winograd shape;
+    void *weights, *weights_back, *folded_bias; /* floats */
 } state;
 
 static winograd shape_of(const nn_step *step)
@@ -31,8 +31,7 @@ static bool is_whole(int channels)
 bool winograd_suits(const nn_step *step)
 {
     const winograd shape = shape_of(step);
-    return step->at.kernel == 3 && step->at.stride == 1 && step->compute == NN_FLOAT32 &&
-           step->in[0].type == NN_FLOAT32 && step->out.type == NN_FLOAT32 && is_whole(shape.in) &&
+    return step->at.kernel == 3 && step->at.stride == 1 && step->compute == NN_FLOAT32 && is_whole(shape.in) &&
            is_whole(shape.out) && winograd_tiles(&shape) >= (step->backs ? LEAST_TILES_TRAINED : LEAST_TILES);
 }
 
@@ -41,14 +40,14 @@ static void release(nn_step *step)
     state *own = step->state;
     memory_free(own->weights);
     memory_free(own->weights_back);
-    free(own->folded_bias);
+    memory_free(own->folded_bias);
     free(own);
 }
 
 static status refresh(nn_step *step)
 {
     const state *own = step->state;
-    const winograd *g = &own->forward;
+    const winograd *g = &own->shape;
     const float *weight = step->params.weight->value;
     if (step->folded.weight) {
         conv_fold(step, step->forward_space, own->folded_bias);
@@ -64,7 +63,7 @@ static status forward(nn_step *step)
     const state *own = step->state;
     winograd_after after = {.bias = own->folded_bias, .relu = step->relu};
     if (!after.bias && step->params.bias) after.bias = step->params.bias->value;
-    winograd_convolve(&own->forward, step->in[0].data, own->weights, &after, step->out.data, step->forward_space);
+    winograd_convolve(&own->shape, step->in[0].data, own->weights, &after, step->out.data, step->forward_space);
     return OK;
 }
 
@@ -89,27 +88,21 @@ static status backward(nn_step *step)
     float *prepared = step->backward_space, *dy = conv_prepared(step, prepared);
     float *room = prepared + conv_prepared_bytes(step) / sizeof *prepared;
     conv_prepare(step, prepared);
-    winograd_gradient(&own->forward, step->in[0].data, dy, step->params.weight->gradient, room);
+    winograd_gradient(&own->shape, step->in[0].data, dy, step->params.weight->gradient, room);
     if (step->params.bias) sum_to_bias(&step->out, dy, step->params.bias->gradient);
     const winograd_after after = {.accumulate = step->accumulate[0]};
-    if (step->wants[0]) winograd_convolve(&own->back, dy, own->weights_back, &after, step->in_gradient[0].data, room);
+    const winograd back = winograd_back(&own->shape);
+    if (step->wants[0]) winograd_convolve(&back, dy, own->weights_back, &after, step->in_gradient[0].data, room);
     return OK;
-}
-
-static status own_weights(nn_step *step, float **weights)
-{
-    size_t bytes = winograd_weights(step->in[0].c, step->out.c) * sizeof **weights;
-    *weights = memory_new(bytes);
-    step->own_bytes += bytes;
-    return *weights ? OK : fail(ERROR_MEMORY, "no memory for weights");
 }
 
 static void plan_scratch(nn_step *step, const state *own)
 {
-    size_t room = winograd_room(&own->forward) * sizeof(float), folded = conv_folded_bytes(step);
+    size_t room = winograd_room(&own->shape) * sizeof(float), folded = conv_folded_bytes(step);
     step->forward_scratch = room > folded ? room : folded;
     if (!step->backs) return;
-    size_t back = winograd_room(&own->back), gradient = winograd_gradient_room(&own->forward);
+    const winograd turned = winograd_back(&own->shape);
+    size_t back = winograd_room(&turned), gradient = winograd_gradient_room(&own->shape);
     step->backward_scratch = conv_prepared_bytes(step) + (back > gradient ? back : gradient) * sizeof(float);
 }
 
@@ -120,12 +113,11 @@ status winograd_create(nn_step *step)
     if (!own) return fail(ERROR_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = own;
-    own->forward = own->back = shape_of(step);
-    own->back.in = own->forward.out;
-    own->back.out = own->forward.in;
+    own->shape = shape_of(step);
     conv_count_flops(step);
     plan_scratch(step, own);
-    status s = conv_new_folded_bias(step, &own->folded_bias);
-    if (s == OK) s = own_weights(step, &own->weights);
-    return s == OK && step->backs && step->wants[0] ? own_weights(step, &own->weights_back) : s;
+    const size_t bytes = winograd_weights(own->shape.in, own->shape.out) * sizeof(float);
+    status s = conv_own_folded_bias(step, &own->folded_bias);
+    if (s == OK) s = conv_own(step, bytes, &own->weights);
+    return s == OK && step->backs && step->wants[0] ? conv_own(step, bytes, &own->weights_back) : s;
 }
