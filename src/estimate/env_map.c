@@ -123,18 +123,35 @@ static void project(const img *map, float sh[9][3])
     }
 }
 
-/* A copy without impossible values, no wider than what the octahedron resolves. */
+/* A copy without impossible values, halved while it divides and is wider than what the octahedron resolves: of the
+ * largest maps, of gigabytes, no second one as large is made. */
+static status sound_copy(const img *latlong, img *out)
+{
+    int n = 1;
+    while (latlong->width % (2 * n) == 0 && latlong->height % (2 * n) == 0 && latlong->width / (2 * n) >= WIDEST_MAP)
+        n *= 2;
+    status s = img_new(out, latlong->width / n, latlong->height / n, 3);
+    if (s != OK) return s;
+    const float share = 1 / ((float)n * (float)n);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < latlong->height / n; y++)
+        for (int i = 0; i < n; i++)
+            for (int x = 0; x < latlong->width; x++) {
+                const float *from = img_at(latlong, x, y * n + i);
+                float *to = img_at(out, x / n, y);
+                for (int c = 0; c < 3; c++)
+                    to[c] += isfinite(from[c]) && from[c] > 0 ? from[c] * share : 0;
+            }
+    return OK;
+}
+
 static status tidy_copy(const img *latlong, img *out)
 {
-    int width = latlong->width < WIDEST_MAP ? latlong->width : WIDEST_MAP;
-    int height = latlong->height < WIDEST_MAP / 2 ? latlong->height : WIDEST_MAP / 2;
     img sound = {0};
-    status s = img_copy(&sound, latlong);
-    if (s != OK) return s;
-    size_t count = 3 * (size_t)sound.width * (size_t)sound.height;
-    for (size_t i = 0; i < count; i++)
-        if (!(isfinite(sound.data[i]) && sound.data[i] > 0)) sound.data[i] = 0;
-    s = img_resize(&sound, width, height, out);
+    status s = sound_copy(latlong, &sound);
+    int width = sound.width < WIDEST_MAP ? sound.width : WIDEST_MAP;
+    int height = sound.height < WIDEST_MAP / 2 ? sound.height : WIDEST_MAP / 2;
+    if (s == OK) s = img_resize(&sound, width, height, out);
     img_free(&sound);
     return s;
 }

@@ -126,37 +126,54 @@ static bool convert_space(VipsImage **image)
     return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
 }
 
-static void take_floats(const float *from, int bands, img *out)
+/* What libvips has ready of an image of floats; it hands out whole rows. */
+static int put_floats(VipsRegion *from, VipsRect *area, void *context)
 {
-    size_t pixels = (size_t)out->width * (size_t)out->height, channels = (size_t)out->channels;
-    for (size_t i = 0; i < pixels; i++)
-        memcpy(out->data + i * channels, from + i * (size_t)bands, channels * sizeof *from);
+    const img *out = context;
+    size_t bands = (size_t)vips()->image_get_bands(from->im), channels = (size_t)out->channels;
+    for (int y = area->top; y < area->top + area->height; y++) {
+        const void *first = from->data + (ptrdiff_t)(y - from->valid.top) * VIPS_REGION_LSKIP(from);
+        const float *row = first;
+        float *to = img_at(out, 0, y);
+        for (size_t x = 0; x < (size_t)area->width; x++)
+            memcpy(to + x * channels, row + x * bands, channels * sizeof *to);
+    }
+    return 0;
+}
+
+static status take_codes(VipsImage *image, const char *path, bool decode, img *out)
+{
+    size_t size = 0;
+    void *samples = vips()->image_write_to_memory(image, &size);
+    if (!samples) return vips_refusal(ERROR_INPUT, "read", path);
+    bool wide = vips()->image_get_format(image) == VIPS_FORMAT_USHORT;
+    picture_take_codes(samples, wide, vips()->image_get_bands(image), 0, decode, out);
+    vips()->g_free(samples);
+    return OK;
+}
+
+/* Floats as they come, for of the largest pictures, of gigabytes, there should be one copy. */
+static status take_floats(VipsImage *image, const char *path, img *out)
+{
+    VipsImage *floats = NULL;
+    if (vips()->cast(image, &floats, VIPS_FORMAT_FLOAT, NULL)) return vips_refusal(ERROR_INPUT, "read", path);
+    status s = vips()->sink_disc(floats, put_floats, out) ? vips_refusal(ERROR_INPUT, "read", path) : OK;
+    vips()->g_object_unref(floats);
+    return s;
 }
 
 /* Takes the pixels out of libvips; decode: integers are sRGB. */
 static status take(VipsImage *image, const char *path, bool decode, img *out)
 {
-    int bands = vips()->image_get_bands(image);
     VipsBandFormat format = vips()->image_get_format(image);
-    VipsImage *cast = NULL;
-    if (format != VIPS_FORMAT_UCHAR && format != VIPS_FORMAT_USHORT && format != VIPS_FORMAT_FLOAT &&
-        format != VIPS_FORMAT_DOUBLE)
+    bool codes = format == VIPS_FORMAT_UCHAR || format == VIPS_FORMAT_USHORT;
+    if (!codes && format != VIPS_FORMAT_FLOAT && format != VIPS_FORMAT_DOUBLE)
         return fail(ERROR_INPUT, "cannot read %s: its samples are of type %s; 8 or 16 bits or floats are read", path,
                     vips()->enum_nick(vips()->band_format_get_type(), format));
-    if (format == VIPS_FORMAT_DOUBLE) format = VIPS_FORMAT_FLOAT;
-    if (vips()->cast(image, &cast, format, NULL)) return vips_refusal(ERROR_INPUT, "read", path);
-    size_t size = 0;
-    void *samples = vips()->image_write_to_memory(cast, &size);
-    int width = vips()->image_get_width(cast), height = vips()->image_get_height(cast);
-    vips()->g_object_unref(cast);
-    if (!samples) return vips_refusal(ERROR_INPUT, "read", path);
-    status s = img_new(out, width, height, bands < 3 ? 1 : 3);
-    if (s == OK && format == VIPS_FORMAT_FLOAT)
-        take_floats(samples, bands, out);
-    else if (s == OK)
-        picture_take_codes(samples, format == VIPS_FORMAT_USHORT, bands, 0, decode, out);
-    vips()->g_free(samples);
-    return s;
+    int width = vips()->image_get_width(image), height = vips()->image_get_height(image);
+    status s = img_new(out, width, height, vips()->image_get_bands(image) < 3 ? 1 : 3);
+    if (s != OK) return s;
+    return codes ? take_codes(image, path, decode, out) : take_floats(image, path, out);
 }
 
 static status decode_open(VipsImage **image, VipsImage **opacity, const char *path, picture_colour how, img *color,

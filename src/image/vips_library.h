@@ -48,6 +48,7 @@
     USE(premultiply)                                                                                                   \
     USE(rad2float)                                                                                                     \
     USE(radload)                                                                                                       \
+    USE(sink_disc)                                                                                                     \
     USE(svgload_buffer)                                                                                                \
     USE(tiffload)                                                                                                      \
     USE(type_find)                                                                                                     \

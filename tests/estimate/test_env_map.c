@@ -146,6 +146,34 @@ static void impossible_radiance_counts_as_black(void **state)
     img_free(&latlong);
 }
 
+/* Every pixel of a map as four of a wider one, one of them impossible and the others more by a third. */
+static void a_map_wider_than_is_resolved_is_its_means(void **state)
+{
+    (void)state;
+    enum { WIDTH = 1024, HEIGHT = WIDTH / 2 };
+    img narrow = {0}, wide = {0};
+    env_map a, b;
+    assert_int_equal(img_new(&narrow, WIDTH, HEIGHT, 3), OK);
+    assert_int_equal(img_new(&wide, 2 * WIDTH, 2 * HEIGHT, 3), OK);
+    for (int y = 0; y < 2 * HEIGHT; y++)
+        for (int x = 0; x < 2 * WIDTH; x++)
+            for (int c = 0; c < 3; c++) {
+                float value = 1 + (float)((x / 2 * 7 + y / 2 * 3 + c) % 10);
+                img_at(&narrow, x / 2, y / 2)[c] = value;
+                img_at(&wide, x, y)[c] = x % 2 && y % 2 ? INFINITY : value * 4 / 3;
+            }
+    assert_int_equal(env_map_new(&narrow, &a), OK);
+    assert_int_equal(env_map_new(&wide, &b), OK);
+    for (int i = 0; i < DIRECTIONS; i++)
+        assert_float_equal(env_map_lookup(&a, direction(i), 0).x, env_map_lookup(&b, direction(i), 0).x, 1e-4);
+    for (int i = 0; i < 27; i++)
+        assert_float_equal(a.sh[i / 3][i % 3], b.sh[i / 3][i % 3], 1e-4);
+    env_map_free(&a);
+    env_map_free(&b);
+    img_free(&narrow);
+    img_free(&wide);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -155,6 +183,7 @@ int main(void)
         cmocka_unit_test(what_was_ahead_is_to_the_right_after_a_quarter_turn),
         cmocka_unit_test(coefficients_are_those_of_the_map),
         cmocka_unit_test(impossible_radiance_counts_as_black),
+        cmocka_unit_test(a_map_wider_than_is_resolved_is_its_means),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
