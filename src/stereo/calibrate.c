@@ -97,7 +97,7 @@ static status find_circle(const char *folder, const pst_calibrate_options *optio
     if (s == OK && found && c->camera.focal > 0) s = ball_center(&picture, &c->camera, &out->circle, center);
     if (s == OK && !found && mask) s = fail(ERROR_INPUT, "the mask %s is not round", mask);
     if (s == OK && !found)
-        s = fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline with --mask", folder);
+        s = fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
     img_free(&picture);
     free(mask);
     return s;

@@ -19,7 +19,7 @@ static status find_lights(const char *folder, const char *asked, char **path)
     if (s != OK || found < 2) return s;
     free(*path);
     *path = NULL;
-    return fail(ERROR_INPUT, "%s has %zu .lp files; say which with --lights", folder, found);
+    return fail(ERROR_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
 }
 
 /* The name alone of what an .lp line may give with a path from another machine. */
@@ -211,8 +211,8 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
     if (s == OK && !lights) s = pst_check_pictures(folder);
     if (s == OK && !lights)
         return fail(ERROR_INPUT,
-                    "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); give them "
-                    "with --lights, or use --method uncalibrated",
+                    "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
+                    "holds them, or use method uncalibrated",
                     folder);
     if (s == OK) s = read_listed(folder, lights, options->near, c);
     if (s == OK) s = pst_read_intensities(folder, c);

@@ -93,7 +93,8 @@ static status check_method(const pst_capture *c, pst_method m)
                     pst_method_name(m), c->lighting == PST_NEAR ? "near" : "uncalibrated");
     if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
         return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
-                    c->lighting == PST_DISTANT ? "robust, or --near if its list holds positions" : "uncalibrated");
+                    c->lighting == PST_DISTANT ? "robust, or say that its lights are near if its list holds positions"
+                                               : "uncalibrated");
     if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
         return fail(ERROR_USAGE, "method near needs the camera's focal length");
     if (c->count < 3)
