@@ -22,6 +22,8 @@ typedef struct reading {
     bool decode;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
+    img *first;       /* the first picture, until it is stored */
+    int bits;         /* its */
     float *brightest; /* of every picture, of floats */
     pst_capture *into;
 } reading;
@@ -114,20 +116,16 @@ static status measure_scale(reading *r)
 
 static status read_first_shape(reading *r, pst_capture *c)
 {
-    img first;
-    int bits;
-    status s = read_one(r, c->name[0], &first, &bits);
+    const img *first = r->first;
+    status s = read_one(r, c->name[0], r->first, &r->bits);
     if (s != OK) return s;
-    status fits = OK;
-    if (c->width && (c->width != first.width || c->height != first.height))
-        fits = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
-                    first.width, first.height, c->width, c->height);
-    c->width = first.width;
-    c->height = first.height;
-    c->channels = first.channels;
-    img_free(&first);
-    if (fits != OK) return fits;
-    return bits == 32 ? measure_scale(r) : OK;
+    if (c->width && (c->width != first->width || c->height != first->height))
+        s = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
+                 first->width, first->height, c->width, c->height);
+    c->width = first->width;
+    c->height = first->height;
+    c->channels = first->channels;
+    return s == OK && r->bits == 32 ? measure_scale(r) : s;
 }
 
 static status read_ambient(reading *r, const char *asked, const pst_capture *c)
@@ -151,11 +149,21 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
     return s;
 }
 
+/* The first has been read for its shape. */
+static status get_picture(const reading *r, int i, img *out, int *bits)
+{
+    if (i > 0) return read_one(r, r->into->name[i], out, bits);
+    *out = *r->first;
+    *bits = r->bits;
+    *r->first = (img){0};
+    return OK;
+}
+
 static status take_picture(const reading *r, int i)
 {
     img picture;
     int bits;
-    status s = read_one(r, r->into->name[i], &picture, &bits);
+    status s = get_picture(r, i, &picture, &bits);
     if (s != OK) return s;
     s = check_shape(r, r->into, r->into->name[i], &picture);
     if (s == OK) s = store(r, &picture, bits, &r->into->picture[i]);
@@ -165,10 +173,12 @@ static status take_picture(const reading *r, int i)
 
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
 {
-    reading r = {.folder = folder, .decode = !options->linear, .scale = 1, .into = c};
+    img first = {0};
+    reading r = {.folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c};
     status s = read_first_shape(&r, c);
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = for_pictures(&r, take_picture);
     img_free(&r.ambient);
+    img_free(&first);
     return s;
 }

@@ -59,17 +59,20 @@ for file in ./b.{mtl,obj,png} out/{maps.exr,report.json}; do
 done
 
 echo "one photograph"
+# by weights that ship: those of four presentations make much of the last digit, which processors differ in
+export MERLIN_MODEL=$MERLIN_SOURCE_DIR/models/merlin-point.safetensors
 succeeds '"normal_spread_mean_degrees"' stereo disc.hdr --size 64 --json -o photo
 present "${files[@]/#/photo/}" photo/mesh.glb
 
 echo "its maps, which are there already"
 spread() { grep -o '"normal_spread_mean_degrees":[0-9.]*' stdout | cut -d: -f2; }
 estimated=$(spread)
-cp -r disc.merlin estimated
+succeeds estimated "$MERLIN" estimate disc.hdr --size 64 -o estimated
 succeeds '"normal_spread_mean_degrees"' stereo estimated --json
 present "${files[@]/#/estimated/stereo/}" estimated/stereo/mesh.glb
 # what estimate wrote is in half floats: three digits
-awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < 0.01 * $estimated ^ 2) }" || complain "$(spread) is not $estimated"
+awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < (0.005 * $estimated) ^ 2) }" || complain "$(spread) is not $estimated"
+export MERLIN_MODEL=$scratch/weights.safetensors
 cp dome/dome_* dome/dome.lp estimated
 succeeds '"pictures": *6' stereo estimated --method ls --json -o out
 refuses 2 'holds maps already' stereo disc.merlin --size 64
