@@ -123,45 +123,16 @@ static void project(const img *map, float sh[9][3])
     }
 }
 
-/* A copy without impossible values, halved while it divides and is wider than what the octahedron resolves: of the
- * largest maps, of gigabytes, no second one as large is made. */
-static status sound_copy(const img *latlong, img *out)
-{
-    int n = 1;
-    while (latlong->width % (2 * n) == 0 && latlong->height % (2 * n) == 0 && latlong->width / (2 * n) >= WIDEST_MAP)
-        n *= 2;
-    status s = img_new(out, latlong->width / n, latlong->height / n, 3);
-    if (s != OK) return s;
-    const float share = 1 / ((float)n * (float)n);
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < latlong->height / n; y++)
-        for (int i = 0; i < n; i++)
-            for (int x = 0; x < latlong->width; x++) {
-                const float *from = img_at(latlong, x, y * n + i);
-                float *to = img_at(out, x / n, y);
-                for (int c = 0; c < 3; c++)
-                    to[c] += isfinite(from[c]) && from[c] > 0 ? from[c] * share : 0;
-            }
-    return OK;
-}
-
-static status tidy_copy(const img *latlong, img *out)
-{
-    img sound = {0};
-    status s = sound_copy(latlong, &sound);
-    int width = sound.width < WIDEST_MAP ? sound.width : WIDEST_MAP;
-    int height = sound.height < WIDEST_MAP / 2 ? sound.height : WIDEST_MAP / 2;
-    if (s == OK) s = img_resize(&sound, width, height, out);
-    img_free(&sound);
-    return s;
-}
-
-status env_map_new(const img *latlong, env_map *out)
+status env_map_new(img *latlong, env_map *out)
 {
     *out = (env_map){.cosine = 1};
     img map = {0};
     if (latlong->channels != 3) return fail(ERROR_USAGE, "an environment map needs 3 channels");
-    status s = tidy_copy(latlong, &map);
+    img_blacken_impossible(latlong);
+    /* no wider than what the octahedron resolves */
+    int width = latlong->width < WIDEST_MAP ? latlong->width : WIDEST_MAP;
+    int height = latlong->height < WIDEST_MAP / 2 ? latlong->height : WIDEST_MAP / 2;
+    status s = img_resize(latlong, width, height, &map);
     if (s == OK) s = resample(&map, &out->levels[0]);
     for (int i = 1; i < ENV_MAP_LEVELS && s == OK; i++) {
         int side = ENV_MAP_SIDE >> i;

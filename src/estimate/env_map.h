@@ -23,8 +23,9 @@ typedef struct env_map {
     float cosine, sine;         /* of the turn */
 } env_map;
 
-/* latlong: 3 channels, radiance, as in optics/latlong.h; what is not finite or negative counts as black. */
-status env_map_new(const img *latlong, env_map *out);
+/* latlong: 3 channels, radiance, as in optics/latlong.h; what is not finite or negative becomes black there, too: of
+ * the largest maps, of gigabytes, no second one is made. */
+status env_map_new(img *latlong, env_map *out);
 void env_map_free(env_map *e);
 
 /* Turns it further about the vertical, seen from above clockwise: ahead to the right, right to behind the camera. */

@@ -115,11 +115,8 @@ void maps_tidy(merlin_maps *maps)
     surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness), img_of(&maps->depth),
                    img_of(&maps->mask)};
     surface_tidy(&all);
-    size_t count = 3 * (size_t)maps->photo.width * (size_t)maps->photo.height;
-    for (size_t i = 0; i < count; i++) {
-        float x = maps->photo.data[i];
-        if (!(isfinite(x) && x >= 0)) maps->photo.data[i] = 0;
-    }
+    img photo = img_of(&maps->photo);
+    img_blacken_impossible(&photo);
 }
 
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)

@@ -1,5 +1,6 @@
 #include "image/image.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,12 @@ img_span img_row_span(const img *mask, int y)
     while (s.first < s.end && row[s.first] == 0)
         s.first++;
     return s;
+}
+
+void img_blacken_impossible(img *image)
+{
+    for (size_t i = 0, n = img_value_count(image); i < n; i++)
+        if (!(isfinite(image->data[i]) && image->data[i] >= 0)) image->data[i] = 0;
 }
 
 void img_add(const img *part, img *sum)

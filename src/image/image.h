@@ -38,6 +38,9 @@ static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
     return count;
 }
 
+/* What no light has, values that are not finite or negative, becomes 0. */
+void img_blacken_impossible(img *image);
+
 /* sum += part, of the same size; its zeros leave the sum alone. */
 void img_add(const img *part, img *sum);
 

@@ -1,16 +1,9 @@
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/file.h"
 #include "image/read.h"
 #include "image/resize.h"
 #include "render/environment.h"
-
-static void blacken_negative(img *map)
-{
-    for (size_t i = 0, values = img_value_count(map); i < values; i++)
-        map->data[i] = fmaxf(0, map->data[i]);
-}
 
 /* Reads one map and resizes it. Negative values of odd files count as black, before they take light from those beside
  * them or give it; enlarging, too, makes some. */
@@ -19,11 +12,11 @@ static status read_map(const char *path, img *out)
     img full = {0};
     status s = img_read_latlong(path, &full);
     if (s != OK) return s;
-    blacken_negative(&full);
+    img_blacken_impossible(&full);
     s = img_resize(&full, ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, out);
     img_free(&full);
     if (s != OK) return fail_in(s, "cannot use %s as an environment", path);
-    blacken_negative(out);
+    img_blacken_impossible(out);
     return OK;
 }
 
