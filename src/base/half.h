@@ -33,12 +33,13 @@ static inline uint16_t float_to_bf16(float x)
     return (uint16_t)((u + 0x7fffu + ((u >> 16) & 1u)) >> 16);
 }
 
+/* Exact also where the processor takes denormal floats for zero: no subnormal half passes through one. */
 static inline float half_to_float(uint16_t h)
 {
     uint32_t sign = (uint32_t)(h & 0x8000u) << 16, rest = h & 0x7fffu;
-    if (rest >= 0x7c00u) return bits_float(sign | 0x7f800000u | ((rest & 0x3ffu) << 13));
-    /* scaling by 2^112 turns the half's exponent bias into the float's and handles subnormals by itself */
-    return bits_float(sign | float_bits(bits_float(rest << 13) * 0x1p112f));
+    if (rest < 0x400u) return bits_float(sign | float_bits((float)(int32_t)rest * 0x1p-24f));
+    uint32_t infinite = rest >= 0x7c00u ? 0x38000000u : 0;
+    return bits_float(sign | ((rest << 13) + 0x38000000u + infinite));
 }
 
 /* Too large a value becomes infinity. */

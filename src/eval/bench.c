@@ -21,6 +21,7 @@ static status measure_copy(const bench_options *o, bench_report *out)
 
 typedef struct network_work {
     nn_graph *graph;
+    nn_params *params;
     nn_program *program;
     nn_adam *adam; /* NULL: inference */
 } network_work;
@@ -62,14 +63,24 @@ static void fill_inputs(nn_program *p, size_t pixels)
     }
 }
 
-static status build_network(const model_config *config, nn_params *params, const nn_options *options, network_work *w)
+static status use_network(const char *weights, const nn_options *options, network_work *w)
 {
-    bool training = options->purpose == NN_TRAIN;
-    status s = model_build(config, training ? MODEL_TRAINING : MODEL_WHOLE, &w->graph);
-    if (s == OK) s = nn_compile(w->graph, params, options, &w->program);
-    if (s == OK && training)
-        s = nn_adam_new(params, &(nn_adam_options){.beta1 = 0.9f, .beta2 = 0.999f, .epsilon = 1e-8f}, &w->adam);
-    return s;
+    model_config config;
+    status s = model_load(weights, &config, &w->params);
+    if (s == OK) s = model_build(&config, MODEL_WHOLE, &w->graph);
+    return s == OK ? nn_compile(w->graph, w->params, options, &w->program) : s;
+}
+
+static status train_network(const char *weights, const nn_options *options, network_work *w)
+{
+    model_config config;
+    status s = model_load_config(weights, &config);
+    if (s == OK) s = model_build(&config, MODEL_TRAINING, &w->graph);
+    if (s == OK) s = nn_params_new(w->graph, 0, &w->params);
+    if (s == OK) s = nn_params_load(w->params, weights);
+    if (s == OK) s = nn_compile(w->graph, w->params, options, &w->program);
+    if (s != OK) return s;
+    return nn_adam_new(w->params, &(nn_adam_options){.beta1 = 0.9f, .beta2 = 0.999f, .epsilon = 1e-8f}, &w->adam);
 }
 
 /* Behind a line that says what ran: the program's steps, the best time of each (nn_profile). */
@@ -86,13 +97,9 @@ static status profile_network(const bench_options *o, const nn_options *options,
 static status measure_network(const bench_options *o, const char *weights, const nn_options *options, double peak,
                               bench_network *out)
 {
-    model_config config;
-    nn_params *params;
     network_work w = {0};
     bench_reset_resident();
-    status s = model_load(weights, &config, &params);
-    if (s != OK) return s;
-    s = build_network(&config, params, options, &w);
+    status s = options->purpose == NN_TRAIN ? train_network(weights, options, &w) : use_network(weights, options, &w);
     if (s == OK) {
         fill_inputs(w.program, (size_t)options->batch * (size_t)options->height * (size_t)options->width);
         s = bench_time(run_network, &w, bench_patience_of(o->quick), &out->seconds);
@@ -108,7 +115,7 @@ static status measure_network(const bench_options *o, const char *weights, const
     nn_adam_free(w.adam);
     nn_program_free(w.program);
     nn_graph_free(w.graph);
-    nn_params_free(params);
+    nn_params_free(w.params);
     return s;
 }
 
@@ -173,12 +180,9 @@ static status measure_relight(const bench_options *o, bench_report *out)
 static status read_name(const bench_options *o, bench_report *out)
 {
     model_config config;
-    nn_params *params;
-    status s = model_load(o->weights, &config, &params);
-    if (s != OK) return s;
-    nn_params_free(params);
-    memcpy(out->model, config.name, sizeof out->model);
-    return OK;
+    status s = model_load_config(o->weights, &config);
+    if (s == OK) memcpy(out->model, config.name, sizeof out->model);
+    return s;
 }
 
 status bench_run(const bench_options *options, bench_report *out)

@@ -387,16 +387,20 @@ static status read_config(const st_file *file, const char *weights, model_config
 static status load(const st_file *file, const char *weights, model_config *config, nn_params **params)
 {
     nn_graph *g = NULL;
-    nn_params *p = NULL;
     status s = read_config(file, weights, config);
     if (s == OK) s = model_build(config, MODEL_WHOLE, &g);
-    if (s == OK) s = nn_params_zero(g, &p);
-    if (s == OK) s = nn_params_take(p, file, weights);
+    if (s == OK) s = nn_params_open(g, file, weights, params);
     nn_graph_free(g);
-    if (s != OK)
-        nn_params_free(p);
-    else
-        *params = p;
+    return s;
+}
+
+status model_load_config(const char *weights, model_config *config)
+{
+    st_file *file;
+    status s = st_open(weights, &file);
+    if (s != OK) return s;
+    s = read_config(file, weights, config);
+    st_close(file);
     return s;
 }
 

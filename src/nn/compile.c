@@ -255,9 +255,16 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
     return s;
 }
 
+static bool can_be_trained(const nn_params *params)
+{
+    return params->halves == NULL;
+}
+
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out)
 {
     *out = NULL;
+    if (options->purpose == NN_TRAIN && !can_be_trained(params))
+        return fail(ERROR_USAGE, "parameters of nn_params_open are not for training");
     nn_program *p = calloc(1, sizeof *p);
     if (!p) return fail(ERROR_MEMORY, "no memory for a program");
     p->device = cpu_device();

@@ -17,7 +17,7 @@ nn_cost nn_program_cost(const nn_program *p)
         const nn_param *param = nn_params_at(p->params, i);
         if (!param->gradient) continue;
         cost.parameter_count += param->count;
-        cost.parameter_bytes += param->count * sizeof(float);
+        cost.parameter_bytes += param->count * (param->half ? sizeof *param->half : sizeof *param->value);
     }
     return cost;
 }

@@ -112,8 +112,9 @@ struct st_file; /* nn/safetensors.h */
 
 /* Fresh parameters for a graph: convolutions He 2015, gamma 1, beta 0, biases 0. Deterministic from seed. */
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out);
-/* The same with zeros where nn_params_new draws random numbers: for nn_params_load, which then starts sooner. */
-status nn_params_zero(const nn_graph *g, nn_params **out);
+/* Those of a safetensors file that is open already, as nn_params_load has them; path for messages. They are for
+ * programs of NN_INFER alone: weights that the file has as half floats stay such, in half the memory. */
+status nn_params_open(const nn_graph *g, const struct st_file *f, const char *path, nn_params **out);
 void nn_params_free(nn_params *params);
 size_t nn_params_count(const nn_params *params);
 
@@ -123,7 +124,8 @@ typedef struct nn_param {
     int64_t shape[4];
     size_t count;
     size_t place;              /* where its values begin among all parameters' (nn_params_values) */
-    float *value;              /* float32 master */
+    float *value;              /* float32 master; NULL where half has it */
+    uint16_t *half;            /* NULL but for weights of nn_params_open */
     float *gradient;           /* filled by nn_backward; NULL for running statistics */
     float learning_rate_scale; /* multiplies Adam's rate; 1 unless nn_params_scale_rate said otherwise */
 } nn_param;
@@ -140,8 +142,6 @@ void nn_params_touch(nn_params *params);
 status nn_params_load(nn_params *params, const char *path);
 /* From another model's file: what fits by name and shape; the rest stays as it is. Nothing that fits is an error. */
 status nn_params_load_shared(nn_params *params, const char *path);
-/* The same from a file that is open already; path for messages. */
-status nn_params_take(nn_params *params, const struct st_file *f, const char *path);
 
 /* ---- programs ---- */
 

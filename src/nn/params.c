@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "nn/safetensors.h"
 
 enum { PARAMS_PER_NODE = 4, NAME_LIMIT = 256 };
 
@@ -61,20 +62,31 @@ static uint64_t hash_name(const char *name)
     return hash;
 }
 
-enum { LINE_FLOATS = MEMORY_ALIGNMENT / sizeof(float) };
-
-/* Floats with room to start the next parameter on a cache line. */
+/* As many values as leave room to start the next parameter on a cache line. */
 static size_t padded(size_t count)
 {
-    return (count + LINE_FLOATS - 1) / LINE_FLOATS * LINE_FLOATS;
+    enum { LINE = MEMORY_ALIGNMENT / sizeof(uint16_t) };
+    return (count + LINE - 1) / LINE * LINE;
 }
 
-/* How many floats all parameters' values and gradients take, or where the next one's begin. */
+/* Where parameters have their first values from. */
+typedef struct source {
+    const uint64_t *seed; /* NULL: zeros instead of random numbers */
+    const st_file *file;  /* NULL, or what decides which weights are kept as half floats */
+} source;
+
+static bool stays_half(const source *from, const param_spec *spec)
+{
+    const st_tensor *t = from->file && spec->fan_in > 0 ? st_find(from->file, spec->name) : NULL;
+    return t && t->type == ST_F16;
+}
+
+/* How many values all parameters have as floats, as half floats and of gradients, or where the next one's begin. */
 typedef struct room {
-    size_t values, gradients;
+    size_t values, halves, gradients;
 } room;
 
-static status add_param(nn_params *params, const param_spec *spec, room *needed)
+static status add_param(nn_params *params, const param_spec *spec, const source *from, room *needed)
 {
     nn_param *p = &params->items[params->count++];
     *p = (nn_param){.rank = spec->rank, .count = 1, .learning_rate_scale = 1};
@@ -84,12 +96,11 @@ static status add_param(nn_params *params, const param_spec *spec, room *needed)
     p->name = strdup(spec->name);
     if (!p->name) return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
     p->place = needed->values;
-    needed->values += padded(p->count);
+    *(stays_half(from, spec) ? &needed->halves : &needed->values) += padded(p->count);
     if (spec->trained) needed->gradients += padded(p->count);
     return OK;
 }
 
-/* seed NULL: zeros instead of random numbers. */
 static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed)
 {
     if (!seed && spec->fan_in > 0) return;
@@ -99,30 +110,37 @@ static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed
         p->value[i] = spec->fan_in > 0 ? deviation * rng_normal(&random) : spec->constant;
 }
 
-static status fill_params(nn_params *params, const nn_graph *g, const uint64_t *seed, const room *needed)
+static status fill_params(nn_params *params, const nn_graph *g, const source *from, const room *needed)
 {
     /* the gradients of a model that is not trained are pages that nobody touches */
     params->values = memory_new(needed->values * sizeof *params->values);
+    uint16_t *halves = params->halves = needed->halves ? memory_new(needed->halves * sizeof *halves) : NULL;
     float *gradients = params->gradients = memory_new(needed->gradients * sizeof *gradients);
-    if (!params->values || !gradients) return fail(ERROR_MEMORY, "no memory for parameters");
+    if (!params->values || !gradients || (needed->halves && !halves))
+        return fail(ERROR_MEMORY, "no memory for parameters");
     params->value_count = needed->values;
     nn_param *p = params->items;
     for (int i = 0; i < g->count; i++) {
         param_spec specs[PARAMS_PER_NODE];
         int count = node_specs(g->nodes[i], specs);
         for (int k = 0; k < count; k++, p++) {
-            p->value = params->values + p->place;
             if (specs[k].trained) {
                 p->gradient = gradients;
                 gradients += padded(p->count);
             }
-            fill_param(p, &specs[k], seed);
+            if (stays_half(from, &specs[k])) {
+                p->half = halves;
+                halves += padded(p->count);
+                continue;
+            }
+            p->value = params->values + p->place;
+            fill_param(p, &specs[k], from->seed);
         }
     }
     return OK;
 }
 
-static status make_params(const nn_graph *g, const uint64_t *seed, nn_params **out)
+static status make_params(const nn_graph *g, const source *from, nn_params **out)
 {
     *out = NULL;
     status s = graph_check(g);
@@ -139,9 +157,9 @@ static status make_params(const nn_graph *g, const uint64_t *seed, nn_params **o
         param_spec specs[PARAMS_PER_NODE];
         int count = node_specs(g->nodes[i], specs);
         for (int k = 0; k < count && s == OK; k++)
-            s = add_param(params, &specs[k], &needed);
+            s = add_param(params, &specs[k], from, &needed);
     }
-    if (s == OK) s = fill_params(params, g, seed, &needed);
+    if (s == OK) s = fill_params(params, g, from, &needed);
     if (s == OK)
         *out = params;
     else
@@ -151,12 +169,12 @@ static status make_params(const nn_graph *g, const uint64_t *seed, nn_params **o
 
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
 {
-    return make_params(g, &seed, out);
+    return make_params(g, &(source){.seed = &seed}, out);
 }
 
-status nn_params_zero(const nn_graph *g, nn_params **out)
+status params_like(const nn_graph *g, const st_file *f, nn_params **out)
 {
-    return make_params(g, NULL, out);
+    return make_params(g, &(source){.file = f}, out);
 }
 
 void nn_params_free(nn_params *params)
@@ -165,6 +183,7 @@ void nn_params_free(nn_params *params)
     for (size_t i = 0; params->items && i < params->count; i++)
         free((void *)params->items[i].name);
     memory_free(params->values);
+    memory_free(params->halves);
     memory_free(params->gradients);
     free(params->items);
     free(params);

@@ -10,7 +10,13 @@ struct nn_params {
     uint64_t version; /* grows whenever values change */
     size_t value_count;
     float *values, *gradients; /* what the items point into */
+    uint16_t *halves;          /* NULL where none is kept so */
 };
+
+/* Every parameter's values from the file's tensor of its name, all or nothing. */
+status params_take(nn_params *params, const struct st_file *f, const char *path);
+/* With zeros where nn_params_new draws random numbers. */
+status params_like(const nn_graph *g, const struct st_file *f, nn_params **out);
 
 /* The parameters an operation may have; absent ones are NULL. */
 typedef struct node_params {

@@ -1,4 +1,6 @@
 /* Parameters from a safetensors file. */
+#include <string.h>
+
 #include "nn/params.h"
 #include "nn/safetensors.h"
 
@@ -18,7 +20,15 @@ static status check_tensor(const nn_param *p, const st_tensor *t, const char *pa
     return OK;
 }
 
-status nn_params_take(nn_params *params, const st_file *f, const char *path)
+/* Where a parameter is kept as half floats, the tensor has them. */
+static status take_values(const nn_param *p, const st_tensor *t)
+{
+    if (!p->half) return st_to_float(t, p->value);
+    memcpy(p->half, t->data, t->count * sizeof *p->half);
+    return OK;
+}
+
+status params_take(nn_params *params, const st_file *f, const char *path)
 {
     for (size_t i = 0; i < params->count; i++) {
         status s = check_tensor(&params->items[i], st_find(f, params->items[i].name), path);
@@ -30,11 +40,21 @@ status nn_params_take(nn_params *params, const st_file *f, const char *path)
             return fail(ERROR_INPUT, "%s: the model has no parameter for tensor %s", path, name);
     }
     for (size_t i = 0; i < params->count; i++) {
-        status s = st_to_float(st_find(f, params->items[i].name), params->items[i].value);
+        status s = take_values(&params->items[i], st_find(f, params->items[i].name));
         if (s != OK) return fail_in(s, "%s: tensor %s", path, params->items[i].name);
     }
     nn_params_touch(params);
     return OK;
+}
+
+status nn_params_open(const nn_graph *g, const st_file *f, const char *path, nn_params **out)
+{
+    nn_params *params;
+    status s = params_like(g, f, &params);
+    if (s == OK) s = params_take(params, f, path);
+    *out = s == OK ? params : NULL;
+    if (s != OK) nn_params_free(params);
+    return s;
 }
 
 static status take_shared(nn_params *params, const st_file *f, const char *path)
@@ -70,5 +90,5 @@ status nn_params_load_shared(nn_params *params, const char *path)
 
 status nn_params_load(nn_params *params, const char *path)
 {
-    return load(params, path, nn_params_take);
+    return load(params, path, params_take);
 }

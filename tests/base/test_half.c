@@ -7,6 +7,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include <cmocka.h>
 
 /* The value of sign, exponent and fraction as IEEE 754 writes it. */
@@ -26,6 +30,25 @@ static void every_half_has_the_value_of_its_definition(void **state)
         assert_true(isnan(wanted) ? isnan(found) : found == wanted);
         assert_true(!!signbit(found) == !!signbit(wanted) || isnan(wanted));
     }
+}
+
+/* As in a run of the network. */
+static void halves_have_their_values_where_denormals_are_zero(void **state)
+{
+    (void)state;
+#ifdef __SSE__
+    enum { FLUSHED = 0x8040, COUNT = 0x400 };
+    static float found[COUNT];
+    const unsigned before = _mm_getcsr();
+    _mm_setcsr(before | FLUSHED);
+    for (unsigned h = 0; h < COUNT; h++)
+        found[h] = half_to_float((uint16_t)h);
+    _mm_setcsr(before);
+    for (unsigned h = 0; h < COUNT; h++)
+        assert_true((double)found[h] == half_by_definition(h));
+#else
+    skip();
+#endif
 }
 
 static void every_half_survives_the_round_trip(void **state)
@@ -99,6 +122,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_half_has_the_value_of_its_definition),
+        cmocka_unit_test(halves_have_their_values_where_denormals_are_zero),
         cmocka_unit_test(every_half_survives_the_round_trip),
         cmocka_unit_test(every_bfloat16_survives_the_round_trip),
         cmocka_unit_test(halves_round_to_nearest_and_ties_to_even),

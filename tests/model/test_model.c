@@ -165,6 +165,7 @@ static void default_models_keep_the_budget(void **unused)
     (void)unused;
     keeps_the_budget("merlin-point");
     keeps_the_budget("merlin-point-deep");
+    keeps_the_budget("merlin-point-fine");
     keeps_the_budget("merlin-env");
 }
 

@@ -9,6 +9,7 @@
 
 #include <setjmp.h>
 
+#include "base/half.h"
 #include "nn/nn.h"
 #include "nn/safetensors.h"
 
@@ -118,6 +119,86 @@ static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
     nn_params_free(before);
 }
 
+/* ---- parameters that are only used ---- */
+
+enum { SIZE = 32, CHANNELS = 16, MOST_WEIGHTS = CHANNELS * CHANNELS * 9 };
+
+/* A convolution with a batch norm to fold, one of a bias alone, and one of neither. */
+static nn_graph *build_deep_net(void)
+{
+    nn_graph *g = nn_graph_new();
+    nn_node *x = nn_conv2d(g, nn_compute(g, nn_input(g, "x", CHANNELS, 1)), "folded", CHANNELS, 3, 1, NN_NO_BIAS);
+    x = nn_relu(g, nn_batch_norm(g, x, "norm"));
+    x = nn_conv2d(g, nn_conv2d(g, x, "bare", CHANNELS, 1, 1, NN_NO_BIAS), "head", CHANNELS, 3, 1, NN_BIAS);
+    nn_output(g, nn_float(g, x), "y");
+    return g;
+}
+
+/* Weights as half floats, every other one of them below the smallest normal half. */
+static void write_halves(const nn_graph *g)
+{
+    static uint16_t halves[3][MOST_WEIGHTS];
+    nn_params *a;
+    st_tensor tensors[MOST];
+    assert_int_equal(nn_params_new(g, 1, &a), OK);
+    size_t count = describe(a, tensors), used = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (tensors[i].rank != 4) continue;
+        const float *from = tensors[i].data;
+        uint16_t *to = halves[used++];
+        for (size_t k = 0; k < tensors[i].count; k++)
+            to[k] = float_to_half(k % 2 ? from[k] * 1e-5f : from[k]);
+        tensors[i].type = ST_F16;
+        tensors[i].data = to;
+    }
+    assert_int_equal(used, 3);
+    assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
+    nn_params_free(a);
+}
+
+static void run(const nn_graph *g, nn_params *params, nn_type type, float *y)
+{
+    nn_program *p;
+    nn_options options = {.batch = 1, .height = SIZE, .width = SIZE, .type = type};
+    assert_int_equal(nn_compile(g, params, &options, &p), OK);
+    float *x = nn_input_data(p, "x");
+    for (int i = 0; i < SIZE * SIZE * CHANNELS; i++)
+        x[i] = (float)(i % 23) / 23 - 0.4f;
+    assert_int_equal(nn_forward(p), OK);
+    memcpy(y, nn_output_data(p, "y"), SIZE * SIZE * CHANNELS * sizeof *y);
+    nn_program_free(p);
+}
+
+static void weights_kept_as_half_floats_give_the_same_bits(void **state)
+{
+    (void)state;
+    static float of_floats[SIZE * SIZE * CHANNELS], of_halves[SIZE * SIZE * CHANNELS];
+    nn_graph *g = build_deep_net();
+    nn_params *floats, *halves;
+    st_file *f;
+    write_halves(g);
+    assert_int_equal(nn_params_new(g, 2, &floats), OK);
+    assert_int_equal(nn_params_load(floats, path), OK);
+    assert_int_equal(st_open(path, &f), OK);
+    assert_int_equal(nn_params_open(g, f, path, &halves), OK);
+    st_close(f);
+    for (size_t i = 0; i < nn_params_count(halves); i++)
+        assert_true((nn_params_at(halves, i)->half != NULL) == (nn_params_at(halves, i)->rank == 4));
+    for (int type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {
+        run(g, floats, (nn_type)type, of_floats);
+        run(g, halves, (nn_type)type, of_halves);
+        assert_memory_equal(of_floats, of_halves, sizeof of_floats);
+        assert_true(of_halves[SIZE * SIZE] != 0);
+    }
+    nn_program *p;
+    nn_options train = {.batch = 2, .height = SIZE, .width = SIZE, .purpose = NN_TRAIN};
+    assert_int_equal(nn_compile(g, halves, &train, &p), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "not for training"));
+    nn_params_free(floats);
+    nn_params_free(halves);
+    nn_graph_free(g);
+}
+
 static int make_file(void **state)
 {
     (void)state;
@@ -137,6 +218,7 @@ int main(void)
         cmocka_unit_test(saved_parameters_are_loaded),
         cmocka_unit_test(tensors_that_do_not_fit_are_refused),
         cmocka_unit_test(tensors_that_fit_are_shared_and_the_rest_stays),
+        cmocka_unit_test(weights_kept_as_half_floats_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, make_file, remove_file);
 }

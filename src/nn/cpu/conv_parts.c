@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/half.h"
 #include "base/memory.h"
 #include "nn/cpu/chunk.h"
 #include "nn/cpu/kernels.h"
@@ -22,9 +23,15 @@ status conv_own(nn_step *step, size_t bytes, void **memory)
     return *memory ? OK : fail(ERROR_MEMORY, "no memory for weights");
 }
 
-size_t conv_folded_bytes(const nn_step *step)
+size_t conv_weights_bytes(const nn_step *step)
 {
-    return step->folded.weight ? step->params.weight->count * sizeof(float) : 0;
+    const nn_param *weight = step->params.weight;
+    return step->folded.weight || weight->half ? weight->count * sizeof(float) : 0;
+}
+
+float *conv_weights(const nn_step *step, void *place)
+{
+    return conv_weights_bytes(step) ? place : step->params.weight->value;
 }
 
 status conv_own_folded_bias(nn_step *step, void **bias)
@@ -33,17 +40,28 @@ status conv_own_folded_bias(nn_step *step, void **bias)
     return step->folded.weight ? conv_own(step, (size_t)step->out.c * sizeof(float), bias) : OK;
 }
 
-void conv_fold(const nn_step *step, float *weights, float *folded_bias)
+/* What batch norm multiplies channel o of the result with; its bias goes among the others, which are NULL where there
+ * is nothing to fold. */
+static float fold(const nn_step *step, int o, float *folded_bias)
 {
-    int in = step->in[0].c, out = step->out.c, taps = step->at.kernel * step->at.kernel;
-#pragma omp parallel for schedule(static) if (step->params.weight->count > CPU_PARALLEL_MIN)
-    for (int o = 0; o < out; o++) {
-        float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
-        float bias = step->params.bias ? step->params.bias->value[o] : 0;
-        folded_bias[o] = step->folded.bias->value[o] + (bias - step->folded.running_mean->value[o]) * factor;
-        size_t row = (size_t)in * (size_t)taps, at = (size_t)o * row;
-        for (size_t i = at; i < at + row; i++)
-            weights[i] = step->params.weight->value[i] * factor;
+    if (!folded_bias) return 1;
+    float factor = step->folded.weight->value[o] / sqrtf(step->folded.running_var->value[o] + NORM_EPSILON);
+    float own = step->params.bias ? step->params.bias->value[o] : 0;
+    folded_bias[o] = step->folded.bias->value[o] + (own - step->folded.running_mean->value[o]) * factor;
+    return factor;
+}
+
+void conv_make_weights(const nn_step *step, void *place, float *folded_bias)
+{
+    if (!conv_weights_bytes(step)) return;
+    const nn_param *weight = step->params.weight;
+    const size_t row = weight->count / (size_t)step->out.c;
+    float *to = place;
+#pragma omp parallel for schedule(static) if (weight->count > CPU_PARALLEL_MIN)
+    for (int o = 0; o < step->out.c; o++) {
+        const float factor = fold(step, o, folded_bias);
+        for (size_t i = (size_t)o * row; i < ((size_t)o + 1) * row; i++)
+            to[i] = (weight->half ? half_to_float(weight->half[i]) : weight->value[i]) * factor;
     }
 }
 

@@ -167,7 +167,7 @@ static status bind_forward(nn_step *step, conv *state)
     dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), b = bias_layout(step),
                        y = dnn_activation(&step->out, step->out.type);
     const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
-    float *master = step->folded.weight ? step->forward_space : step->params.weight->value;
+    float *master = conv_weights(step, step->forward_space);
     status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
     if (s == OK && state->has_bias) s = dnn_argument(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
@@ -247,7 +247,7 @@ static status conv_refresh(nn_step *step)
 {
     conv *state = step->state;
     /* into the scratch of forward, which is free between runs */
-    if (step->folded.weight) conv_fold(step, step->forward_space, state->folded_bias);
+    conv_make_weights(step, step->forward_space, state->folded_bias);
     status s = dnn_run(&state->convert, step->context);
     if (s == OK && state->convert_back.primitive) s = dnn_run(&state->convert_back, step->context);
     return s;
@@ -299,6 +299,6 @@ status conv_create(nn_step *step)
     if (s == OK) s = own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
     if (s != OK) return s;
     step->forward_scratch = dnn_scratch_bytes(&state->forward);
-    if (step->forward_scratch < conv_folded_bytes(step)) step->forward_scratch = conv_folded_bytes(step);
+    if (step->forward_scratch < conv_weights_bytes(step)) step->forward_scratch = conv_weights_bytes(step);
     return step->backs ? describe_backward(step, state) : OK;
 }

@@ -48,11 +48,8 @@ static status refresh(nn_step *step)
 {
     const state *own = step->state;
     const winograd *g = &own->shape;
-    const float *weight = step->params.weight->value;
-    if (step->folded.weight) {
-        conv_fold(step, step->forward_space, own->folded_bias);
-        weight = step->forward_space;
-    }
+    const float *weight = conv_weights(step, step->forward_space);
+    conv_make_weights(step, step->forward_space, own->folded_bias);
     winograd_transform(weight, g->in, g->out, own->weights);
     if (own->weights_back) winograd_transform_back(weight, g->in, g->out, own->weights_back);
     return OK;
@@ -98,8 +95,8 @@ static status backward(nn_step *step)
 
 static void plan_scratch(nn_step *step, const state *own)
 {
-    size_t room = winograd_room(&own->shape) * sizeof(float), folded = conv_folded_bytes(step);
-    step->forward_scratch = room > folded ? room : folded;
+    size_t room = winograd_room(&own->shape) * sizeof(float), weights = conv_weights_bytes(step);
+    step->forward_scratch = room > weights ? room : weights;
     if (!step->backs) return;
     const winograd turned = winograd_back(&own->shape);
     size_t back = winograd_room(&turned), gradient = winograd_gradient_room(&own->shape);
