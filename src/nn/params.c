@@ -62,11 +62,12 @@ static uint64_t hash_name(const char *name)
     return hash;
 }
 
-/* As many values as leave room to start the next parameter on a cache line. */
+enum { LINE_FLOATS = MEMORY_ALIGNMENT / sizeof(float) };
+
+/* Floats with room to start the next parameter on a cache line. */
 static size_t padded(size_t count)
 {
-    enum { LINE = MEMORY_ALIGNMENT / sizeof(uint16_t) };
-    return (count + LINE - 1) / LINE * LINE;
+    return (count + LINE_FLOATS - 1) / LINE_FLOATS * LINE_FLOATS;
 }
 
 /* Where parameters have their first values from. */
