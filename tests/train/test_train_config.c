@@ -82,7 +82,9 @@ static void configurations_of_both_lights_differ_from_the_point_settings_in_that
 {
     (void)unused;
     static const char *const pairs[][2] = {{"merlin-point-deep", "merlin-env"},
-                                           {"merlin-point-deep-256", "merlin-env-256"}};
+                                           {"merlin-point-deep-256", "merlin-env-256"},
+                                           {"merlin-point-fine", "merlin-env-fine"},
+                                           {"merlin-point-fine-256", "merlin-env-fine-256"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         model_config m[2];
         for (int k = 0; k < 2; k++) {
