@@ -106,8 +106,10 @@ typedef struct merlin_maps {
     struct {
         int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
     } crop;
-    int size;   /* what that square was resized to */
-    float gain; /* the photograph times this is radiance under a flash of power 5.95 */
+    int size;        /* what that square was resized to */
+    float gain;      /* the photograph times this is radiance under a flash of power 5.95 */
+    float burnt_out; /* share of the object's values at the photograph's white, in [0, 1]: albedo and roughness are
+                      * guesses there, and from a tenth on they are poor (photograph it darker) */
     merlin_mask_source mask_source;
     int has_environment;     /* the model knows of surroundings beside the flash: */
     float environment[9][3]; /* those of the photograph as it sees them, spherical harmonics of radiance per channel */

@@ -99,6 +99,11 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
         fprintf(stderr,
                 "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
                 job->photo, (double)maps->mask_confidence, job->output);
+    if (!r->quiet && maps->burnt_out >= 0.1f)
+        fprintf(stderr,
+                "merlin estimate: %s: %.0f %% of the object is burnt out, where albedo and roughness are guesses: "
+                "photograph it darker\n",
+                job->photo, 100 * (double)maps->burnt_out);
     return s;
 }
 

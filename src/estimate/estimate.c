@@ -256,6 +256,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     img photo = img_of(&maps->photo);
+    if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
     if (s == OK) s = refine(w, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
     if (s == OK) s = place_all(w, maps);
     if (s == OK) s = lap(w, &t->upsample);

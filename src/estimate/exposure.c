@@ -37,13 +37,28 @@ float exposure_gain(const img *color, const img *mask)
     return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / most), most);
 }
 
+/* 1, with room for roundings. */
+static const float BEYOND_WHITE = 1.01f;
+
 float exposure_white(const img *photo, float gain)
 {
-    const float room = 1.01f; /* for roundings */
     if (gain >= EXPOSURE_WHITE) return gain;
     for (size_t i = 0; i < img_value_count(photo); i++)
-        if (photo->data[i] > room) return EXPOSURE_WHITE;
+        if (photo->data[i] > BEYOND_WHITE) return EXPOSURE_WHITE;
     return gain;
+}
+
+float exposure_burnt_out(const img *color, const img *mask)
+{
+    const float limit = 0.98f; /* 253 of 255: JPEG leaves what was white a little below it */
+    size_t burnt_out = 0, count = 0;
+    for (size_t i = 0; i < img_value_count(color); i++) {
+        if (!(mask->data[i / 3] >= 0.999f)) continue;
+        if (color->data[i] > BEYOND_WHITE) return 0;
+        burnt_out += color->data[i] >= limit;
+        count++;
+    }
+    return count ? (float)burnt_out / (float)count : 0;
 }
 
 float exposure_from_ev(float ev)

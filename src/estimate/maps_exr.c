@@ -133,9 +133,12 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
     if (s == OK) s = maps_read_layers(f, true, maps);
     if (f) exr_close(f);
     free(path);
-    if (s == OK)
-        maps_tidy(maps);
-    else
+    if (s != OK) {
         merlin_maps_free(maps);
-    return result_of(s);
+        return result_of(s);
+    }
+    maps_tidy(maps);
+    img photo = img_of(&maps->photo), mask = img_of(&maps->mask);
+    maps->burnt_out = exposure_burnt_out(&photo, &mask);
+    return MERLIN_OK;
 }

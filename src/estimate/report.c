@@ -105,6 +105,7 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddNumberToObject(square, "side", maps->crop.side);
     cJSON_AddNumberToObject(root, "network_size", maps->size);
     cJSON_AddNumberToObject(root, "exposure_gain", maps->gain);
+    cJSON_AddNumberToObject(root, "burnt_out", maps->burnt_out);
     cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
     cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
     put_environment(root, maps);

@@ -27,6 +27,15 @@ lists_its_files out.merlin $names
 succeeds --exposure estimate --help
 rm -rf out.merlin
 
+echo "a burnt-out photograph is called so"
+LC_ALL=C sed 's/\xa0\x80\x60\x80/\x80\x80\x80\x81/g' disc.hdr >white.hdr # radiance 1 instead of 0.6, 0.5 and 0.4
+succeeds '"burnt_out":1,' estimate white.hdr "${small[@]}" --json
+grep -q 'white.hdr: 100 % of the object is burnt out' "$scratch/stderr" || complain "no word of it: $(cat "$scratch/stderr")"
+[ -z "$(estimate white.hdr "${small[@]}" --quiet 2>&1)" ] || complain "--quiet was not"
+succeeds '"burnt_out":0,' estimate disc.hdr "${small[@]}" --json
+[ ! -s "$scratch/stderr" ] || complain "of a good photograph it said: $(cat "$scratch/stderr")"
+rm -rf out.merlin white.hdr
+
 echo "a name that is not UTF-8 leaves the JSON valid"
 cp disc.hdr $'d\351sc\303\251\355\240\200.hdr'
 succeeds $'"input":"d\357\277\275sc\303\251\357\277\275\357\277\275\357\277\275.hdr"' estimate d*c*.hdr --size 64 -o named --json

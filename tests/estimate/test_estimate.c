@@ -486,12 +486,16 @@ static void written_maps_are_read_back(void **state)
     const fixture *f = *state;
     merlin_maps maps, again;
     estimate(f, &maps);
+    assert_true(maps.burnt_out == 0);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        maps.photo.data[3 * i] = maps.mask.data[i]; /* all of red, a third of the values */
     if (merlin_maps_write(f->model, &maps, f->output) != MERLIN_OK) fail_msg("%s", merlin_error());
     if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
     assert_int_equal(maps.crop.x, again.crop.x);
     assert_int_equal(maps.crop.side, again.crop.side);
     assert_int_equal(maps.size, again.size);
     assert_string_equal(maps.model, again.model);
+    assert_float_equal(again.burnt_out, 1.0f / 3, 1e-6);
     /* half floats keep 11 bits */
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         assert_float_equal(maps.albedo.data[i], again.albedo.data[i], 5e-4);

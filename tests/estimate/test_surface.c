@@ -371,6 +371,32 @@ static void half_covered_pixels_continue_the_shape(void **state)
     surface_free(&low);
 }
 
+static void what_is_burnt_out_is_the_share_of_covered_values_at_white(void **state)
+{
+    (void)state;
+    img photo, mask;
+    assert_int_equal(img_new(&photo, 20, 20, 3), OK);
+    assert_int_equal(img_new(&mask, 20, 20, 1), OK);
+    assert_true(exposure_burnt_out(&photo, &mask) == 0); /* no object */
+    box(&mask, 0, 0, 10, 20);
+    for (int i = 0; i < 1200; i++)
+        photo.data[i] = i % 3 == 0 ? 1 : 0.97f; /* red alone, of which a quarter is not: */
+    for (int y = 0; y < 5; y++)
+        for (int x = 0; x < 20; x++)
+            img_at(&photo, x, y)[0] = 0.5f;
+    assert_float_equal(exposure_burnt_out(&photo, &mask), 0.25, 1e-6);
+    for (int i = 0; i < 400; i++)
+        mask.data[i] *= 0.9f; /* multiplied by it, white would not be white any more */
+    assert_true(exposure_burnt_out(&photo, &mask) == 0);
+    box(&mask, 0, 0, 10, 20);
+    img_at(&photo, 15, 15)[1] = 3; /* beside the object */
+    assert_float_equal(exposure_burnt_out(&photo, &mask), 0.25, 1e-6);
+    img_at(&photo, 5, 15)[1] = 3; /* a photograph that goes on above 1 */
+    assert_true(exposure_burnt_out(&photo, &mask) == 0);
+    img_free(&photo);
+    img_free(&mask);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -390,6 +416,7 @@ int main(void)
         cmocka_unit_test(refined_albedo_follows_the_photographs_edge),
         cmocka_unit_test(refined_albedo_follows_the_edge_of_a_photograph_in_any_unit),
         cmocka_unit_test(usual_exposures_are_left_alone_and_others_brought_near),
+        cmocka_unit_test(what_is_burnt_out_is_the_share_of_covered_values_at_white),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
