@@ -8,6 +8,7 @@
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_doubts.h"
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
@@ -95,15 +96,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
         s = print_json(job, maps, written, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
-    if (!r->quiet && maps->mask_confidence < 0.6f)
-        fprintf(stderr,
-                "merlin estimate: %s: the object was found with little confidence (%.2f): look at %s/mask.png\n",
-                job->photo, (double)maps->mask_confidence, job->output);
-    if (!r->quiet && maps->burnt_out >= 0.1f)
-        fprintf(stderr,
-                "merlin estimate: %s: %.0f %% of the object is burnt out, where albedo and roughness are guesses: "
-                "photograph it darker\n",
-                job->photo, 100 * (double)maps->burnt_out);
+    if (!r->quiet) photo_doubts_print("estimate", job->photo, maps, job->output);
     return s;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_doubts.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 #include "cli/stereo_maps.h"
@@ -160,7 +161,9 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
-    return photo_maps(model, r->input, r->mask, &r->params, maps);
+    status s = photo_maps(model, r->input, r->mask, &r->params, maps);
+    if (s == OK && !r->quiet) photo_doubts_print("relight", r->input, maps, NULL);
+    return s;
 }
 
 static status print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)

@@ -177,7 +177,8 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
                       .weights = weights,
                       .params = r->params,
                       .method = r->folder.method,
-                      .preserve_edges = r->folder.preserve_edges};
+                      .preserve_edges = r->folder.preserve_edges,
+                      .quiet = r->quiet};
     s = stereo_from_photo(&p, out, report);
     free(weights);
     return s;

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_doubts.h"
 #include "eval/draws.h"
 #include "eval/relit.h"
 #include "stereo/integrate.h"
@@ -22,6 +23,13 @@ typedef struct work {
     int draws;
 } work;
 
+static status estimate_photo(const stereo_photo *p, merlin_model *model, merlin_maps *maps)
+{
+    status s = photo_maps(model, p->photo, p->mask, &p->params, maps);
+    if (s == OK && !p->quiet) photo_doubts_print("stereo", p->photo, maps, NULL);
+    return s;
+}
+
 static status open_photo(work *w)
 {
     const stereo_photo *p = w->photo;
@@ -29,7 +37,7 @@ static status open_photo(work *w)
     if (s == OK && file_is_folder(p->photo))
         s = (status)merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
-        s = photo_maps(w->model, p->photo, p->mask, &p->params, &w->maps);
+        s = estimate_photo(p, w->model, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

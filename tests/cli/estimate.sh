@@ -28,7 +28,7 @@ succeeds --exposure estimate --help
 rm -rf out.merlin
 
 echo "a burnt-out photograph is called so"
-LC_ALL=C sed 's/\xa0\x80\x60\x80/\x80\x80\x80\x81/g' disc.hdr >white.hdr # radiance 1 instead of 0.6, 0.5 and 0.4
+burn_out disc.hdr white.hdr
 succeeds '"burnt_out":1,' estimate white.hdr "${small[@]}" --json
 grep -q 'white.hdr: 100 % of the object is burnt out' "$scratch/stderr" || complain "no word of it: $(cat "$scratch/stderr")"
 [ -z "$(estimate white.hdr "${small[@]}" --quiet 2>&1)" ] || complain "--quiet was not"

@@ -27,6 +27,11 @@ succeeds disc.merlin/relit relight disc.merlin/maps.exr --light 0.5,0.2,-0.4 -o 
 (cd disc.merlin && succeeds ./relit relight maps.exr --light 0.5,0.2,-0.4)
 absent disc.merlin/maps.merlin
 
+echo "a burnt-out photograph is called so"
+burn_out disc.hdr white.hdr
+succeeds white relight white.hdr --size 64 --light 0.5,0.2,-0.4 -o white
+grep -q 'relight: white.hdr: 100 % of the object is burnt out' stderr || complain "no word of it: $(cat stderr)"
+
 echo "the same light gives the same picture"
 succeeds again relight disc.merlin --light 0.5,0.2,-0.4 -o again
 cmp -s again/relit_000.png disc.merlin/relit/relit_000.png || complain "relighting is not deterministic"

@@ -79,6 +79,11 @@ refuses 2 'holds maps already' stereo disc.merlin --size 64
 refuses 2 'disc.merlin holds maps already' stereo disc.merlin/maps.exr --size 64 # no photograph
 refuses 2 'for a folder of pictures' stereo disc.merlin --near
 
+echo "a burnt-out photograph is called so"
+burn_out disc.hdr white.hdr
+succeeds white stereo white.hdr --size 64 -o white
+grep -q 'stereo: white.hdr: 100 % of the object is burnt out' stderr || complain "no word of it: $(cat stderr)"
+
 echo "lights from a ball, straight ahead"
 mkdir ball
 for i in 1 2; do radiance ball/$i.png 64 3; done # by their content Radiance pictures
