@@ -54,8 +54,7 @@ float exposure_burnt_out(const img *color, const img *mask)
     size_t burnt_out = 0, count = 0;
     for (size_t i = 0; i < img_value_count(color); i++) {
         if (!(mask->data[i / 3] >= 0.999f)) continue;
-        if (color->data[i] > BEYOND_WHITE) return 0;
-        burnt_out += color->data[i] >= limit;
+        burnt_out += color->data[i] >= limit && color->data[i] <= BEYOND_WHITE;
         count++;
     }
     return count ? (float)burnt_out / (float)count : 0;

@@ -23,9 +23,9 @@ float exposure_gain(const img *color, const img *mask);
  * values above 1, for which a picture has no room; then at least EXPOSURE_WHITE. */
 float exposure_white(const img *photo, float gain);
 
-/* The share of the object's values, channel by channel, that are burnt out: at 1, where a photograph saturates. None
- * are if some go above 1, since that photograph's white is not known. color: 3 channels, linear; mask: 1 channel;
- * pixels that it covers wholly count, so that color may have been multiplied by it. */
+/* The share of the object's values, channel by channel, that are burnt out: at 1, where a photograph saturates. What is
+ * above was not cut off there, floats or a colour beyond sRGB's. color: 3 channels, linear; mask: 1 channel; pixels
+ * that it covers wholly count, so that color may have been multiplied by it. */
 float exposure_burnt_out(const img *color, const img *mask);
 
 /* Stops that may be asked for. */

@@ -389,9 +389,8 @@ static void what_is_burnt_out_is_the_share_of_covered_values_at_white(void **sta
         mask.data[i] *= 0.9f; /* multiplied by it, white would not be white any more */
     assert_true(exposure_burnt_out(&photo, &mask) == 0);
     box(&mask, 0, 0, 10, 20);
-    img_at(&photo, 15, 15)[1] = 3; /* beside the object */
-    assert_float_equal(exposure_burnt_out(&photo, &mask), 0.25, 1e-6);
-    img_at(&photo, 5, 15)[1] = 3; /* a photograph that goes on above 1 */
+    for (int i = 0; i < 1200; i++)
+        photo.data[i] *= 1.2f; /* floats that go on above 1 */
     assert_true(exposure_burnt_out(&photo, &mask) == 0);
     img_free(&photo);
     img_free(&mask);
