@@ -23,7 +23,7 @@ typedef struct work {
     int draws;
 } work;
 
-static status estimate_photo(const stereo_photo *p, merlin_model *model, merlin_maps *maps)
+static status take_photo(const stereo_photo *p, merlin_model *model, merlin_maps *maps)
 {
     status s = photo_maps(model, p->photo, p->mask, &p->params, maps);
     if (s == OK && !p->quiet) photo_doubts_print("stereo", p->photo, maps, NULL);
@@ -37,7 +37,7 @@ static status open_photo(work *w)
     if (s == OK && file_is_folder(p->photo))
         s = (status)merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
-        s = estimate_photo(p, w->model, &w->maps);
+        s = take_photo(p, w->model, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

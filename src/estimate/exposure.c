@@ -51,11 +51,13 @@ float exposure_white(const img *photo, float gain)
 float exposure_burnt_out(const img *color, const img *mask)
 {
     const float limit = 0.98f; /* 253 of 255: JPEG leaves what was white a little below it */
-    size_t burnt_out = 0, count = 0;
-    for (size_t i = 0; i < img_value_count(color); i++) {
-        if (!(mask->data[i / 3] >= 0.999f)) continue;
-        burnt_out += color->data[i] >= limit && color->data[i] <= BEYOND_WHITE;
-        count++;
+    size_t burnt_out = 0, count = 0, pixels = (size_t)color->width * (size_t)color->height;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!(mask->data[i] >= 0.999f)) continue;
+        const float *value = color->data + 3 * i;
+        for (int c = 0; c < 3; c++)
+            burnt_out += value[c] >= limit && value[c] <= BEYOND_WHITE;
+        count += 3;
     }
     return count ? (float)burnt_out / (float)count : 0;
 }

@@ -38,7 +38,8 @@ radiance() {
     done
 }
 
-# burn_out FROM TO: radiance's picture with a disc of radiance 1 in all channels, where photographs end, instead of 0.6, 0.5 and 0.4.
+# burn_out FROM TO: radiance's picture with a disc of radiance 1 in all channels, where photographs end, instead of 0.6, 0.5
+# and 0.4.
 burn_out() { LC_ALL=C sed 's/\xa0\x80\x60\x80/\x80\x80\x80\x81/g' "$1" >"$2"; }
 
 # openexr FILE BYTES: 16×16 float pixels, uncompressed, every value the four bytes given as printf escapes.
