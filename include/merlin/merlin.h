@@ -78,15 +78,16 @@ const char *merlin_model_name(const merlin_model *model); /* as long as the mode
 /* ---- from a photograph to maps ---- */
 
 typedef struct merlin_params {
-    int size;          /* side of the square the network sees: a multiple of 32, from 64 to 1024; trained at 256 */
-    int views;         /* in how many of the square's eight orientations the network sees it; the mean is taken */
+    int size;  /* side of the square the network sees: a multiple of 32, from 64 to 512. It was trained at 256; of
+                * more it takes fine normals alone, if the photograph shows the object so large */
+    int views; /* in how many of the square's eight orientations the network sees it; the mean is taken */
     int auto_exposure; /* 1: bring a photograph that is too dark or too bright, up to a million times (floats may be in
                         * any unit), to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
 } merlin_params;
 
-merlin_params merlin_params_default(void); /* 256, 4 views, automatic, never stopped */
+merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never stopped */
 
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 
@@ -106,7 +107,7 @@ typedef struct merlin_maps {
     struct {
         int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
     } crop;
-    int size;        /* what that square was resized to */
+    int size;        /* what that square was resized to, at most 256: for all but fine normals */
     float gain;      /* the photograph times this is radiance under a flash of power 5.95 */
     float burnt_out; /* share of the object's values at the photograph's white, in [0, 1]: albedo and roughness are
                       * guesses there, and from a tenth on they are poor (photograph it darker) */

@@ -26,7 +26,8 @@ static const char help[] =
     "                       photographs a folder each inside DIR\n"
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
     "                       $MERLIN_MODEL, else merlin-point)\n"
-    "      --size N         side of the square the network sees, a multiple of 32 from 64 to 1024 (default 256)\n"
+    "      --size N         side of the square the network sees, a multiple of 32 from 64 to 512 (default): where the\n"
+    "                       photograph has more than 256 pixels of the object, for finer normals; 256 is quicker\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh           write mesh.glb, too: the object's front with albedo, normals and roughness\n"
@@ -154,7 +155,7 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     photo_begin(&first, job);
     status opened = (status)merlin_model_open(weights, &r->model), s = OK;
     laps.model = lap(&now);
-    if (opened == OK) opened = network_prepare(r->model->network, r->params.size, r->params.views);
+    if (opened == OK) opened = network_prepare(r->model->network, network_side(r->params.size), r->params.views);
     *ready = opened == OK;
     laps.compile = lap(&now);
     char words[1024];

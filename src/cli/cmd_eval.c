@@ -18,11 +18,13 @@ static const char help[] =
     "       merlin eval --means DIR -o FILE.exr\n"
     "       merlin eval stereo --data DIR [options]\n"
     "       merlin eval solvers [options]\n"
+    "       merlin eval detail --data DIR [options]\n"
     "       merlin eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures a model on samples it was not trained on (a folder made by merlin render), beside two trivial answers:\n"
     "the data set's mean maps, and maps inflated from the mask. The second form computes the mean maps of a folder of\n"
     "training data, to be given to the first. The others have a --help of their own: photometric stereo from one\n"
-    "photograph, its solvers where the truth is known, and photographs taken apart by several weights side by side.\n\n"
+    "photograph, its solvers where the truth is known, what more pixels add to an estimate's shape, and photographs\n"
+    "taken apart by several weights side by side.\n\n"
     "  --data DIR         held-out samples\n"
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
@@ -156,6 +158,7 @@ int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "detail") == 0) return eval_detail(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());

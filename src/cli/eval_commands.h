@@ -11,4 +11,7 @@ int eval_photos(int argc, char **argv);
 /* merlin eval solvers; argv[0] is "solvers". Returns the exit status. */
 int eval_solvers(int argc, char **argv);
 
+/* merlin eval detail; argv[0] is "detail". Returns the exit status. */
+int eval_detail(int argc, char **argv);
+
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "estimate/network.h"
 #include "image/read.h"
 
 static const char *const endings[] = {IMAGE_ENDINGS, NULL};
@@ -293,8 +294,9 @@ status photo_take_size(const char *text, void *into)
 {
     merlin_params *params = into;
     long size;
-    status s = cli_int("--size", text, 64, 1024, &size);
-    if (s == OK && size % 32 != 0) s = fail(ERROR_USAGE, "--size must be a multiple of 32, not %ld", size);
+    status s = cli_int("--size", text, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, &size);
+    if (s == OK && size % MODEL_SIZE_MULTIPLE != 0)
+        s = fail(ERROR_USAGE, "--size must be a multiple of %d, not %ld", MODEL_SIZE_MULTIPLE, size);
     if (s == OK) params->size = (int)size;
     return s;
 }

@@ -128,5 +128,5 @@ const char *merlin_model_name(const merlin_model *model)
 
 merlin_params merlin_params_default(void)
 {
-    return (merlin_params){.size = 256, .views = NETWORK_VIEWS, .auto_exposure = 1};
+    return (merlin_params){.size = NETWORK_LARGEST_SIZE, .views = NETWORK_VIEWS, .auto_exposure = 1};
 }

@@ -6,13 +6,15 @@
 
 #include "base/progress.h"
 #include "estimate/api.h"
+#include "estimate/detail.h"
 #include "estimate/exposure.h"
+#include "estimate/input.h"
 #include "estimate/relight_env.h"
-#include "image/resize.h"
 
 enum { LEAST_SIDE = 16 };
 
-/* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's. */
+/* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's; the maps of `low` may
+ * have become larger (detail.h). */
 typedef struct work {
     const merlin_params *params;
     img photo, mask;     /* the photograph has no pixels any more once the object is taken out of it */
@@ -63,6 +65,9 @@ static status check_photo(const img *photo)
 
 static status check_params(const merlin_params *p)
 {
+    if (p->size < NETWORK_LEAST_SIZE || p->size > NETWORK_LARGEST_SIZE || p->size % MODEL_SIZE_MULTIPLE != 0)
+        return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
+                    MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, p->size);
     if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
     return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
 }
@@ -144,23 +149,16 @@ static status check_seen(const img *photo, const img *mask)
     return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
 }
 
-/* The picture and mask that the network sees, like a rendered sample: the photograph multiplied by coverage and
- * area-averaged, the mask hard. */
+/* The picture and mask that the network sees. */
 static status make_input(work *w, merlin_maps *maps)
 {
-    int size = w->params->size;
-    float *gain = &maps->gain;
     status s = take_out(w, &maps->photo);
-    if (s == OK) s = img_resize_masked(&w->crop_photo, &w->crop_mask, size, size, &w->low_photo);
-    if (s == OK) s = img_resize(&w->crop_mask, size, size, &w->low_mask);
+    if (s == OK) s = input_make(&w->crop_photo, &w->crop_mask, maps->size, &w->low_photo, &w->low_mask);
+    if (s == OK) s = check_seen(&w->low_photo, &w->low_mask);
     if (s != OK) return s;
-    harden_mask(&w->low_photo, &w->low_mask);
-    s = check_seen(&w->low_photo, &w->low_mask);
-    if (s != OK) return s;
-    *gain =
+    maps->gain =
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
-    for (size_t i = 0; i < img_value_count(&w->low_photo); i++)
-        w->low_photo.data[i] *= *gain;
+    input_expose(&w->low_photo, maps->gain);
     return OK;
 }
 
@@ -183,6 +181,18 @@ static status follow_mean(network *n, work *w, bool in_environment)
     return OK;
 }
 
+static status add_detail(network *n, work *w, float gain)
+{
+    const merlin_params *p = w->params;
+    detail_request r = {.photo = &w->crop_photo,
+                        .mask = &w->crop_mask,
+                        .gain = gain,
+                        .side = detail_side(p->size, w->crop.side),
+                        .views = detail_views(p->views),
+                        .stop = p->stop};
+    return r.side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
+}
+
 /* The maps at the crop's own resolution, and what they look like under the photograph's light. */
 static status refine(work *w, float gain, float white, bool in_environment)
 {
@@ -190,7 +200,7 @@ static status refine(work *w, float gain, float white, bool in_environment)
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     img_free(&w->crop_photo);
     img *picture = &w->reconstruction;
-    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low.maps.mask, &w->crop_mask, picture);
+    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low_mask, &w->crop_mask, picture);
     if (s != OK) return s;
     size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
     for (size_t i = 0; i < count; i++)
@@ -243,16 +253,18 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     network *n = model->network;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
-    status s = check_params(w->params);
-    if (s == OK) s = network_prepare(n, w->params->size, w->params->views);
+    const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
+    status s = network_prepare(n, maps->size, views);
+    if (s == OK && finer > 0) s = network_prepare(n, finer, detail_views(views));
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);
     if (s == OK) s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
-    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, w->params->views, w->params->stop, &w->low);
+    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
+    if (s == OK) s = add_detail(n, w, maps->gain);
     if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     img photo = img_of(&maps->photo);
@@ -270,10 +282,11 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
     work w = {.params = params ? params : &defaults, .photo = img_of(photo), .owned = owned};
-    maps->size = w.params->size;
+    maps->size = network_side(w.params->size);
     snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
     take_object(&w, object, maps);
-    status s = estimate(model, &w, maps);
+    status s = check_params(w.params);
+    if (s == OK) s = estimate(model, &w, maps);
     work_free(&w);
     if (owned) merlin_image_free(owned);
     if (s != OK) merlin_maps_free(maps);

@@ -11,6 +11,8 @@
 #include "image/exr.h"
 
 enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
+/* Sizes beyond NETWORK_SIZE stand in files of versions that let the network see so much. */
+enum { LARGEST_WRITTEN = 1024 };
 
 /* Name, image's place in maps_images, channel. */
 typedef struct layer {
@@ -77,13 +79,13 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
                     exr_get_numbers(f, "merlinMaskConfidence", &confidence, 1) && model;
     if (!complete) return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attributes are missing", path);
     bool sound = fabsf(square[0]) < (float)CROP_FARTHEST && fabsf(square[1]) < (float)CROP_FARTHEST && square[2] >= 1 &&
-                 square[2] < (float)CROP_FARTHEST && size >= NETWORK_LEAST_SIZE && size <= NETWORK_LARGEST_SIZE &&
+                 square[2] < (float)CROP_FARTHEST && size >= NETWORK_LEAST_SIZE && size <= LARGEST_WRITTEN &&
                  fmodf(size, MODEL_SIZE_MULTIPLE) == 0 && exposure_is_sound(maps->gain);
     if (!sound) return fail(ERROR_INPUT, "%s: crop, size or gain is out of range", path);
     maps->crop.x = (int)square[0];
     maps->crop.y = (int)square[1];
     maps->crop.side = (int)square[2];
-    maps->size = (int)size;
+    maps->size = network_side((int)size);
     maps->mask_source = found != 0 ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
     snprintf(maps->model, sizeof maps->model, "%s", model);

@@ -20,8 +20,8 @@ typedef struct compiled {
 struct network {
     model_config config;
     nn_params *params;
-    pthread_mutex_t lock; /* of the programs: a run uses their buffers */
-    compiled maps, look, relit, indirect;
+    pthread_mutex_t lock;                       /* of the programs: a run uses their buffers */
+    compiled maps, fine, look, relit, indirect; /* fine: maps of more than NETWORK_SIZE */
     double compile_seconds;
 };
 
@@ -64,6 +64,7 @@ void network_close(network *n)
 {
     if (!n) return;
     compiled_free(&n->maps);
+    compiled_free(&n->fine);
     compiled_free(&n->look);
     compiled_free(&n->relit);
     compiled_free(&n->indirect);
@@ -94,14 +95,17 @@ static status compile(network *n, model_part part, const char *const *outputs, i
     return s;
 }
 
+static compiled *maps_program(network *n, int size)
+{
+    return size > NETWORK_SIZE ? &n->fine : &n->maps;
+}
+
 status network_prepare(network *n, int size, int views)
 {
-    if (size < NETWORK_LEAST_SIZE || size > NETWORK_LARGEST_SIZE || size % MODEL_SIZE_MULTIPLE != 0)
-        return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
-                    MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, size);
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
-    if (s == OK && views > 1 && n->config.global_illumination) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
+    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, maps_program(n, size));
+    bool follows = views > 1 && size <= NETWORK_SIZE && n->config.global_illumination;
+    if (s == OK && follows) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -173,9 +177,10 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    status s = run_view(n, photo, mask, view, outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
-    if (s == OK) take_environment(n->maps.program, out->environment);
+    compiled *c = maps_program(n, photo->width);
+    status s = run_view(n, photo, mask, view, outputs, c);
+    if (s == OK) s = take_maps(c->program, photo->width, &out->maps);
+    if (s == OK) take_environment(c->program, out->environment);
     return s;
 }
 
@@ -185,7 +190,7 @@ static status estimate_single(network *n, const img *photo, const img *mask, net
     status s = estimate_view(n, photo, mask, 0, single_outputs, out);
     if (s != OK) return s;
     if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
-    return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
+    return take(maps_program(n, size)->program, "indirect", size, 3, 1, 0, &out->indirect);
 }
 
 static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),

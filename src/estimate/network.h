@@ -14,11 +14,19 @@
 #include "model/model.h"
 #include "optics/light.h"
 
-enum { NETWORK_LEAST_SIZE = 64, NETWORK_LARGEST_SIZE = 1024 };
+/* The shipped weights were last trained at NETWORK_SIZE. Of pictures a little larger they see fine shape well, and
+ * coarse shape badly (detail.h). */
+enum { NETWORK_LEAST_SIZE = 64, NETWORK_SIZE = 256, NETWORK_LARGEST_SIZE = 512 };
 
 /* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 37 ms on top of an
  * estimate's 177, and leave five to ten per cent less error. */
 enum { NETWORK_VIEWS = 4 };
+
+/* Of the picture that is seen for all but fine shape, where `size` is asked for. */
+static inline int network_side(int size)
+{
+    return size < NETWORK_SIZE ? size : NETWORK_SIZE;
+}
 
 typedef struct network network;
 
@@ -27,7 +35,8 @@ status network_open(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
-/* Makes the programs for this size and so many views now, so that the time is seen apart. */
+/* Makes the programs for this size and so many views now, so that the time is seen apart. Those of one size up to
+ * NETWORK_SIZE are kept, and those of one beyond it, which are for maps alone. */
 status network_prepare(network *n, int size, int views);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);

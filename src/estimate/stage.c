@@ -26,9 +26,8 @@ status maps_check(const merlin_maps *maps)
                                           &maps->mask,   &maps->photo,  &maps->reconstruction};
     const int channels[IMAGES] = {3, 3, 1, 1, 1, 3, 3};
     int count = maps->reconstruction.data ? IMAGES : RECONSTRUCTION; /* which maps from a folder do not have */
-    bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE &&
-                 maps->size <= NETWORK_LARGEST_SIZE && maps->size % MODEL_SIZE_MULTIPLE == 0 &&
-                 exposure_is_sound(maps->gain);
+    bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE && maps->size <= NETWORK_SIZE &&
+                 maps->size % MODEL_SIZE_MULTIPLE == 0 && exposure_is_sound(maps->gain);
     for (int i = 0; i < count; i++)
         sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
                  images[i]->height == maps->albedo.height;

@@ -76,6 +76,7 @@ refuses 2 'unknown option' estimate disc.hdr --nonsense
 refuses 1 'no weights file merlin-nowhere' estimate disc.hdr --model merlin-nowhere
 refuses 2 'multiple of 32' estimate disc.hdr --size 100
 refuses 2 '--size' estimate disc.hdr --size huge
+refuses 2 '--size' estimate disc.hdr --size 1024
 refuses 2 '--exposure' estimate disc.hdr --exposure nan
 refuses 2 '--views' estimate disc.hdr --views 9
 refuses 2 '--mask' estimate disc.hdr large.hdr --mask disc.merlin/mask.png

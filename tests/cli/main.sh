@@ -21,7 +21,7 @@ refuses 2 "--m is short for several options" "$MERLIN" estimate photo.png --m ma
 refuses 2 "--li=0,0,0 is short for several options" "$MERLIN" relight photo.png --li=0,0,0
 refuses 2 "unknown option --lamp" "$MERLIN" relight photo.png --lamp
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
-for command in "stereo calibrate" "eval stereo" "eval solvers" "eval photos"; do
+for command in "stereo calibrate" "eval stereo" "eval solvers" "eval detail" "eval photos"; do
     read -ra words <<<"$command"
     succeeds "usage: merlin $command " "$MERLIN" help "${words[@]}"
 done
@@ -38,7 +38,7 @@ completes() { # PATTERN WORD...: the words of a command line, the last one to be
     _merlin
     [[ " ${COMPREPLY[*]} " == *" $pattern "* ]] || complain "$* is not completed to $pattern but to: ${COMPREPLY[*]}"
 }
-for command in estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval photos" bench info; do
+for command in estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval detail" "eval photos" bench info; do
     read -ra words <<<"$command"
     named=$("$MERLIN" "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+')
     for option in $named; do
