@@ -166,6 +166,7 @@ static void default_models_keep_the_budget(void **unused)
     keeps_the_budget("merlin-point");
     keeps_the_budget("merlin-point-deep");
     keeps_the_budget("merlin-point-fine");
+    keeps_the_budget("merlin-point-sharp");
     keeps_the_budget("merlin-env");
     keeps_the_budget("merlin-env-fine");
 }
