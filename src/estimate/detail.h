@@ -6,7 +6,7 @@
  *
  * The network was trained on objects in NETWORK_SIZE pixels. In more pixels it sees what is fine as well as there, but
  * not what is coarse: an object is then larger than any it knows. So coarse shape, and all of albedo, roughness and
- * depth, are from the picture of its own size, and normals finer than a sixteenth of a larger one from that. */
+ * depth, are from the picture of its own size, and what is finer than sixteen pixels of a larger one in its normals. */
 #ifndef MERLIN_ESTIMATE_DETAIL_H
 #define MERLIN_ESTIMATE_DETAIL_H
 
