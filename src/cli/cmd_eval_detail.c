@@ -13,9 +13,8 @@
 
 static const char help[] =
     "usage: merlin eval detail --data DIR [options]\n\n"
-    "The errors of merlin estimate on samples of more than 256 pixels a side (merlin render --size 512) when the "
-    "network\n"
-    "sees them in 256 pixels, in up to 512, and in both, as it does unless --size says otherwise.\n\n"
+    "The errors of merlin estimate on samples of more than 256 pixels a side (merlin render --size 512) when the\n"
+    "network sees them in 256 pixels, in up to 512, and in both, as it does unless --size says otherwise.\n\n"
     "  --data DIR     held-out samples\n"
     "  --model W      weights (default: those merlin estimate takes)\n"
     "  --count N      only the first N samples\n"

@@ -181,16 +181,17 @@ static status follow_mean(network *n, work *w, bool in_environment)
     return OK;
 }
 
-static status add_detail(network *n, work *w, float gain)
+/* From a picture so wide; 0: from none. */
+static status add_detail(network *n, work *w, int side, float gain)
 {
     const merlin_params *p = w->params;
     detail_request r = {.photo = &w->crop_photo,
                         .mask = &w->crop_mask,
                         .gain = gain,
-                        .side = detail_side(p->size, w->crop.side),
+                        .side = side,
                         .views = detail_views(p->views),
                         .stop = p->stop};
-    return r.side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
+    return side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
 }
 
 /* The maps at the crop's own resolution, and what they look like under the photograph's light. */
@@ -264,7 +265,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
-    if (s == OK) s = add_detail(n, w, maps->gain);
+    if (s == OK) s = add_detail(n, w, finer, maps->gain);
     if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     img photo = img_of(&maps->photo);

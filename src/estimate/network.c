@@ -100,10 +100,17 @@ static compiled *maps_program(network *n, int size)
     return size > NETWORK_SIZE ? &n->fine : &n->maps;
 }
 
+/* Whether bounces are asked of the view itself: of larger pictures nobody wants them. */
+static bool is_single(int size, int views)
+{
+    return views == 1 && size <= NETWORK_SIZE;
+}
+
 status network_prepare(network *n, int size, int views)
 {
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, maps_program(n, size));
+    const char *const *outputs = is_single(size, views) ? single_outputs : view_outputs;
+    status s = compile(n, MODEL_MAPS, outputs, size, maps_program(n, size));
     bool follows = views > 1 && size <= NETWORK_SIZE && n->config.global_illumination;
     if (s == OK && follows) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
@@ -190,13 +197,13 @@ static status estimate_single(network *n, const img *photo, const img *mask, net
     status s = estimate_view(n, photo, mask, 0, single_outputs, out);
     if (s != OK) return s;
     if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
-    return take(maps_program(n, size)->program, "indirect", size, 3, 1, 0, &out->indirect);
+    return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
 }
 
 static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                              network_estimation *out)
 {
-    if (views == 1) return estimate_single(n, photo, mask, out);
+    if (is_single(photo->width, views)) return estimate_single(n, photo, mask, out);
     status s = view_mean_new(photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};

@@ -44,7 +44,8 @@ double network_take_compile_seconds(network *n);
 typedef struct network_estimation {
     surface maps;
     img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
-                     more views has highlights of its own: empty here, to be asked of network_indirect */
+                     more views has highlights of its own: empty here, to be asked of network_indirect. Empty, too, of
+                     pictures of more than NETWORK_SIZE */
     float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
 } network_estimation;
 

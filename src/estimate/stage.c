@@ -3,6 +3,7 @@
 
 #include "estimate/api.h"
 #include "estimate/exposure.h"
+#include "estimate/input.h"
 #include "image/resize.h"
 
 /* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
@@ -123,8 +124,7 @@ static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
     img_free(&part);
     if (s != OK) return s;
     harden_mask(out, mask);
-    for (size_t i = 0; i < img_value_count(out); i++)
-        out->data[i] *= maps->gain;
+    input_expose(out, maps->gain);
     return OK;
 }
 

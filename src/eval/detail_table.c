@@ -8,7 +8,6 @@
 #include "estimate/input.h"
 #include "eval/maps.h"
 #include "eval/metrics.h"
-#include "model/model.h"
 
 enum { LIGHTS = 4 };
 
@@ -16,14 +15,26 @@ enum { LIGHTS = 4 };
 typedef struct subject {
     const sample *sample;
     img mask, photo; /* the mask 0 or 1, the flash picture saturated at radiance 1 */
+    img guide;       /* the photograph, encoded */
     eval_maps truth;
+    illumination lights[LIGHTS];
+    img targets[LIGHTS]; /* the truth under them */
 } subject;
 
 static void subject_free(subject *on)
 {
     img_free(&on->mask);
     img_free(&on->photo);
+    img_free(&on->guide);
     eval_maps_free(&on->truth);
+    for (int i = 0; i < LIGHTS; i++)
+        img_free(&on->targets[i]);
+}
+
+static status render(const subject *on, const eval_maps *maps, int light, img *out)
+{
+    const sample *s = on->sample;
+    return eval_render(maps, &on->mask, s->fov, s->light_power, &on->lights[light], out);
 }
 
 static status subject_new(const sample *s, subject *on)
@@ -31,7 +42,13 @@ static status subject_new(const sample *s, subject *on)
     *on = (subject){.sample = s};
     status st = eval_binary_mask(&s->mask, &on->mask);
     if (st == OK) st = eval_picture(&s->direct, &s->indirect, &on->mask, &on->photo);
+    if (st == OK) st = img_copy(&on->guide, &on->photo);
+    if (st == OK) surface_encode_guide(&on->guide, 1);
     if (st == OK) st = eval_maps_of_sample(s, &on->truth);
+    for (int i = 0; i < LIGHTS && st == OK; i++) {
+        on->lights[i] = (illumination){eval_light(s, i), NULL};
+        st = render(on, &on->truth, i, &on->targets[i]);
+    }
     if (st != OK) subject_free(on);
     return st;
 }
@@ -66,13 +83,9 @@ static status see_in(network *n, const subject *on, const detail_table *t, detai
 static status estimate(network *n, const subject *on, const detail_table *t, detail_way way, eval_maps *out)
 {
     surface seen = {0}, full = {0};
-    img guide = {0};
     status s = see_in(n, on, t, way, &seen);
-    if (s == OK) s = img_copy(&guide, &on->photo);
-    if (s == OK) surface_encode_guide(&guide, 1);
-    if (s == OK) s = surface_refine(&seen, &guide, &on->mask, &full);
+    if (s == OK) s = surface_refine(&seen, &on->guide, &on->mask, &full);
     surface_free(&seen);
-    img_free(&guide);
     if (s != OK) return s;
     *out = (eval_maps){full.albedo, full.normal, full.roughness, full.depth};
     img_free(&full.mask);
@@ -81,16 +94,13 @@ static status estimate(network *n, const subject *on, const detail_table *t, det
     return OK;
 }
 
-static status similarity(const subject *on, const eval_maps *maps, const illumination *light, double *out)
+static status similarity(const subject *on, const eval_maps *maps, int light, double *out)
 {
-    const sample *s = on->sample;
-    img lit = {0}, target = {0};
-    status st = eval_render(maps, &on->mask, s->fov, s->light_power, light, &lit);
-    if (st == OK) st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, light, &target);
-    if (st == OK) st = eval_ssim(&lit, &target, out);
+    img lit = {0};
+    status s = render(on, maps, light, &lit);
+    if (s == OK) s = eval_ssim(&lit, &on->targets[light], out);
     img_free(&lit);
-    img_free(&target);
-    return st;
+    return s;
 }
 
 static status add_figures(const subject *on, const eval_maps *maps, double sum[DETAIL_FIGURES])
@@ -101,9 +111,8 @@ static status add_figures(const subject *on, const eval_maps *maps, double sum[D
     sum[DETAIL_DEPTH] += eval_mse(&maps->depth, &on->truth.depth, &on->mask);
     sum[DETAIL_ROUGHNESS] += eval_mse(&maps->roughness, &on->truth.roughness, &on->mask);
     for (int i = 0; i < LIGHTS; i++) {
-        illumination light = {eval_light(on->sample, i), NULL};
         double one;
-        status s = similarity(on, maps, &light, &one);
+        status s = similarity(on, maps, i, &one);
         if (s != OK) return s;
         sum[DETAIL_RELIT] += one / LIGHTS;
     }
