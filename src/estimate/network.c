@@ -78,12 +78,31 @@ const model_config *network_config(const network *n)
     return &n->config;
 }
 
+/* That with most memory: all use it, for inputs are put before every run, and outputs taken after it. */
+static const nn_program *largest(const network *n)
+{
+    const nn_program *all[] = {n->maps.program, n->fine.program, n->look.program, n->relit.program,
+                               n->indirect.program};
+    const nn_program *found = NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        size_t bytes = all[i] ? nn_program_cost(all[i]).activation_bytes : 0;
+        if (bytes > most) most = bytes, found = all[i];
+    }
+    return found;
+}
+
 static status compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
 {
     if (c->program && c->size == size && c->outputs == outputs) return OK;
     compiled_free(c);
-    nn_options options = {
-        .batch = 1, .height = size, .width = size, .type = nn_fastest_type(), .purpose = NN_INFER, .outputs = outputs};
+    nn_options options = {.batch = 1,
+                          .height = size,
+                          .width = size,
+                          .type = nn_fastest_type(),
+                          .purpose = NN_INFER,
+                          .outputs = outputs,
+                          .beside = largest(n)};
     double began = clock_seconds();
     status s = model_build(&n->config, part, &c->graph);
     if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);
@@ -110,9 +129,10 @@ status network_prepare(network *n, int size, int views)
 {
     pthread_mutex_lock(&n->lock);
     const char *const *outputs = is_single(size, views) ? single_outputs : view_outputs;
-    status s = compile(n, MODEL_MAPS, outputs, size, maps_program(n, size));
     bool follows = views > 1 && size <= NETWORK_SIZE && n->config.global_illumination;
-    if (s == OK && follows) s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
+    /* that of the bounces first: it needs more memory, and whatever is compiled later shares it */
+    status s = follows ? compile(n, MODEL_INDIRECT, NULL, size, &n->indirect) : OK;
+    if (s == OK) s = compile(n, MODEL_MAPS, outputs, size, maps_program(n, size));
     pthread_mutex_unlock(&n->lock);
     return s;
 }

@@ -28,9 +28,7 @@ status img_animation_add(img_animation *a, const img *frame)
         return fail(ERROR_USAGE, "frame %d of an animation is not a colour image of %d x %d", a->count, a->width,
                     a->height);
     size_t each = frame_bytes(a);
-    uint8_t *codes = a->codes + each * (size_t)a->count++;
-    for (size_t i = 0; i < each; i++)
-        codes[i] = srgb_code8(frame->data[i]);
+    srgb_codes8(frame->data, each, a->codes + each * (size_t)a->count++);
     return OK;
 }
 

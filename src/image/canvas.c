@@ -31,9 +31,10 @@ void canvas_paste(canvas *c, const img *image, int x, int y)
 {
     for (int row = 0; row < image->height; row++) {
         uint8_t *to = c->rgb + 3 * ((size_t)(y + row) * (size_t)c->width + (size_t)x);
-        const float *from = img_at(image, 0, row);
-        for (int i = 0; i < 3 * image->width; i++)
-            to[i] = srgb_code8(from[image->channels == 3 ? i : i / 3]);
+        const size_t width = (size_t)image->width, values = width * (size_t)image->channels;
+        srgb_codes8(img_at(image, 0, row), values, to);
+        for (size_t i = width; values == width && i-- > 0;) /* grey, from behind: in its place */
+            to[3 * i] = to[3 * i + 1] = to[3 * i + 2] = to[i];
     }
 }
 

@@ -9,7 +9,7 @@ enum { GUESSES = 4096 };
 
 static pthread_once_t once8 = PTHREAD_ONCE_INIT, once16 = PTHREAD_ONCE_INIT;
 static float decode8[256], decode16[65536];
-static float threshold[256];             /* the smallest linear value of each code */
+static float threshold[257];             /* the smallest linear value of each code, and none for a 256th */
 static uint8_t first_guess[GUESSES + 1]; /* the code at i / GUESSES, from below */
 
 /* IEC 61966-2-1. */
@@ -34,6 +34,7 @@ static void fill8(void)
         decode8[i] = (float)decode(i / 255.0);
         threshold[i] = i ? (float)decode((i - 0.5) / 255.0) : 0;
     }
+    threshold[256] = INFINITY;
     int code = 0;
     for (int i = 0; i <= GUESSES; i++) {
         while (code < 255 && threshold[code + 1] <= (float)i / GUESSES)
@@ -60,13 +61,21 @@ const float *srgb_decode_table16(void)
     return decode16;
 }
 
-uint8_t srgb_code8(float linear)
+void srgb_codes8(const float *linear, size_t count, uint8_t *codes)
 {
     pthread_once(&once8, fill8);
-    if (!(linear > 0)) return 0;
-    if (linear >= 1) return 255;
-    int code = first_guess[(int)(linear * GUESSES)];
-    while (code < 255 && linear >= threshold[code + 1])
-        code++;
-    return (uint8_t)code;
+    for (size_t i = 0; i < count; i++) {
+        float x = linear[i] > 0 ? linear[i] : 0;
+        x = x < 1 ? x : 1;
+        /* two codes begin at least 1/3295 apart, so that no more than one does behind a guess */
+        int code = first_guess[(int)(x * GUESSES)];
+        codes[i] = (uint8_t)(code + (x >= threshold[code + 1]));
+    }
+}
+
+uint8_t srgb_code8(float linear)
+{
+    uint8_t code;
+    srgb_codes8(&linear, 1, &code);
+    return code;
 }

@@ -3,6 +3,7 @@
 #ifndef MERLIN_IMAGE_COLOR_H
 #define MERLIN_IMAGE_COLOR_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Of the primaries' white (ITU-R BT.709). */
@@ -15,7 +16,8 @@ static inline float color_luminance(const float rgb[3])
 const float *srgb_decode_table8(void);
 const float *srgb_decode_table16(void);
 
-/* The code nearest to srgb_encode(linear) × 255; NaN becomes 0. */
+/* The code nearest to srgb_encode(linear) × 255; NaN becomes 0. Of count values, or of one. */
+void srgb_codes8(const float *linear, size_t count, uint8_t *codes);
 uint8_t srgb_code8(float linear);
 
 #endif

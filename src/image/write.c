@@ -15,14 +15,12 @@ static void encode(const float *values, size_t count, img_encoding encoding, voi
 {
     uint8_t *out8 = codes;
     uint16_t *out16 = codes;
-    for (size_t i = 0; i < count; i++) {
-        float x = values[i];
-        if (encoding == IMG_SRGB8)
-            out8[i] = srgb_code8(x);
-        else if (encoding == IMG_LINEAR8)
-            out8[i] = (uint8_t)(unit(x) * 255 + 0.5f);
+    if (encoding == IMG_SRGB8) srgb_codes8(values, count, codes);
+    for (size_t i = 0; encoding != IMG_SRGB8 && i < count; i++) {
+        if (encoding == IMG_LINEAR8)
+            out8[i] = (uint8_t)(unit(values[i]) * 255 + 0.5f);
         else
-            out16[i] = (uint16_t)(unit(x) * 65535 + 0.5f);
+            out16[i] = (uint16_t)(unit(values[i]) * 65535 + 0.5f);
     }
 }
 

@@ -142,6 +142,18 @@ static void use_step_memory(compilation *c, int i)
     if (step->backs && step->backward_scratch) use_buffer(c, backward, step->backward_scratch, backward_time(c, i));
 }
 
+static status take_arena(nn_program *p, const nn_program *beside)
+{
+    if (beside && beside->arena && beside->arena->bytes >= p->arena_bytes) {
+        p->arena = beside->arena;
+        p->arena->users++;
+        return OK;
+    }
+    program_arena *a = p->arena = calloc(1, sizeof *a);
+    if (a) *a = (program_arena){p->device->allocate(p->arena_bytes + 1), p->arena_bytes, 1};
+    return a && a->memory ? OK : fail(ERROR_MEMORY, "no memory for activations (%zu MB)", p->arena_bytes >> 20);
+}
+
 static status plan(compilation *c)
 {
     int count = c->low.graph->count, end = 2 * c->low.step_count;
@@ -157,15 +169,12 @@ static status plan(compilation *c)
     }
     nn_program *p = c->program;
     status s = plan_memory(c->buffers, (size_t)c->buffer_count, &p->arena_bytes);
-    if (s != OK) return s;
-    p->arena = p->device->allocate(p->arena_bytes + 1);
-    if (!p->arena) return fail(ERROR_MEMORY, "no memory for activations (%zu MB)", p->arena_bytes >> 20);
-    return OK;
+    return s == OK ? take_arena(p, p->options.beside) : s;
 }
 
 static void *address(const compilation *c, int buffer)
 {
-    return buffer < 0 ? NULL : (char *)c->program->arena + c->buffers[buffer].offset;
+    return buffer < 0 ? NULL : (char *)c->program->arena->memory + c->buffers[buffer].offset;
 }
 
 static status bind_steps(compilation *c)
@@ -276,6 +285,7 @@ status nn_compile(const nn_graph *g, nn_params *params, const nn_options *option
     free(c.buffers);
     free(c.step_buffers);
     lowering_free(&c.low);
+    p->options.beside = NULL; /* it may be gone before this one */
     if (s == OK)
         *out = p;
     else

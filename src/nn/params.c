@@ -141,6 +141,21 @@ static status fill_params(nn_params *params, const nn_graph *g, const source *fr
     return OK;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp((*(nn_param *const *)a)->name, (*(nn_param *const *)b)->name);
+}
+
+static status index_names(nn_params *params)
+{
+    params->by_name = malloc((params->count + 1) * sizeof *params->by_name);
+    if (!params->by_name) return fail(ERROR_MEMORY, "no memory for parameters");
+    for (size_t i = 0; i < params->count; i++)
+        params->by_name[i] = &params->items[i];
+    qsort(params->by_name, params->count, sizeof *params->by_name, compare_names);
+    return OK;
+}
+
 static status make_params(const nn_graph *g, const source *from, nn_params **out)
 {
     *out = NULL;
@@ -160,6 +175,7 @@ static status make_params(const nn_graph *g, const source *from, nn_params **out
         for (int k = 0; k < count && s == OK; k++)
             s = add_param(params, &specs[k], from, &needed);
     }
+    if (s == OK) s = index_names(params);
     if (s == OK) s = fill_params(params, g, from, &needed);
     if (s == OK)
         *out = params;
@@ -186,6 +202,7 @@ void nn_params_free(nn_params *params)
     memory_free(params->values);
     memory_free(params->halves);
     memory_free(params->gradients);
+    free(params->by_name);
     free(params->items);
     free(params);
 }
@@ -207,9 +224,9 @@ size_t nn_params_values(const nn_params *params)
 
 nn_param *nn_params_find(nn_params *params, const char *name)
 {
-    for (size_t i = 0; i < params->count; i++)
-        if (strcmp(params->items[i].name, name) == 0) return &params->items[i];
-    return NULL;
+    const nn_param sought = {.name = name}, *key = &sought;
+    nn_param **found = bsearch(&key, params->by_name, params->count, sizeof *params->by_name, compare_names);
+    return found ? *found : NULL;
 }
 
 void nn_params_scale_rate(nn_params *params, const char *prefix, float scale)

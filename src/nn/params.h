@@ -5,7 +5,7 @@
 #include "nn/graph.h"
 
 struct nn_params {
-    nn_param *items;
+    nn_param *items, **by_name;
     size_t count;
     uint64_t version; /* grows whenever values change */
     size_t value_count;

@@ -1,6 +1,7 @@
 /* Parameters from a safetensors file. */
 #include <string.h>
 
+#include "base/parallel.h"
 #include "nn/params.h"
 #include "nn/safetensors.h"
 
@@ -28,6 +29,20 @@ static status take_values(const nn_param *p, const st_tensor *t)
     return OK;
 }
 
+typedef struct taking {
+    nn_params *params;
+    const st_file *file;
+    const char *path;
+} taking;
+
+static status take_one(void *context, size_t i)
+{
+    const taking *t = context;
+    const nn_param *p = &t->params->items[i];
+    status s = take_values(p, st_find(t->file, p->name));
+    return s == OK ? OK : fail_in(s, "%s: tensor %s", t->path, p->name);
+}
+
 status params_take(nn_params *params, const st_file *f, const char *path)
 {
     for (size_t i = 0; i < params->count; i++) {
@@ -39,12 +54,9 @@ status params_take(nn_params *params, const st_file *f, const char *path)
         if (!nn_params_find(params, name))
             return fail(ERROR_INPUT, "%s: the model has no parameter for tensor %s", path, name);
     }
-    for (size_t i = 0; i < params->count; i++) {
-        status s = take_values(&params->items[i], st_find(f, params->items[i].name));
-        if (s != OK) return fail_in(s, "%s: tensor %s", path, params->items[i].name);
-    }
-    nn_params_touch(params);
-    return OK;
+    status s = parallel_try(params->count, take_one, &(taking){params, f, path});
+    if (s == OK) nn_params_touch(params);
+    return s;
 }
 
 status nn_params_open(const nn_graph *g, const st_file *f, const char *path, nn_params **out)

@@ -14,6 +14,13 @@ static void free_ports(const nn_device *device, program_port *ports, int count)
     free(ports);
 }
 
+static void free_arena(const nn_device *device, program_arena *arena)
+{
+    if (!arena || --arena->users > 0) return;
+    device->release(arena->memory);
+    free(arena);
+}
+
 void nn_program_free(nn_program *p)
 {
     if (!p) return;
@@ -25,7 +32,7 @@ void nn_program_free(nn_program *p)
     free(p->steps);
     free_ports(p->device, p->inputs, p->input_count);
     free_ports(p->device, p->outputs, p->output_count);
-    p->device->release(p->arena);
+    free_arena(p->device, p->arena);
     if (p->context) p->device->close(p->context);
     free(p->untouched);
     free(p);

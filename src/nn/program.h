@@ -11,6 +11,13 @@ typedef struct program_port {
     bool owned;       /* host was allocated for this port */
 } program_port;
 
+/* Activations and scratch, of one program or of several that never run at once. */
+typedef struct program_arena {
+    void *memory;
+    size_t bytes;
+    int users;
+} program_arena;
+
 struct nn_program {
     const nn_device *device;
     void *context;
@@ -20,10 +27,10 @@ struct nn_program {
     int step_count;
     program_port *inputs, *outputs;
     int input_count, output_count;
-    void *arena;
-    size_t arena_bytes, own_bytes;
-    uint64_t version; /* of the parameters that the steps hold converted copies of */
-    bool *untouched;  /* per parameter: no step writes its gradient */
+    program_arena *arena;
+    size_t arena_bytes, own_bytes; /* of the arena: what this program needs */
+    uint64_t version;              /* of the parameters that the steps hold converted copies of */
+    bool *untouched;               /* per parameter: no step writes its gradient */
     bool forwarded;
 };
 

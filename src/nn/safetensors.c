@@ -19,7 +19,8 @@ enum { WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken
 struct st_file {
     file_view view; /* the bytes, if st_open looked at them */
     cJSON *header;
-    st_tensor *tensors;
+    st_tensor *tensors; /* by place */
+    const st_tensor **by_name;
     size_t count;
     const char *where;
     const unsigned char *data;
@@ -188,6 +189,21 @@ static status read_tensors(st_file *f)
     return check_places(f);
 }
 
+static int compare_tensors(const void *a, const void *b)
+{
+    return strcmp((*(const st_tensor *const *)a)->name, (*(const st_tensor *const *)b)->name);
+}
+
+static status index_names(st_file *f)
+{
+    f->by_name = malloc((f->count + 1) * sizeof *f->by_name);
+    if (!f->by_name) return fail(ERROR_MEMORY, "no memory for the names in %s", f->where);
+    for (size_t i = 0; i < f->count; i++)
+        f->by_name[i] = &f->tensors[i];
+    qsort(f->by_name, f->count, sizeof *f->by_name, compare_tensors);
+    return OK;
+}
+
 static status check_sum(const st_file *f)
 {
     const char *written = st_metadata(f, ST_CHECKSUM);
@@ -222,6 +238,7 @@ static status read_header(st_file *f, const unsigned char *bytes, size_t size)
     f->data = bytes + ST_PREFIX + length;
     f->data_size = size - ST_PREFIX - (size_t)length;
     status s = read_tensors(f);
+    if (s == OK) s = index_names(f);
     return s == OK ? check_sum(f) : s;
 }
 
@@ -262,6 +279,7 @@ void st_close(st_file *f)
     if (!f) return;
     cJSON_Delete(f->header);
     free(f->tensors);
+    free(f->by_name);
     file_unmap(&f->view);
     free(f);
 }
@@ -278,9 +296,9 @@ const st_tensor *st_at(const st_file *f, size_t i)
 
 const st_tensor *st_find(const st_file *f, const char *name)
 {
-    for (size_t i = 0; i < f->count; i++)
-        if (strcmp(f->tensors[i].name, name) == 0) return &f->tensors[i];
-    return NULL;
+    const st_tensor sought = {.name = name}, *key = &sought;
+    const st_tensor **found = bsearch(&key, f->by_name, f->count, sizeof *f->by_name, compare_tensors);
+    return found ? *found : NULL;
 }
 
 const char *st_metadata(const st_file *f, const char *key)

@@ -1,9 +1,11 @@
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <vips/vips.h>
 
 #include "image/animation.h"
+#include "image/color.h"
 #include "image/figure.h"
 #include "image/read.h"
 #include "image/write.h"
@@ -29,6 +31,34 @@ static void srgb_formula_inverts_itself(void **state)
         assert_true(fabsf(srgb_decode(srgb_encode(x)) - x) < 2e-6f);
     }
     assert_true(srgb_encode(0) == 0 && srgb_decode(0) == 0);
+}
+
+/* Those of one value, of many at once, and where each begins. */
+static void codes_are_the_nearest(void **state)
+{
+    (void)state;
+    enum { VALUES = 200001 };
+    float *values = malloc(VALUES * sizeof *values);
+    uint8_t *codes = malloc(VALUES);
+    for (int i = 0; i < VALUES; i++)
+        values[i] = (float)i / (VALUES - 1);
+    srgb_codes8(values, VALUES, codes);
+    for (int i = 0; i < VALUES; i++) {
+        assert_true(fabsf(srgb_encode(values[i]) * 255 - codes[i]) < 0.5f + 1e-4f);
+        assert_int_equal(srgb_code8(values[i]), codes[i]);
+    }
+    for (int code = 1; code < 256; code++) {
+        double encoded = (code - 0.5) / 255;
+        float first = (float)(encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4));
+        assert_int_equal(srgb_code8(first), code);
+        assert_int_equal(srgb_code8(nextafterf(first, 0)), code - 1);
+    }
+    const float odd[] = {-1, -0.0f, NAN, -INFINITY, 1, 2, INFINITY};
+    const uint8_t expected[] = {0, 0, 0, 0, 255, 255, 255};
+    srgb_codes8(odd, sizeof expected, codes);
+    assert_memory_equal(codes, expected, sizeof expected);
+    free(values);
+    free(codes);
 }
 
 /* What libvips sees in a file: an integer of its header. */
@@ -244,6 +274,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(srgb_formula_inverts_itself),
+        cmocka_unit_test(codes_are_the_nearest),
         cmocka_unit_test(pictures_name_their_colour_space),
         cmocka_unit_test(animations_loop_with_their_frames_and_delays),
         cmocka_unit_test(failed_writes_leave_nothing_and_say_where),

@@ -250,15 +250,28 @@ static nn_graph *two_headed_net(void)
     return g;
 }
 
-static nn_program *run_heads(nn_params *params, const nn_graph *g, const char *const *outputs)
+static nn_program *compile_heads(nn_params *params, const nn_graph *g, const char *const *outputs,
+                                 const nn_program *beside)
 {
     nn_program *p;
-    const nn_options options = {.batch = 1, .height = 8, .width = 8, .purpose = NN_INFER, .outputs = outputs};
+    const nn_options options = {
+        .batch = 1, .height = 8, .width = 8, .purpose = NN_INFER, .outputs = outputs, .beside = beside};
     assert_int_equal(nn_compile(g, params, &options, &p), OK);
+    return p;
+}
+
+static void run_on_sines(nn_program *p, float frequency)
+{
     float *image = nn_input_data(p, "image");
     for (int i = 0; i < 8 * 8 * 3; i++)
-        image[i] = sinf((float)i);
+        image[i] = sinf(frequency * (float)i);
     assert_int_equal(nn_forward(p), OK);
+}
+
+static nn_program *run_heads(nn_params *params, const nn_graph *g, const char *const *outputs)
+{
+    nn_program *p = compile_heads(params, g, outputs, NULL);
+    run_on_sines(p, 1);
     return p;
 }
 
@@ -280,6 +293,53 @@ static void outputs_that_nobody_wants_are_left_out(void **state)
     nn_graph_free(g);
 }
 
+/* A run of the other leaves its traces in what one saw or said. */
+static bool shares_memory(nn_program *one, nn_program *other)
+{
+    enum { SEEN = 8 * 8 * 3, SAID = 8 * 8 * 2 };
+    float seen[SEEN], said[SAID];
+    run_on_sines(one, 0.3f);
+    memcpy(seen, nn_input_data(one, "image"), sizeof seen);
+    memcpy(said, nn_output_data(one, "left"), sizeof said);
+    run_on_sines(other, 2);
+    return memcmp(seen, nn_input_data(one, "image"), sizeof seen) != 0 ||
+           memcmp(said, nn_output_data(one, "left"), sizeof said) != 0;
+}
+
+/* In turns, each on a picture of its own; then the one that came first goes first. */
+static void programs_beside_each_other_share_memory(void **state)
+{
+    (void)state;
+    enum { RUNS = 3, VALUES = 8 * 8 * 2 };
+    static const char *const left[] = {"left", NULL};
+    nn_graph *g = two_headed_net();
+    nn_params *params;
+    assert_int_equal(nn_params_new(g, 3, &params), OK);
+    nn_program *alone = compile_heads(params, g, NULL, NULL), *all = compile_heads(params, g, NULL, NULL);
+    nn_program *one = compile_heads(params, g, left, all);
+    assert_true(shares_memory(one, all));
+    for (int run = 0; run < RUNS; run++) {
+        run_on_sines(all, 0.7f);
+        run_on_sines(one, (float)(run + 1));
+        run_on_sines(alone, (float)(run + 1));
+        assert_memory_equal(nn_output_data(one, "left"), nn_output_data(alone, "left"), VALUES * sizeof(float));
+    }
+    nn_program_free(all);
+    run_on_sines(one, 5);
+    run_on_sines(alone, 5);
+    assert_memory_equal(nn_output_data(one, "left"), nn_output_data(alone, "left"), VALUES * sizeof(float));
+    nn_program *larger = compile_heads(params, g, NULL, one); /* as much as it once had from the first */
+    assert_true(shares_memory(one, larger));
+    nn_program *least = compile_heads(params, g, left, NULL), *most = compile_heads(params, g, NULL, least);
+    assert_true(nn_program_cost(most).activation_bytes > nn_program_cost(least).activation_bytes);
+    assert_false(shares_memory(least, most)); /* it has too little */
+    nn_program *programs[] = {alone, one, larger, least, most};
+    for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++)
+        nn_program_free(programs[i]);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -294,6 +354,7 @@ int main(void)
         cmocka_unit_test(a_program_outlives_its_graph),
         cmocka_unit_test(cost_counts_two_per_multiply_add),
         cmocka_unit_test(outputs_that_nobody_wants_are_left_out),
+        cmocka_unit_test(programs_beside_each_other_share_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
