@@ -49,28 +49,27 @@ status detail_fuse(const img *fine, const img *mask, img *normal)
 }
 
 /* What the network says of the larger picture, which is a guide for what it said of the other afterwards. */
-static status estimate_at(network *n, const detail_request *r, img *guide, img *mask, network_estimation *out)
+static status look(network *n, const detail_request *r, img *guide, img *mask, img *normal)
 {
     status s = input_make(r->photo, r->mask, r->side, guide, mask);
     if (s == OK) input_expose(guide, r->gain);
-    if (s == OK) s = network_estimate(n, guide, mask, r->views, r->stop, out);
+    if (s == OK) s = network_normals(n, guide, mask, r->views, r->stop, normal);
     if (s == OK) surface_encode_guide(guide, 1);
     return s;
 }
 
 status detail_add(network *n, const detail_request *r, surface *maps)
 {
-    img guide = {0}, mask = {0};
-    network_estimation fine = {0};
+    img guide = {0}, mask = {0}, fine = {0};
     surface larger = {0};
-    status s = estimate_at(n, r, &guide, &mask, &fine);
+    status s = look(n, r, &guide, &mask, &fine);
     if (s == OK) s = surface_refine(maps, &guide, &mask, &larger);
-    if (s == OK) s = detail_fuse(&fine.maps.normal, &mask, &larger.normal);
+    if (s == OK) s = detail_fuse(&fine, &mask, &larger.normal);
     if (s == OK) surface_tidy(&larger);
     if (s == OK) s = fuse_depth(&larger.normal, &larger.mask, SURFACE_FOV, &larger.depth);
     img_free(&guide);
     img_free(&mask);
-    network_estimation_free(&fine);
+    img_free(&fine);
     if (s != OK) {
         surface_free(&larger);
         return s;

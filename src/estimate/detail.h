@@ -15,7 +15,7 @@
 typedef struct detail_request {
     const img *photo, *mask; /* the crop, as photographed: linear, and coverage */
     float gain;              /* from its values to radiance */
-    int side, views;         /* as for network_estimate */
+    int side, views;         /* as for network_normals */
     int (*stop)(void);
 } detail_request;
 

@@ -256,7 +256,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     w->clock = clock_seconds();
     const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
     status s = network_prepare(n, maps->size, views);
-    if (s == OK && finer > 0) s = network_prepare(n, finer, detail_views(views));
+    if (s == OK && finer > 0) s = network_prepare_normals(n, finer);
     /* the caller may have had it compiled before */
     if (s == OK) s = lap(w, &t->compile);
     t->compile = network_take_compile_seconds(n);

@@ -20,14 +20,15 @@ typedef struct compiled {
 struct network {
     model_config config;
     nn_params *params;
-    pthread_mutex_t lock;                       /* of the programs: a run uses their buffers */
-    compiled maps, fine, look, relit, indirect; /* fine: maps of more than NETWORK_SIZE */
+    pthread_mutex_t lock;                          /* of the programs: a run uses their buffers */
+    compiled maps, normals, look, relit, indirect; /* normals: alone, of larger pictures */
     double compile_seconds;
 };
 
 /* What each program is made for; the rest of the whole network is left out of it. */
 static const char *const single_outputs[] = {"albedo",   "normal",           "roughness", "depth",
                                              "indirect", "environment_code", NULL};
+static const char *const normal_outputs[] = {"normal", NULL};
 
 struct network_look {
     img mask;
@@ -64,7 +65,7 @@ void network_close(network *n)
 {
     if (!n) return;
     compiled_free(&n->maps);
-    compiled_free(&n->fine);
+    compiled_free(&n->normals);
     compiled_free(&n->look);
     compiled_free(&n->relit);
     compiled_free(&n->indirect);
@@ -81,7 +82,7 @@ const model_config *network_config(const network *n)
 /* That with most memory: all use it, for inputs are put before every run, and outputs taken after it. */
 static const nn_program *largest(const network *n)
 {
-    const nn_program *all[] = {n->maps.program, n->fine.program, n->look.program, n->relit.program,
+    const nn_program *all[] = {n->maps.program, n->normals.program, n->look.program, n->relit.program,
                                n->indirect.program};
     const nn_program *found = NULL;
     size_t most = 0;
@@ -114,25 +115,21 @@ static status compile(network *n, model_part part, const char *const *outputs, i
     return s;
 }
 
-static compiled *maps_program(network *n, int size)
-{
-    return size > NETWORK_SIZE ? &n->fine : &n->maps;
-}
-
-/* Whether bounces are asked of the view itself: of larger pictures nobody wants them. */
-static bool is_single(int size, int views)
-{
-    return views == 1 && size <= NETWORK_SIZE;
-}
-
 status network_prepare(network *n, int size, int views)
 {
     pthread_mutex_lock(&n->lock);
-    const char *const *outputs = is_single(size, views) ? single_outputs : view_outputs;
-    bool follows = views > 1 && size <= NETWORK_SIZE && n->config.global_illumination;
+    bool follows = views > 1 && n->config.global_illumination;
     /* that of the bounces first: it needs more memory, and whatever is compiled later shares it */
     status s = follows ? compile(n, MODEL_INDIRECT, NULL, size, &n->indirect) : OK;
-    if (s == OK) s = compile(n, MODEL_MAPS, outputs, size, maps_program(n, size));
+    if (s == OK) s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
+status network_prepare_normals(network *n, int size)
+{
+    pthread_mutex_lock(&n->lock);
+    status s = compile(n, MODEL_MAPS, normal_outputs, size, &n->normals);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -204,10 +201,9 @@ static void take_environment(nn_program *p, float sh[9][3])
 static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    compiled *c = maps_program(n, photo->width);
-    status s = run_view(n, photo, mask, view, outputs, c);
-    if (s == OK) s = take_maps(c->program, photo->width, &out->maps);
-    if (s == OK) take_environment(c->program, out->environment);
+    status s = run_view(n, photo, mask, view, outputs, &n->maps);
+    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
+    if (s == OK) take_environment(n->maps.program, out->environment);
     return s;
 }
 
@@ -223,7 +219,7 @@ static status estimate_single(network *n, const img *photo, const img *mask, net
 static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                              network_estimation *out)
 {
-    if (is_single(photo->width, views)) return estimate_single(n, photo, mask, out);
+    if (views == 1) return estimate_single(n, photo, mask, out);
     status s = view_mean_new(photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};
@@ -245,17 +241,50 @@ static status finish(const img *mask, surface *maps)
     return s;
 }
 
+static status check_views(int views)
+{
+    if (views >= 1 && views <= ORIENTATIONS) return OK;
+    return fail(ERROR_USAGE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
+}
+
 status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                         network_estimation *out)
 {
     *out = (network_estimation){0};
-    if (views < 1 || views > ORIENTATIONS)
-        return fail(ERROR_USAGE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
+    status s = check_views(views);
     pthread_mutex_lock(&n->lock);
-    status s = estimate_views(n, photo, mask, views, stop, out);
+    if (s == OK) s = estimate_views(n, photo, mask, views, stop, out);
     pthread_mutex_unlock(&n->lock);
     if (s == OK) s = finish(mask, &out->maps);
     if (s != OK) network_estimation_free(out);
+    return s;
+}
+
+static status add_normals(network *n, const img *photo, const img *mask, int view, float weight, img *mean)
+{
+    img turned = {0};
+    status s = run_view(n, photo, mask, view, normal_outputs, &n->normals);
+    if (s == OK) s = take(n->normals.program, "normal", photo->width, 3, 1, 0, &turned);
+    if (s == OK) view_add_normals(mean, &turned, view, weight);
+    img_free(&turned);
+    return s;
+}
+
+status network_normals(network *n, const img *photo, const img *mask, int views, int (*stop)(void), img *normal)
+{
+    *normal = (img){0};
+    status s = check_views(views);
+    if (s == OK) s = img_new(normal, photo->width, photo->height, 3);
+    pthread_mutex_lock(&n->lock);
+    for (int view = 0; view < views && s == OK; view++)
+        s = stop && stop() ? fail(ERROR_STOPPED, "stopped")
+                           : add_normals(n, photo, mask, view, 1.0f / (float)views, normal);
+    pthread_mutex_unlock(&n->lock);
+    if (s == OK) s = smooth_inside(normal, mask);
+    if (s == OK)
+        surface_tidy_normals(mask, normal);
+    else
+        img_free(normal);
     return s;
 }
 

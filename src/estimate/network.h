@@ -35,17 +35,17 @@ status network_open(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
-/* Makes the programs for this size and so many views now, so that the time is seen apart. Those of one size up to
- * NETWORK_SIZE are kept, and those of one beyond it, which are for maps alone. */
+/* Makes the programs for this size and so many views now, so that the time is seen apart; that of network_normals.
+ * Those of the last size are kept. */
 status network_prepare(network *n, int size, int views);
+status network_prepare_normals(network *n, int size);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
 
 typedef struct network_estimation {
     surface maps;
     img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
-                     more views has highlights of its own: empty here, to be asked of network_indirect. Empty, too, of
-                     pictures of more than NETWORK_SIZE */
+                     more views has highlights of its own: empty here, to be asked of network_indirect */
     float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
 } network_estimation;
 
@@ -54,6 +54,8 @@ typedef struct network_estimation {
 status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
                         network_estimation *out);
 void network_estimation_free(network_estimation *e);
+/* The normals alone, as of network_estimate: for what is fine in a larger picture. */
+status network_normals(network *n, const img *photo, const img *mask, int views, int (*stop)(void), img *normal);
 
 /* What the relighting decoder takes of a photograph, whatever the light; as photo and mask of network_estimate.
  * ERROR_USAGE if the model has no such decoder. */

@@ -84,6 +84,27 @@ void surface_tidy(surface *s)
     parallel_blocks((size_t)s->mask.width * (size_t)s->mask.height, tidy_pixels, s);
 }
 
+/* Of a map, and the mask it is to agree with. */
+typedef struct normal_map {
+    const img *mask;
+    img *normal;
+} normal_map;
+
+static void tidy_normals(void *context, size_t begin, size_t end)
+{
+    const normal_map *m = context;
+    for (size_t i = begin; i < end; i++)
+        if (m->mask->data[i] > 0)
+            tidy_normal(m->normal->data + 3 * i);
+        else
+            clear(m->normal->data + 3 * i, 3);
+}
+
+void surface_tidy_normals(const img *mask, img *normal)
+{
+    parallel_blocks((size_t)mask->width * (size_t)mask->height, tidy_normals, &(normal_map){mask, normal});
+}
+
 void harden_mask(img *image, img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;

@@ -32,6 +32,8 @@ void surface_free(surface *s);
 /* Makes what the header promises true for any content: out-of-range values are clamped, normals made unit and turned
  * toward the camera, non-finite values replaced, everything outside the mask zeroed. */
 void surface_tidy(surface *s);
+/* A normal map likewise; mask: its size. */
+void surface_tidy_normals(const img *mask, img *normal);
 
 /* What the network is given: a mask that is 0 or 1, and an image (3 channels, may be NULL) that is zero outside it and
  * not negative inside. */

@@ -66,14 +66,28 @@ static void kernel_free(kernel *k)
     free(k->weights);
 }
 
-static void resize_row(const float *row, int channels, const kernel *k, float *out)
+/* With a number of channels that the compiler knows, the sums stay in registers. */
+static inline void weigh_pixels(const float *row, const int channels, const kernel *k, float *out)
 {
     for (int x = 0; x < k->count; x++, out += channels) {
         const float *in = row + (size_t)k->first[x] * (size_t)channels, *w = k->weights + (size_t)x * (size_t)k->taps;
-        for (int t = 0; t < k->taps; t++)
-            for (int c = 0; c < channels; c++)
-                out[c] += w[t] * in[t * channels + c];
+        for (int c = 0; c < channels; c++) {
+            float sum = 0;
+            for (int t = 0; t < k->taps; t++)
+                sum += w[t] * in[t * channels + c];
+            out[c] = sum;
+        }
     }
+}
+
+static void resize_row(const float *row, int channels, const kernel *k, float *out)
+{
+    if (channels == 1)
+        weigh_pixels(row, 1, k, out);
+    else if (channels == 3)
+        weigh_pixels(row, 3, k, out);
+    else
+        weigh_pixels(row, channels, k, out);
 }
 
 static const float *multiply_row(const img *from, const img *mask, int y, float *product)

@@ -149,17 +149,47 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     network_close(n);
 }
 
+static int at_once(void)
+{
+    return 1;
+}
+
+static void normals_alone_are_those_of_all_maps(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask, normal;
+    network_estimation e;
+    assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    for (int views = 1; views <= 3; views++) {
+        assert_int_equal(network_estimate(n, &photo, &mask, views, NULL, &e), OK);
+        assert_int_equal(network_normals(n, &photo, &mask, views, NULL, &normal), OK);
+        assert_int_equal(normal.channels, 3);
+        assert_memory_equal(normal.data, e.maps.normal.data, img_value_count(&normal) * sizeof(float));
+        network_estimation_free(&e);
+        img_free(&normal);
+    }
+    assert_int_equal(network_normals(n, &photo, &mask, 2, at_once, &normal), ERROR_STOPPED);
+    assert_null(normal.data);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
 static void a_wrong_number_of_views_is_refused(void **state)
 {
     (void)state;
     network *n;
-    img photo, mask;
+    img photo, mask, normal;
     network_estimation e;
     assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     assert_int_equal(network_estimate(n, &photo, &mask, 0, NULL, &e), ERROR_USAGE);
     assert_int_equal(network_estimate(n, &photo, &mask, 9, NULL, &e), ERROR_USAGE);
+    assert_int_equal(network_normals(n, &photo, &mask, 0, NULL, &normal), ERROR_USAGE);
     img_free(&photo);
     img_free(&mask);
     network_close(n);
@@ -171,6 +201,7 @@ int main(void)
         cmocka_unit_test(orientations_are_undone_by_their_inverse),
         in_scratch(the_mean_over_all_views_turns_with_the_photograph),
         in_scratch(a_relit_picture_is_flipped_with_photograph_and_light),
+        in_scratch(normals_alone_are_those_of_all_maps),
         in_scratch(a_wrong_number_of_views_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
