@@ -17,7 +17,8 @@ static const char help[] =
     "                      checkpoint.safetensors, curves.csv, validation.csv, curves.png and seconds.txt\n"
     "  -r, --resume        go on from DIR's checkpoint\n"
     "  -i, --init W        start from these weights (to fine-tune them): a file, or merlin-point or merlin-env\n"
-    "      --init-shared W start from those of another model's weights that fit by name and shape\n"
+    "      --init-shared W start from those of another model's weights that fit by name and shape; may be repeated:\n"
+    "                      what several have is taken from the last\n"
     "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"
     "  -t, --threads N     processor threads (default: all)\n"
     "  -q, --quiet         no progress bar\n"
@@ -25,12 +26,25 @@ static const char help[] =
     "\n"
     "Interrupted (Ctrl-C), it writes a checkpoint first.\n";
 
+enum { MOST_SHARED = 8 };
+
 typedef struct request {
     trn_options options;
-    const char *init, *init_shared;
+    const char *shared[MOST_SHARED + 1]; /* ended by NULL */
     int threads;
     bool help;
 } request;
+
+static status take_shared(const char *name, void *into)
+{
+    request *r = into;
+    size_t n = 0;
+    while (r->shared[n])
+        n++;
+    if (n == MOST_SHARED) return fail(ERROR_USAGE, "--init-shared takes at most %d weights to share", MOST_SHARED);
+    r->shared[n] = name;
+    return OK;
+}
 
 static status parse(int argc, char **argv, request *r)
 {
@@ -39,8 +53,8 @@ static status parse(int argc, char **argv, request *r)
         {"data", 'd', .text = &o->data},
         {"output", 'o', .folder = &o->output},
         {"resume", 'r', .flag = &o->resume},
-        {"init", 'i', .text = &r->init},
-        {"init-shared", .text = &r->init_shared},
+        {"init", 'i', .text = &o->init},
+        {"init-shared", .take = take_shared, .into = r},
         {"note", 'n', .text = &o->note},
         {"threads", 't', .integer = &r->threads, .low = 1, .high = 1024},
         {"quiet", 'q', .flag = &o->quiet},
@@ -52,22 +66,34 @@ static status parse(int argc, char **argv, request *r)
     if (argc != 1) return fail(ERROR_USAGE, "give one configuration file");
     if (!o->data) return fail(ERROR_USAGE, "--data is missing");
     if (!o->output) return fail(ERROR_USAGE, "--output is missing");
-    if (r->init && r->init_shared) return fail(ERROR_USAGE, "--init and --init-shared exclude each other");
-    o->init = r->init_shared ? r->init_shared : r->init;
-    o->init_shared = r->init_shared != NULL;
-    if (o->init && o->resume) return fail(ERROR_USAGE, "--init and --resume exclude each other");
+    bool starts_shared = r->shared[0] != NULL;
+    if (o->init && starts_shared) return fail(ERROR_USAGE, "--init and --init-shared exclude each other");
+    if ((o->init || starts_shared) && o->resume)
+        return fail(ERROR_USAGE, "%s and --resume exclude each other", o->init ? "--init" : "--init-shared");
+    o->init_shared = r->shared;
     o->config = argv[0];
     return OK;
 }
 
-/* Weights are named as everywhere else: a file, or those that ship. */
-static status train(trn_options *o)
+/* Weights are named as everywhere else: a file, or those that ship. *path is malloc'ed and takes the name's place. */
+static status find_weights(const char **name, char **path)
 {
-    char *weights = NULL;
-    status s = o->init ? photo_find_model(o->init, &weights) : OK;
-    o->init = weights;
+    status s = photo_find_model(*name, path);
+    if (s == OK) *name = *path;
+    return s;
+}
+
+static status train(request *r)
+{
+    trn_options *o = &r->options;
+    char *init = NULL, *shared[MOST_SHARED] = {0};
+    status s = o->init ? find_weights(&o->init, &init) : OK;
+    for (size_t i = 0; s == OK && r->shared[i]; i++)
+        s = find_weights(&r->shared[i], &shared[i]);
     if (s == OK) s = trn_train(o);
-    free(weights);
+    free(init);
+    for (size_t i = 0; i < MOST_SHARED; i++)
+        free(shared[i]);
     return s;
 }
 
@@ -78,6 +104,6 @@ int cmd_train(int argc, char **argv)
     if (r.help) return fputs(help, stdout) < 0;
     if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
-    status s = train(&r.options);
+    status s = train(&r);
     return s == OK ? 0 : cli_fail("train", s);
 }

@@ -79,9 +79,11 @@ static status name_output(run *r)
         return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
                     folder);
     if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
-    if (r->options->init && file_is_same(r->options->init, p->weights))
-        return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", p->weights);
-    return OK;
+    bool replaces = r->options->init && file_is_same(r->options->init, p->weights);
+    for (const char *const *w = r->options->init_shared; w && *w; w++)
+        replaces |= file_is_same(*w, p->weights);
+    if (!replaces) return OK;
+    return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", p->weights);
 }
 
 static bool is_lit_by_both(const run *r)
@@ -117,6 +119,14 @@ static model_part part_of(const train_config *c)
     return c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
 }
 
+static status load_weights(nn_params *params, const trn_options *o)
+{
+    status s = o->init ? nn_params_load(params, o->init) : OK;
+    for (const char *const *w = o->init_shared; s == OK && w && *w; w++)
+        s = nn_params_load_shared(params, *w);
+    return s;
+}
+
 static status build(run *r)
 {
     const train_config *c = &r->training;
@@ -125,9 +135,7 @@ static status build(run *r)
     trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
-    if (s == OK && r->options->init)
-        s = r->options->init_shared ? nn_params_load_shared(r->params, r->options->init)
-                                    : nn_params_load(r->params, r->options->init);
+    if (s == OK) s = load_weights(r->params, r->options);
     if (s != OK) return s;
     nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
     s = nn_adam_new(r->params, &adam, &r->adam);

@@ -17,7 +17,9 @@
 typedef struct trn_options {
     const char *config, *data, *output;
     const char *init; /* weights to start from, or NULL */
-    bool init_shared; /* init is another model's: start from what fits by name and shape */
+    /* or other models' weights, ended by NULL: of each what fits by name and shape, a later one's before an earlier's
+     */
+    const char *const *init_shared;
     const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
     bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
     bool quiet;

@@ -10,9 +10,15 @@ for name in merlin-point merlin-env; do
     refuses 1 "$name.safetensors: .*another shape" "${train[@]}" --init "$name"
 done
 refuses 1 "no weights file merlin-pint" "${train[@]}" --init-shared merlin-pint
+refuses 1 "no weights file merlin-pint" "${train[@]}" --init-shared merlin-point --init-shared merlin-pint
 refuses 1 "missing.safetensors" "${train[@]}" --init "$scratch/missing.safetensors"
 [[ ! -e $scratch/more ]] || complain "a run that could not start left a folder"
 "${train[@]}" --init "$scratch/weights.safetensors" || complain "training does not start from its own weights"
 refuses 2 "holds a run already" "${train[@]}" --init "$scratch/weights.safetensors"
 refuses 2 "exclude each other" "${train[@]}" --init merlin-point --resume
+refuses 2 "exclude each other" "${train[@]}" --init-shared merlin-point --resume
+refuses 2 "exclude each other" "${train[@]}" --init merlin-point --init-shared merlin-env
+too_many=()
+for _ in 1 2 3 4 5 6 7 8 9; do too_many+=(--init-shared merlin-env); done
+refuses 2 "takes at most 8 weights" "${train[@]}" "${too_many[@]}"
 finish

@@ -376,6 +376,40 @@ static void weights_that_a_run_starts_from_are_not_replaced(void **state)
     assert_int_equal(train_from(f, "b", weights), OK);
 }
 
+static status train_from_shared(const fixture *f, const char *name, const char *const *weights)
+{
+    char *output = file_join(f->root, name);
+    status s = trn_train(
+        &(trn_options){.config = f->config, .data = f->data, .output = output, .init_shared = weights, .quiet = true});
+    free(output);
+    return s;
+}
+
+static void later_shared_weights_replace_earlier_ones(void **state)
+{
+    const fixture *f = *state;
+    char weights[2][600];
+    write_config(f, 8, 2, 0, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    write_config(f, 4, 2, 0, jitter);
+    assert_int_equal(train(f, "b", false, 0), OK);
+    for (int i = 0; i < 2; i++)
+        snprintf(weights[i], sizeof weights[i], "%s/%s/weights.safetensors", f->root, i == 0 ? "a" : "b");
+    assert_int_equal(train_from(f, "from b", weights[1]), OK);
+    assert_int_equal(train_from_shared(f, "b alone", (const char *const[]){weights[1], NULL}), OK);
+    assert_int_equal(train_from_shared(f, "b last", (const char *const[]){weights[0], weights[1], NULL}), OK);
+    assert_int_equal(train_from_shared(f, "a last", (const char *const[]){weights[1], weights[0], NULL}), OK);
+    same_file(f, "from b", "b alone", "weights.safetensors");
+    same_file(f, "from b", "b last", "weights.safetensors");
+    assert_int_equal(train_from(f, "from a", weights[0]), OK);
+    same_file(f, "from a", "a last", "weights.safetensors");
+    char checkpoint[600];
+    snprintf(checkpoint, sizeof checkpoint, "%s/b/checkpoint.safetensors", f->root);
+    assert_int_equal(remove(checkpoint), 0);
+    assert_int_equal(train_from_shared(f, "b", (const char *const[]){weights[0], weights[1], NULL}), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "name another folder"));
+}
+
 static bool weights_name_a_loss(const fixture *f, const char *run)
 {
     char path[600];
@@ -418,6 +452,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_that_a_run_starts_from_are_not_replaced, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(later_shared_weights_replace_earlier_ones, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_without_validation_name_no_loss, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
