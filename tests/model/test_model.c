@@ -169,6 +169,7 @@ static void default_models_keep_the_budget(void **unused)
     keeps_the_budget("merlin-point-sharp");
     keeps_the_budget("merlin-env");
     keeps_the_budget("merlin-env-fine");
+    keeps_the_budget("merlin-env-sharp");
 }
 
 /* So that they can be added to weights that are trained already. */

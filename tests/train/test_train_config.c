@@ -81,10 +81,10 @@ static void every_shipped_configuration_can_be_trained(void **unused)
 static void configurations_of_both_lights_differ_from_the_point_settings_in_that(void **unused)
 {
     (void)unused;
-    static const char *const pairs[][2] = {{"merlin-point-deep", "merlin-env"},
-                                           {"merlin-point-deep-256", "merlin-env-256"},
-                                           {"merlin-point-fine", "merlin-env-fine"},
-                                           {"merlin-point-fine-256", "merlin-env-fine-256"}};
+    static const char *const pairs[][2] = {
+        {"merlin-point-deep", "merlin-env"},        {"merlin-point-deep-256", "merlin-env-256"},
+        {"merlin-point-fine", "merlin-env-fine"},   {"merlin-point-fine-256", "merlin-env-fine-256"},
+        {"merlin-point-sharp", "merlin-env-sharp"}, {"merlin-point-sharp-256", "merlin-env-sharp-256"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         model_config m[2];
         for (int k = 0; k < 2; k++) {
