@@ -17,8 +17,7 @@
 typedef struct trn_options {
     const char *config, *data, *output;
     const char *init; /* weights to start from, or NULL */
-    /* or other models' weights, ended by NULL: of each what fits by name and shape, a later one's before an earlier's
-     */
+    /* or other models' weights, ended by NULL: what fits by name and shape, of the last that has it */
     const char *const *init_shared;
     const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
     bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
