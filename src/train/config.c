@@ -31,19 +31,21 @@ typedef struct optional {
     const char *key;
     double high;
     size_t offset; /* in train_config */
+    double left_out;
 } optional;
 
 static const optional optionals[] = {
-    {"camera_turn", 20, offsetof(train_config, camera_turn)},
-    {"distance_jitter", 0.7, offsetof(train_config, distance_jitter)},
-    {"background_leak", 1, offsetof(train_config, background_leak)},
-    {"outline_error", 1, offsetof(train_config, outline_error)},
-    {"jpeg", 1, offsetof(train_config, jpeg)},
-    {"perfect_camera", 1, offsetof(train_config, perfect_camera)},
-    {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight)},
-    {"ssim_weight", 1e4, offsetof(train_config, ssim_weight)},
-    {"dark_target", 1, offsetof(train_config, dark_target)},
-    {"average_decay", 0.999999, offsetof(train_config, average_decay)},
+    {"albedo_weight", 1e4, offsetof(train_config, albedo_weight), 1},
+    {"camera_turn", 20, offsetof(train_config, camera_turn), 0},
+    {"distance_jitter", 0.7, offsetof(train_config, distance_jitter), 0},
+    {"background_leak", 1, offsetof(train_config, background_leak), 0},
+    {"outline_error", 1, offsetof(train_config, outline_error), 0},
+    {"jpeg", 1, offsetof(train_config, jpeg), 0},
+    {"perfect_camera", 1, offsetof(train_config, perfect_camera), 0},
+    {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight), 0},
+    {"ssim_weight", 1e4, offsetof(train_config, ssim_weight), 0},
+    {"dark_target", 1, offsetof(train_config, dark_target), 0},
+    {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };
 
@@ -52,13 +54,13 @@ static status read_optionals(json_object *o, train_config *c)
     status s = OK;
     for (int i = 0; i < OPTIONALS && s == OK; i++) {
         double value = 0;
-        s = json_number_or(o, optionals[i].key, 0, optionals[i].high, 0, &value);
+        s = json_number_or(o, optionals[i].key, 0, optionals[i].high, optionals[i].left_out, &value);
         memcpy((char *)c + optionals[i].offset, &value, sizeof value);
     }
     return s;
 }
 
-/* Those that are not 0, each behind a comma and a space. */
+/* Those that are not as if left out, each behind a comma and a space. */
 static void write_optionals(const train_config *c, char *out, size_t size)
 {
     size_t length = 0;
@@ -66,7 +68,7 @@ static void write_optionals(const train_config *c, char *out, size_t size)
     for (int i = 0; i < OPTIONALS; i++) {
         double value;
         memcpy(&value, (const char *)c + optionals[i].offset, sizeof value);
-        if (value != 0)
+        if (value != optionals[i].left_out)
             length += (size_t)snprintf(out + length, size - length, ", \"%s\": %.9g", optionals[i].key, value);
     }
 }

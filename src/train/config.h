@@ -26,6 +26,7 @@ typedef struct train_config {
     double jpeg;            /* share compressed as JPEG */
     double perfect_camera;  /* share of photographs as the paper's: only turned and moved, saturated at radiance 1 */
     /* Optional, too: */
+    double albedo_weight;       /* of the albedo loss; left out, 1, as the paper's */
     double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF beside the network's; 0: none, as the
                                    paper */
     double ssim_weight;   /* of structural dissimilarity of the relit images, by network and by BRDF; 0: none, as the
@@ -43,8 +44,8 @@ typedef struct train_config {
 status train_config_parse(const char *json, size_t size, const char *where, model_config *model,
                           train_config *training);
 status train_config_read(const char *path, model_config *model, train_config *training);
-/* The "training" object as JSON, malloc'ed: equal text means equal training; optional keys are in it unless they are 0.
- * NULL if memory ran out. */
+/* The "training" object as JSON, malloc'ed: equal text means equal training; optional keys are in it unless they are as
+ * if left out. NULL if memory ran out. */
 char *train_config_write(const train_config *c);
 
 #endif

@@ -126,7 +126,7 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     (void)unused;
     static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error",
                                        "jpeg",        "perfect_camera",  "average_decay",   "relight_brdf_weight",
-                                       "dark_target"};
+                                       "dark_target", "albedo_weight"};
     model_config m;
     train_config t, again;
     char *good = shipped();
@@ -134,7 +134,9 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     char *training = train_config_write(&t), *model = model_config_write(&m), text[8192];
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         assert_null(strstr(training, keys[i]));
+    assert_float_equal(t.albedo_weight, 1, 0);
     free(training);
+    t.albedo_weight = 0;
     t.camera_turn = 5;
     t.distance_jitter = 0.25;
     t.background_leak = 0.5;
