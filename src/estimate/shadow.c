@@ -1,7 +1,9 @@
 #include "estimate/shadow.h"
 
+#include <math.h>
 #include <stdbool.h>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "estimate/fill.h"
 #include "estimate/fuse.h"
@@ -74,11 +76,12 @@ static float value_at(const img *image, const corners *c, int channel)
 typedef struct march {
     float x, y, inverse;                /* where it starts, pixel centres at whole coordinates */
     float step_x, step_y, step_inverse; /* a pixel further along the longer axis */
-    float first, count; /* steps: to the first pixel centre that counts along that axis, and to the end */
-    bool across;        /* the longer axis is x */
-    float way;          /* scene units to the end, times the end's inverse depth, a step */
-    float pixel;        /* its size in scene units at the start */
-    float slope;        /* what the surface's depth grows by a pixel across, to the right or down */
+    float first,
+        count;   /* steps: to the first pixel centre that counts along that axis, and to its end or the frame's */
+    bool across; /* the longer axis is x */
+    float way;   /* scene units to the end, times the end's inverse depth, a step */
+    float pixel; /* its size in scene units at the start */
+    float slope; /* what the surface's depth grows by a pixel across, to the right or down */
 } march;
 
 /* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
@@ -100,6 +103,13 @@ static float slope_at(const img *depth, const corners *at, bool down, float pixe
     else
         change = (w[0] + w[1]) * (d[at->at[1]] - d[at->at[0]]) + (w[2] + w[3]) * (d[at->at[3]] - d[at->at[2]]);
     return fabsf(change) < STEEPEST * pixel ? change : 0;
+}
+
+/* After how many steps one axis leaves a frame of so many pixels. */
+static float steps_inside(float from, float step, int size)
+{
+    if (step == 0) return INFINITY;
+    return ((step > 0 ? (float)size - 0.5f : -0.5f) - from) / step;
 }
 
 /* False if nothing can be met. */
@@ -130,38 +140,60 @@ static bool march_begin(const shadow_caster *c, float x, float y, vec3 light, ma
     m->way = part * vec3_length(to_light) * (-1 / end.z) / m->count;
     m->pixel = camera_pixel_size(&view) * depth;
     m->slope = slope_at(&c->depth, &around, m->across, m->pixel);
+    m->count = fminf(m->count, fminf(steps_inside(x, m->step_x, view.width), steps_inside(y, m->step_y, view.height)));
     return true;
 }
 
-/* How surely the map's pixel `at` stops a ray of this depth there. */
-static float stops(const shadow_caster *c, size_t at, float depth, float margin, float border)
+ALWAYS_INLINE float between(float x, float low, float high)
 {
-    if (c->mask.data[at] < 0.5f) return 0;
-    float behind = depth - c->depth.data[at];
-    if (!(behind > margin)) return 0;
-    float front = fminf((behind - margin) / border, 1), back = (SHADOW_THICKNESS - behind) / THICKNESS_BORDER + 1;
-    return front * fminf(fmaxf(back, 0), 1);
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+
+/* How surely the map's pixel `at` stops a ray of this depth there. */
+ALWAYS_INLINE float stops(const shadow_caster *c, int at, float depth, float margin, float border)
+{
+    float behind = depth - c->depth.data[at], back = (SHADOW_THICKNESS - behind) / THICKNESS_BORDER + 1;
+    float surely = between((behind - margin) / border, 0, 1) * between(back, 0, 1);
+    return c->mask.data[at] >= 0.5f ? surely : 0;
+}
+
+/* How surely the light is hidden by what is met so many steps on; out of the frame the edge goes on. */
+ALWAYS_INLINE float met(const shadow_caster *c, const march *m, float step, bool across)
+{
+    const int width = c->depth.width, height = c->depth.height;
+    float x = between(m->x + step * m->step_x, 0, (float)(width - 1));
+    float y = between(m->y + step * m->step_y, 0, (float)(height - 1));
+    float depth = 1 / (m->inverse + step * m->step_inverse), way = step * m->way * depth;
+    float margin = MARGIN * m->pixel, border = BORDER * m->pixel + BORDER_BY_WAY * way;
+    int column = across ? (int)(x + 0.5f) : (int)x, row = across ? (int)y : (int)(y + 0.5f);
+    float beside = across ? y - (float)row : x - (float)column;
+    int at = row * width + column, last = across ? height - 1 : width - 1;
+    int next = at + ((across ? row : column) < last ? across ? width : 1 : 0);
+    /* the map's pixels lie beside the ray, where the surface that it starts from has another depth, too */
+    float a = stops(c, at, depth - beside * m->slope, margin, border);
+    float b = stops(c, next, depth + (1 - beside) * m->slope, margin, border);
+    return a + beside * (b - a);
+}
+
+ALWAYS_INLINE void meet(const shadow_caster *c, const march *m, float first, bool across, float hidden[LANES])
+{
+#pragma omp simd
+    for (int i = 0; i < LANES; i++)
+        hidden[i] = met(c, m, first + (float)i, across);
 }
 
 /* How surely the light is hidden: the surest of the places on the way. */
 static float hidden(const shadow_caster *c, const march *m)
 {
-    int width = c->depth.width, height = c->depth.height;
-    float most = 0;
-    for (float k = m->first; k < m->count && most < 1; k += 1) {
-        float x = m->x + k * m->step_x, y = m->y + k * m->step_y;
-        if (!(x >= -0.5f && y >= -0.5f && x < (float)width - 0.5f && y < (float)height - 0.5f)) break;
-        float depth = 1 / (m->inverse + k * m->step_inverse), way = k * m->way * depth;
-        float margin = MARGIN * m->pixel, border = BORDER * m->pixel + BORDER_BY_WAY * way;
-        int column = m->across ? (int)(x + 0.5f) : (int)x, row = m->across ? (int)y : (int)(y + 0.5f);
-        /* a finer grid's rays may run in the outer half of the frame's own pixels: the edge goes on there */
-        float between = fmaxf(m->across ? y - (float)row : x - (float)column, 0);
-        size_t at = (size_t)row * (size_t)width + (size_t)column;
-        size_t next = m->across ? at + (size_t)(row + 1 < height ? width : 0) : at + (column + 1 < width ? 1 : 0);
-        /* the map's pixels lie beside the ray, where the surface that it starts from has another depth, too */
-        float a = stops(c, at, depth - between * m->slope, margin, border);
-        float b = stops(c, next, depth + (1 - between) * m->slope, margin, border);
-        most = fmaxf(most, a + between * (b - a));
+    float most = 0, there[LANES];
+    for (float first = m->first; first < m->count && most < 1; first += LANES) {
+        if (m->across)
+            meet(c, m, first, true, there);
+        else
+            meet(c, m, first, false, there);
+        for (int i = 0; i < LANES && first + (float)i < m->count; i++)
+            most = there[i] > most ? there[i] : most;
     }
     return most;
 }
