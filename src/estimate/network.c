@@ -360,6 +360,13 @@ status network_relight(network *n, const network_look *look, const illumination 
     return s;
 }
 
+/* Without a call, so that loops become vectors. */
+static inline float between_0_and_1(float x)
+{
+    x = x > 0 ? x : 0;
+    return x < 1 ? x : 1;
+}
+
 /* As in training: a lamp's light is clipped to [0, 1], an environment's is added by models that know of it, and is so
  * much more of the lamp's for the others. */
 static void put_direct(nn_program *p, const img *direct, const img *environment)
@@ -368,7 +375,7 @@ static void put_direct(nn_program *p, const img *direct, const img *environment)
     size_t count = img_value_count(direct);
     for (size_t i = 0; i < count; i++) {
         float more = environment ? environment->data[i] : 0;
-        to[i] = apart ? fminf(fmaxf(direct->data[i], 0), 1) + more : fminf(fmaxf(direct->data[i] + more, 0), 1);
+        to[i] = apart ? between_0_and_1(direct->data[i]) + more : between_0_and_1(direct->data[i] + more);
         if (apart) apart[i] = more;
     }
 }

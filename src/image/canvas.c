@@ -15,8 +15,11 @@ status canvas_new(canvas *out, int width, int height)
     size_t count = 3 * (size_t)width * (size_t)height;
     uint8_t *rgb = malloc(count);
     if (!rgb) return fail(ERROR_MEMORY, "no memory for a figure of %d x %d pixels", width, height);
-    for (size_t i = 0; i < count; i++)
+    const size_t row = 3 * (size_t)width;
+    for (size_t i = 0; i < row; i++)
         rgb[i] = ground[i % 3];
+    for (size_t at = row; at < count; at += row)
+        memcpy(rgb + at, rgb, row);
     *out = (canvas){width, height, rgb};
     return OK;
 }

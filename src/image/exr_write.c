@@ -19,7 +19,7 @@ typedef struct writer {
     uint16_t *samples; /* one chunk: channel × line × pixel, of one half or of a float in the place of two */
     size_t chunk_bytes;
     struct libdeflate_compressor *packer;
-    uint8_t *shuffled, *zipped; /* a chunk each, on its way to the file */
+    uint8_t *shuffled, *changes, *zipped; /* a chunk each, on its way to the file */
 } writer;
 
 static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
@@ -104,11 +104,14 @@ static exr_result_t zip_chunk(exr_encode_pipeline_t *encoder)
     const uint8_t *from = encoder->packed_buffer;
     size_t size = encoder->packed_bytes, half = (size + 1) / 2;
     if (size > w->chunk_bytes) return EXR_ERR_INVALID_ARGUMENT;
-    for (size_t i = 0; i < size; i++)
-        w->shuffled[i % 2 ? half + i / 2 : i / 2] = from[i];
-    for (size_t i = size; i-- > 1;)
-        w->shuffled[i] = (uint8_t)(w->shuffled[i] - w->shuffled[i - 1] + 128);
-    size_t zipped = libdeflate_zlib_compress(w->packer, w->shuffled, size, w->zipped, size - 1);
+    for (size_t i = 0; i < half; i++)
+        w->shuffled[i] = from[2 * i];
+    for (size_t i = half; i < size; i++)
+        w->shuffled[i] = from[2 * (i - half) + 1];
+    w->changes[0] = w->shuffled[0];
+    for (size_t i = 1; i < size; i++)
+        w->changes[i] = (uint8_t)(w->shuffled[i] - w->shuffled[i - 1] + 128);
+    size_t zipped = libdeflate_zlib_compress(w->packer, w->changes, size, w->zipped, size - 1);
     if (zipped == 0) memcpy(w->zipped, from, size);
     encoder->compressed_buffer = w->zipped;
     encoder->compressed_alloc_size = w->chunk_bytes;
@@ -151,12 +154,14 @@ static exr_result_t write_pixels(writer *w)
     size_t room = w->chunk_bytes > 0 ? w->chunk_bytes : 1;
     w->samples = malloc(room);
     w->shuffled = malloc(room);
+    w->changes = malloc(room);
     w->zipped = malloc(room);
     w->packer = libdeflate_alloc_compressor(LEVEL);
-    bool enough = w->samples && w->shuffled && w->zipped && w->packer;
+    bool enough = w->samples && w->shuffled && w->changes && w->zipped && w->packer;
     r = enough ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
     free(w->samples);
     free(w->shuffled);
+    free(w->changes);
     free(w->zipped);
     libdeflate_free_compressor(w->packer);
     return r;

@@ -5,6 +5,7 @@
 
 #include "nn/lower.h"
 #include "nn/program.h"
+#include "nn/weights_ahead.h"
 
 /* Everything of a compilation in progress. Time runs 0 .. n-1 through the forward steps and n .. 2n-1 backward through
  * the same steps. */
@@ -177,25 +178,41 @@ static void *address(const compilation *c, int buffer)
     return buffer < 0 ? NULL : (char *)c->program->arena->memory + c->buffers[buffer].offset;
 }
 
+static bool can_be_trained(const nn_params *params)
+{
+    return params->halves == NULL;
+}
+
+static status bind_step(compilation *c, int i)
+{
+    nn_step *step = &c->program->steps[i];
+    const lowered_step *from = &c->low.steps[i];
+    const value *values = c->low.values, *result = &values[from->result];
+    for (int k = 0; k < step->inputs; k++) {
+        const value *x = &values[values[from->head].in[k]];
+        step->in[k].data = address(c, x->buffer);
+        step->in_gradient[k].data = step->backs && step->wants[k] ? address(c, x->gradient_buffer) : NULL;
+    }
+    step->out.data = address(c, result->buffer);
+    step->out_gradient.data = step->backs ? address(c, result->gradient_buffer) : NULL;
+    step->forward_space = address(c, c->step_buffers[2 * i]);
+    step->backward_space = address(c, c->step_buffers[2 * i + 1]);
+    status s = step->run->bind ? step->run->bind(step) : OK;
+    return s == OK ? OK : fail_in(s, "%s", step->name);
+}
+
+/* Weights of a file are as they will be: while the steps behind are bound, which keeps one thread, another takes them
+ * over. */
 static status bind_steps(compilation *c)
 {
-    for (int i = 0; i < c->low.step_count; i++) {
-        nn_step *step = &c->program->steps[i];
-        const lowered_step *from = &c->low.steps[i];
-        const value *values = c->low.values, *result = &values[from->result];
-        for (int k = 0; k < step->inputs; k++) {
-            const value *x = &values[values[from->head].in[k]];
-            step->in[k].data = address(c, x->buffer);
-            step->in_gradient[k].data = step->backs && step->wants[k] ? address(c, x->gradient_buffer) : NULL;
-        }
-        step->out.data = address(c, result->buffer);
-        step->out_gradient.data = step->backs ? address(c, result->gradient_buffer) : NULL;
-        step->forward_space = address(c, c->step_buffers[2 * i]);
-        step->backward_space = address(c, c->step_buffers[2 * i + 1]);
-        status s = step->run->bind ? step->run->bind(step) : OK;
-        if (s != OK) return fail_in(s, "%s", step->name);
+    weights_ahead ahead = {0};
+    status s = OK;
+    if (!can_be_trained(c->program->params)) weights_ahead_begin(&ahead, c->program);
+    for (int i = 0; s == OK && i < c->low.step_count; i++) {
+        s = bind_step(c, i);
+        if (s == OK) weights_ahead_bound(&ahead, i + 1);
     }
-    return OK;
+    return weights_ahead_end(&ahead, s);
 }
 
 /* The host's side of an input or output: the device's memory where that is float32. */
@@ -262,11 +279,6 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
     if (s == OK) s = make_ports(c);
     if (s == OK) s = find_untouched(p);
     return s;
-}
-
-static bool can_be_trained(const nn_params *params)
-{
-    return params->halves == NULL;
 }
 
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out)

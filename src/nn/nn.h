@@ -156,7 +156,7 @@ typedef struct nn_options {
     nn_purpose purpose;
     const char *const *outputs; /* names that end with NULL: these alone are computed; NULL: all */
     /* NULL, or a program whose memory for activations this one uses too, if that is large enough. They must not run at
-     * once, and a run of either leaves nothing in the other's inputs and outputs. */
+     * once, and compiling or running either leaves nothing in the other's inputs and outputs. */
     const nn_program *beside;
 } nn_options;
 

@@ -62,13 +62,18 @@ const float *nn_output_data(nn_program *p, const char *name)
     return port ? port->host : NULL;
 }
 
+status program_refresh_step(nn_step *step)
+{
+    status s = step->run->refresh ? step->run->refresh(step) : OK;
+    return s == OK ? OK : fail_in(s, "%s", step->name);
+}
+
 static status refresh(nn_program *p)
 {
     if (p->version == p->params->version) return OK;
     for (int i = 0; i < p->step_count; i++) {
-        nn_step *step = &p->steps[i];
-        status s = step->run->refresh ? step->run->refresh(step) : OK;
-        if (s != OK) return fail_in(s, "%s", step->name);
+        status s = program_refresh_step(&p->steps[i]);
+        if (s != OK) return s;
     }
     p->version = p->params->version;
     return OK;

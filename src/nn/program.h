@@ -34,4 +34,7 @@ struct nn_program {
     bool forwarded;
 };
 
+/* The step's own copies of its parameters as they are now. */
+status program_refresh_step(nn_step *step);
+
 #endif

@@ -167,14 +167,11 @@ static status bind_forward(nn_step *step, conv *state)
     dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), b = bias_layout(step),
                        y = dnn_activation(&step->out, step->out.type);
     const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
-    float *master = conv_weights(step, step->forward_space);
     status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
     if (s == OK && state->has_bias) s = dnn_argument(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DST, &y, step->out.data);
-    if (s == OK) s = dnn_make(call, step->forward_space, context);
-    if (s == OK) s = dnn_make_reorder(&state->convert, context, &state->plain, master, w, state->forward_weights);
-    return s;
+    return s == OK ? dnn_make(call, step->forward_space, context) : s;
 }
 
 /* Places in the backward scratch. */
@@ -208,11 +205,7 @@ static status bind_data(nn_step *step, conv *state)
     status s = dnn_argument(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->data_weights);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_SRC, &dx, target);
-    if (s == OK) s = dnn_make(call, library_place(step), context);
-    if (s == OK)
-        s = dnn_make_reorder(&state->convert_back, context, &state->plain, step->params.weight->value, w,
-                             state->data_weights);
-    return s;
+    return s == OK ? dnn_make(call, library_place(step), context) : s;
 }
 
 static status bind_weights(nn_step *step, conv *state)
@@ -243,12 +236,26 @@ static status conv_bind(nn_step *step)
     return s;
 }
 
+/* Where they are used first: oneDNN keeps the number of threads of where it was asked for them. */
+static status make_conversions(const nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    float *master = conv_weights(step, step->forward_space);
+    const dnnl_memory_desc_t *w = dnn_query(&state->forward, dnnl_query_weights_md);
+    status s = dnn_make_reorder(&state->convert, context, &state->plain, master, w, state->forward_weights);
+    if (s != OK || !state->data.primitive) return s;
+    w = dnn_query(&state->data, dnnl_query_weights_md);
+    return dnn_make_reorder(&state->convert_back, context, &state->plain, master, w, state->data_weights);
+}
+
 static status conv_refresh(nn_step *step)
 {
     conv *state = step->state;
+    status s = state->convert.primitive ? OK : make_conversions(step, state);
+    if (s != OK) return s;
     /* into the scratch of forward, which is free between runs */
     conv_make_weights(step, step->forward_space, state->folded_bias);
-    status s = dnn_run(&state->convert, step->context);
+    s = dnn_run(&state->convert, step->context);
     if (s == OK && state->convert_back.primitive) s = dnn_run(&state->convert_back, step->context);
     return s;
 }
