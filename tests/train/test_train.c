@@ -88,13 +88,27 @@ static int stop_after_steps(void)
     return --steps_left <= 0;
 }
 
-static status train_from(const fixture *f, const char *name, const char *weights)
+/* begins: what the run begins from. */
+static status train_beginning(const fixture *f, const char *name, trn_options begins)
 {
     char *output = file_join(f->root, name);
-    status s = trn_train(
-        &(trn_options){.config = f->config, .data = f->data, .output = output, .init = weights, .quiet = true});
+    begins.config = f->config;
+    begins.data = f->data;
+    begins.output = output;
+    begins.quiet = true;
+    status s = trn_train(&begins);
     free(output);
     return s;
+}
+
+static status train_from(const fixture *f, const char *name, const char *weights)
+{
+    return train_beginning(f, name, (trn_options){.init = weights});
+}
+
+static status train_from_shared(const fixture *f, const char *name, const char *const *weights)
+{
+    return train_beginning(f, name, (trn_options){.init_shared = weights});
 }
 
 static status train_asked(const fixture *f, const char *name, bool resume, int (*interrupted)(void))
@@ -245,6 +259,16 @@ static int column_of(const char *loss)
     return 5 + i;
 }
 
+static double value_in(const char *row, int column)
+{
+    double value = NAN;
+    for (int i = 0; row && i < column; i++)
+        row = strchr(row + 1, ',');
+    assert_non_null(row);
+    assert_int_equal(sscanf(row + (column > 0), "%lf", &value), 1);
+    return value;
+}
+
 /* A column of curves.csv (0: step) ends below this share of where it began: the first row is the mean of the first four
  * steps. */
 static void loss_falls_to(const fixture *f, int column, double share)
@@ -253,10 +277,7 @@ static void loss_falls_to(const fixture *f, int column, double share)
     char *text = contents(f, "a", "curves.csv", &size), *line = strchr(text, '\n') + 1;
     double first = 0, last = 0;
     for (; line && *line; line = strchr(line, '\n') + 1) {
-        const char *at = line;
-        for (int i = 0; i < column; i++)
-            at = strchr(at, ',') + 1;
-        assert_int_equal(sscanf(at, "%lf", &last), 1);
+        last = value_in(line, column);
         if (first == 0) first = last;
     }
     print_message("column %d from %.3f to %.3f\n", column, first, last);
@@ -275,6 +296,32 @@ static void losses_fall_on_two_samples(void **state)
     write_config(f, 240, 4, 0, no_jitter);
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
     loss_falls_to(f, 4, 0.3);
+}
+
+/* Of the first row of curves.csv. */
+static double first_value(const fixture *f, const char *run, int column)
+{
+    size_t size;
+    char *text = contents(f, run, "curves.csv", &size);
+    double value = value_in(strchr(text, '\n') + 1, column);
+    free(text);
+    return value;
+}
+
+static void albedo_weighs_what_the_configuration_says(void **state)
+{
+    const fixture *f = *state;
+    const int total = 4, albedo = column_of("albedo");
+    char more[200];
+    snprintf(more, sizeof more, "%s, \"albedo_weight\": 3", no_jitter);
+    write_config(f, 4, 4, 0, no_jitter); /* one step: nothing is learned before its loss */
+    assert_int_equal(train(f, "a", false, 0), OK);
+    write_config(f, 4, 4, 0, more);
+    assert_int_equal(train(f, "b", false, 0), OK);
+    double once = first_value(f, "a", total), thrice = first_value(f, "b", total), loss = first_value(f, "a", albedo);
+    assert_true(loss > 0.01);
+    assert_float_equal(first_value(f, "b", albedo), loss, 1e-6);
+    assert_float_equal(thrice - once, 2 * loss, 1e-4 * thrice);
 }
 
 static void both_lights_can_be_learned(void **state)
@@ -376,15 +423,6 @@ static void weights_that_a_run_starts_from_are_not_replaced(void **state)
     assert_int_equal(train_from(f, "b", weights), OK);
 }
 
-static status train_from_shared(const fixture *f, const char *name, const char *const *weights)
-{
-    char *output = file_join(f->root, name);
-    status s = trn_train(
-        &(trn_options){.config = f->config, .data = f->data, .output = output, .init_shared = weights, .quiet = true});
-    free(output);
-    return s;
-}
-
 static void later_shared_weights_replace_earlier_ones(void **state)
 {
     const fixture *f = *state;
@@ -440,6 +478,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_last_validation_that_failed_is_made_on_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(last_weights_that_were_not_written_are_on_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(losses_fall_on_two_samples, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(albedo_weighs_what_the_configuration_says, set_up, tear_down),
         cmocka_unit_test_setup_teardown(both_lights_can_be_learned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_of_both_lights_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_with_a_mean_of_the_weights_is_bit_identical, set_up,
