@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/inline.h"
 #include "base/parallel.h"
 #include "estimate/exposure.h"
 #include "estimate/fill.h"
@@ -228,42 +229,62 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
 }
 
 typedef struct shading {
+    const float *albedo, *normal, *roughness, *depth, *mask;
+    vec3 light, first; /* first: of the row's first pixel, at depth 1 */
+    float step;        /* from there to the next */
+} shading;
+
+/* GCC makes vectors of a loop only where nothing declared in it has its address taken: its body is a function. */
+ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, float *out)
+{
+    shade_input in = {
+        .albedo = vec3_of(s->albedo + 3 * i),
+        .roughness = s->roughness[i],
+        .normal = vec3_of(s->normal + 3 * i),
+        .depth = s->depth[i],
+        .ray = vec3_make(s->first.x + (float)x * s->step, s->first.y, s->first.z),
+        .light = s->light,
+        .power = LIGHT_POWER,
+    };
+    vec3 radiance = vec3_scale(shade_point(&in), s->mask[i]);
+    out[3 * i] += radiance.x;
+    out[3 * i + 1] += radiance.y;
+    out[3 * i + 2] += radiance.z;
+}
+
+typedef struct lighting {
     const surface *s;
-    camera view;
     vec3 light;
     img *out;
-} shading;
+} lighting;
 
 static void shade_rows(void *context, size_t begin, size_t end)
 {
-    const shading *job = context;
+    const lighting *job = context;
     const surface *s = job->s;
-    size_t width = (size_t)s->mask.width;
-    for (size_t i = begin * width; i < end * width; i++) {
-        float coverage = s->mask.data[i];
-        if (!(coverage > 0)) continue;
-        const float *a = s->albedo.data + 3 * i, *n = s->normal.data + 3 * i;
-        size_t x = i % width, y = i / width;
-        shade_input in = {
-            .albedo = vec3_of(a),
-            .roughness = s->roughness.data[i],
-            .normal = vec3_of(n),
-            .depth = s->depth.data[i],
-            .ray = camera_point(&job->view, (float)x + 0.5f, (float)y + 0.5f, 1),
-            .light = job->light,
-            .power = LIGHT_POWER,
-        };
-        vec3 radiance = vec3_scale(shade_point(&in), coverage);
-        float *out = job->out->data + 3 * i;
-        out[0] += radiance.x;
-        out[1] += radiance.y;
-        out[2] += radiance.z;
+    const camera view = {s->mask.width, s->mask.height, SURFACE_FOV};
+    shading row = {s->albedo.data,
+                   s->normal.data,
+                   s->roughness.data,
+                   s->depth.data,
+                   s->mask.data,
+                   job->light,
+                   .step = camera_pixel_size(&view)};
+    float *out = job->out->data;
+    for (size_t y = begin; y < end; y++) {
+        const img_span span = img_row_span(&s->mask, (int)y);
+        const size_t at = y * (size_t)s->mask.width;
+        row.first = camera_point(&view, 0.5f, (float)y + 0.5f, 1);
+        const shading of = row;
+#pragma omp simd
+        for (int x = span.first; x < span.end; x++)
+            shade_pixel(&of, at + (size_t)x, x, out);
     }
 }
 
 void surface_add_light(const surface *s, vec3 light, img *out)
 {
-    shading job = {s, {s->mask.width, s->mask.height, SURFACE_FOV}, light, out};
+    lighting job = {s, light, out};
     parallel_blocks((size_t)s->mask.height, shade_rows, &job);
 }
 
