@@ -30,6 +30,19 @@ double eval_best_trivial(const eval_scores *scores, eval_row row)
     return best;
 }
 
+double eval_region_error(const eval_region *region, eval_row map, eval_answer answer)
+{
+    return region->pixels ? region->sum[map][answer] / (double)region->pixels : NAN;
+}
+
+static void add_region(eval_region *to, const eval_region *from)
+{
+    to->pixels += from->pixels;
+    for (int map = 0; map <= EVAL_ROUGHNESS; map++)
+        for (int answer = 0; answer <= EVAL_INFLATED; answer++)
+            to->sum[map][answer] += from->sum[map][answer];
+}
+
 static void add_scores(eval_scores *to, const eval_scores *from)
 {
     for (int row = 0; row < EVAL_ROWS; row++) {
@@ -38,6 +51,8 @@ static void add_scores(eval_scores *to, const eval_scores *from)
             to->count[row][answer] += from->count[row][answer];
         }
     }
+    for (int i = 0; i < EVAL_REGIONS; i++)
+        add_region(&to->regions[i], &from->regions[i]);
     to->samples++;
     to->saturated += from->saturated;
 }

@@ -46,18 +46,29 @@ typedef enum eval_answer {
     EVAL_ANSWERS
 } eval_answer;
 
-/* Each sample (and each relit picture of it) counts alike. */
+/* What the photograph shows of a pixel: a value at its limit, or by the share of the flash's light there that is gloss,
+ * less than 3 %, 10 %, 30 %, and more. */
+enum { EVAL_BURNT_OUT, EVAL_MATTE, EVAL_REGIONS = 5 };
+typedef struct eval_region {
+    size_t pixels;
+    double sum[EVAL_ROUGHNESS + 1][EVAL_INFLATED + 1]; /* squared errors of the maps (none of EVAL_ANGLE), by pixel */
+} eval_region;
+
+/* Each sample (and each relit picture of it) counts alike, in a region each pixel. */
 typedef struct eval_scores {
     double sum[EVAL_ROWS][EVAL_ANSWERS];
     size_t count[EVAL_ROWS][EVAL_ANSWERS];
     size_t samples;
     double saturated; /* sum over samples: share of the object's values that the photograph shows at its limit */
+    eval_region regions[EVAL_REGIONS];
 } eval_scores;
 
 /* The mean; NAN where there is none. */
 double eval_score(const eval_scores *scores, eval_row row, eval_answer answer);
 /* The better of the trivial answers; NAN where there is none. */
 double eval_best_trivial(const eval_scores *scores, eval_row row);
+/* The mean over a region's pixels; NAN where there is none. */
+double eval_region_error(const eval_region *region, eval_row map, eval_answer answer);
 
 enum { EVAL_MAX_CLASSES = 16, EVAL_SATURATIONS = 3 };
 typedef struct eval_report {

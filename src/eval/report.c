@@ -107,6 +107,15 @@ static void print_group_heads(const char *groups, FILE *stream)
     fputc('\n', stream);
 }
 
+static void print_error(FILE *stream, double error, double ratio)
+{
+    fprintf(stream, "%8.3f", error);
+    if (isnan(ratio))
+        fprintf(stream, "%8s", "(-)");
+    else
+        fprintf(stream, " (%.3f)", ratio);
+}
+
 /* The model's figures, and behind each the ratio to the better trivial answer or the margin over it. */
 static void print_group(const char *name, const eval_scores *scores, FILE *stream)
 {
@@ -120,10 +129,8 @@ static void print_group(const char *name, const eval_scores *scores, FILE *strea
             fprintf(stream, "%16s", "-");
         else if (row >= EVAL_RECONSTRUCTION)
             fprintf(stream, "%7.3f (%+.3f)", model, v.margin);
-        else if (isnan(v.ratio))
-            fprintf(stream, "%8.3f%8s", model, "(-)");
         else
-            fprintf(stream, "%8.3f (%.3f)", model, v.ratio);
+            print_error(stream, model, v.ratio);
     }
     fputc('\n', stream);
 }
@@ -141,6 +148,49 @@ static void print_groups(const eval_report *report, FILE *stream)
     print_group_heads("saturated", stream);
     for (int i = 0; i < EVAL_SATURATIONS; i++)
         print_group(saturations[i].label, &report->saturations[i], stream);
+}
+
+static const struct {
+    const char *label, *key;
+} regions[EVAL_REGIONS] = {{"burnt out", "burnt_out"},
+                           {"gloss < 3 %", "gloss_below_3_percent"},
+                           {"3 to 10 %", "gloss_3_to_10_percent"},
+                           {"10 to 30 %", "gloss_10_to_30_percent"},
+                           {"from 30 %", "gloss_from_30_percent"}};
+
+static const eval_row maps[] = {EVAL_ALBEDO, EVAL_NORMAL, EVAL_DEPTH, EVAL_ROUGHNESS};
+enum { MAPS = sizeof maps / sizeof maps[0] };
+
+static double pixels_of(const eval_scores *scores)
+{
+    double sum = 0;
+    for (int i = 0; i < EVAL_REGIONS; i++)
+        sum += (double)scores->regions[i].pixels;
+    return sum;
+}
+
+static double region_ratio(const eval_region *r, eval_row map)
+{
+    double trivial = fmin(eval_region_error(r, map, EVAL_MEAN), eval_region_error(r, map, EVAL_INFLATED));
+    return trivial > 0 ? eval_region_error(r, map, EVAL_MODEL) / trivial : NAN;
+}
+
+/* The model's errors, and behind each the ratio to the better trivial answer there. */
+static void print_regions(const eval_scores *scores, FILE *stream)
+{
+    fprintf(stream, "\n%-14s%8s", "pixels", "share");
+    for (int i = 0; i < MAPS; i++)
+        fprintf(stream, "%16s", shown[i].label);
+    fputc('\n', stream);
+    for (int i = 0; i < EVAL_REGIONS; i++) {
+        const eval_region *r = &scores->regions[i];
+        if (!r->pixels) continue;
+        fprintf(stream, "%-14s%6.1f %%", regions[i].label, 100 * (double)r->pixels / pixels_of(scores));
+        for (int k = 0; k < MAPS; k++)
+            print_error(stream, rows[maps[k]].scale * eval_region_error(r, maps[k], EVAL_MODEL),
+                        region_ratio(r, maps[k]));
+        fputc('\n', stream);
+    }
 }
 
 static size_t environments(const eval_report *report)
@@ -177,6 +227,7 @@ void eval_print_table(const eval_report *report, FILE *stream)
     if (relit) fprintf(stream, "relit by environments: the first %zu sample%s\n\n", relit, relit == 1 ? "" : "s");
     print_rows(&report->all, stream);
     print_groups(report, stream);
+    print_regions(&report->all, stream);
     fprintf(stream, "\n%.1f s\n", report->seconds);
 }
 
@@ -204,6 +255,22 @@ static void add_scores(cJSON *o, const eval_scores *scores)
     }
 }
 
+static void add_regions(cJSON *o, const eval_scores *scores)
+{
+    for (int i = 0; i < EVAL_REGIONS; i++) {
+        const eval_region *r = &scores->regions[i];
+        if (!r->pixels) continue;
+        cJSON *region = cJSON_AddObjectToObject(o, regions[i].key);
+        cJSON_AddNumberToObject(region, "pixels", (double)r->pixels);
+        for (int k = 0; k < MAPS; k++) {
+            cJSON *map = cJSON_AddObjectToObject(region, rows[maps[k]].key);
+            for (int answer = 0; answer <= EVAL_INFLATED; answer++)
+                add_number(map, answers[answer], eval_region_error(r, maps[k], (eval_answer)answer));
+            add_number(map, "ratio", region_ratio(r, maps[k]));
+        }
+    }
+}
+
 char *eval_report_json(const eval_report *report)
 {
     cJSON *o = cJSON_CreateObject();
@@ -225,6 +292,7 @@ char *eval_report_json(const eval_report *report)
     for (int i = 0; i < EVAL_SATURATIONS; i++)
         if (report->saturations[i].samples)
             add_scores(cJSON_AddObjectToObject(by_saturation, saturations[i].key), &report->saturations[i]);
+    add_regions(cJSON_AddObjectToObject(o, "regions"), &report->all);
     char *text = cJSON_Print(o);
     cJSON_Delete(o);
     return text;

@@ -123,6 +123,7 @@ static status score_brdf_targets(eval_scorer *e, eval_subject *on)
         score_maps(on, &e->prediction.maps, EVAL_MODEL);
         score_maps(on, &e->means.maps, EVAL_MEAN);
         score_maps(on, &on->inflated, EVAL_INFLATED);
+        eval_score_regions(e, on);
         s = score_reconstruction(e, on);
     }
     if (s == OK)

@@ -41,6 +41,9 @@ typedef struct eval_relighting {
 /* All rows that the sample and the model have. */
 status eval_score_sample(eval_scorer *e, const sample *s, eval_scores *scores);
 
+/* The maps' errors by region. */
+void eval_score_regions(const eval_scorer *e, eval_subject *on);
+
 /* Rows of models of setting B alone, and of the surroundings what a trivial answer takes them for: the data's mean, at
  * the strength they have in the picture, in sh; NULL in setting A. */
 status eval_score_both_lights(eval_scorer *e, eval_subject *on);

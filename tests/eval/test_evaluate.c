@@ -170,6 +170,71 @@ static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
     free(folder);
 }
 
+static double all_pixels(const eval_report *r)
+{
+    double sum = 0;
+    for (int i = 0; i < EVAL_REGIONS; i++)
+        sum += (double)r->all.regions[i].pixels;
+    return sum;
+}
+
+static void count_gloss(const char *path, size_t expected[EVAL_REGIONS])
+{
+    sample s;
+    assert_int_equal(sample_read(path, &s), OK);
+    const camera view = {SIZE, SIZE, s.fov};
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        if (s.mask.data[i] <= 0.5f) continue;
+        shade_input in = {.albedo = vec3_of(s.albedo.data + 3 * i),
+                          .roughness = s.roughness.data[i],
+                          .normal = vec3_of(s.normal.data + 3 * i),
+                          .depth = s.depth.data[i],
+                          .ray = camera_point(&view, (float)(i % SIZE) + 0.5f, (float)(i / SIZE) + 0.5f, 1),
+                          .light = s.light,
+                          .power = s.light_power};
+        vec3 painted = shade_point(&in);
+        in.albedo = vec3_make(0, 0, 0);
+        float share = 3 * shade_point(&in).x / (painted.x + painted.y + painted.z);
+        expected[EVAL_MATTE + (share >= 0.03f) + (share >= 0.1f) + (share >= 0.3f)]++;
+    }
+    sample_free(&s);
+}
+
+/* A sample's own mean weighs pixels alike, too. */
+static void errors_are_sorted_by_what_a_photograph_shows(void **state)
+{
+    const fixture *f = *state;
+    char *folder = file_join(f->folder, "gloss");
+    assert_int_equal(file_make_folder(folder), OK);
+    write_lit_sphere(folder, 0, SIZE, 0, 1);
+    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    static const eval_row maps[] = {EVAL_ALBEDO, EVAL_NORMAL, EVAL_DEPTH, EVAL_ROUGHNESS};
+    for (size_t k = 0; k < 4; k++) {
+        double sum = 0;
+        for (int i = 0; i < EVAL_REGIONS; i++)
+            sum += r.all.regions[i].sum[maps[k]][EVAL_MODEL];
+        double mean = eval_score(&r.all, maps[k], EVAL_MODEL);
+        assert_float_equal(sum / all_pixels(&r), mean, 1e-6 * mean);
+    }
+    double burnt = (double)r.all.regions[EVAL_BURNT_OUT].pixels, pixels = all_pixels(&r);
+    assert_true(burnt > 0 && burnt < pixels);
+    /* with nothing at its limit, by how much darker black paint would be */
+    options.white = 1e4f;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.regions[EVAL_BURNT_OUT].pixels, 0);
+    assert_float_equal(all_pixels(&r), pixels, 0);
+    char *path = sample_path(folder, 0);
+    size_t expected[EVAL_REGIONS] = {0};
+    count_gloss(path, expected);
+    for (int i = 0; i < EVAL_REGIONS; i++)
+        assert_int_equal(r.all.regions[i].pixels, expected[i]);
+    assert_true(expected[EVAL_MATTE] > 0 && expected[EVAL_MATTE + 1] > 0);
+    free(path);
+    free(folder);
+}
+
 static void evaluation_is_deterministic(void **state)
 {
     const fixture *f = *state;
@@ -414,6 +479,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluation_fills_every_row_and_class),
         cmocka_unit_test(samples_are_sorted_by_how_much_of_them_is_saturated),
+        cmocka_unit_test(errors_are_sorted_by_what_a_photograph_shows),
         cmocka_unit_test(evaluation_is_deterministic),
         cmocka_unit_test(more_views_change_every_figure),
         cmocka_unit_test(views_are_those_of_estimate_where_none_are_given),
