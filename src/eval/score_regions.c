@@ -22,13 +22,13 @@ static float gloss_share(const eval_subject *on, size_t i)
 {
     const sample *s = on->sample;
     const eval_maps *t = &on->truth;
-    const size_t width = (size_t)on->mask.width;
+    const size_t width = (size_t)on->mask.width, column = i % width, row = i / width;
     const camera view = {on->mask.width, on->mask.height, s->fov};
     shade_input in = {.albedo = to_unit(t->albedo.data + 3 * i),
                       .roughness = 0.5f * (t->roughness.data[i] + 1),
                       .normal = vec3_of(t->normal.data + 3 * i),
                       .depth = t->depth.data[i],
-                      .ray = camera_point(&view, (float)(i % width) + 0.5f, (float)(i / width) + 0.5f, 1),
+                      .ray = camera_point(&view, (float)column + 0.5f, (float)row + 0.5f, 1),
                       .light = s->light,
                       .power = s->light_power};
     shade_terms terms = shade_terms_of(&in);
