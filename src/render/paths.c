@@ -253,7 +253,7 @@ static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, con
 static void add(vec3 *radiance, const bundle *b, int lane, vec3 light)
 {
     vec3 *sum = &radiance[b->pixel[lane]];
-    *sum = vec3_add(*sum, clamp_path(vec3_mul(lanes_at(&b->throughput, lane), light)));
+    *sum = vec3_add(*sum, vec3_mul(lanes_at(&b->throughput, lane), light));
 }
 
 /* The map's light at the first surfaces, by directions drawn from the map. */

@@ -11,8 +11,9 @@
 #include "render/sequence.h"
 #include "render/trace.h"
 
-/* Radiance that a single path may bring, per bounce and channel. Rare paths of tiny probability would otherwise leave
- * bright dots; what is cut is below 1 % of the indirect light of ordinary objects. */
+/* Radiance that a single path may bring by way of another surface, per bounce and channel. Rare paths of tiny
+ * probability would otherwise leave bright dots; what is cut is below 1 % of the indirect light of ordinary objects.
+ * What the first surface gets from an environment is not cut: a lamp's highlight is paths that bring more. */
 #define PATH_CLAMP ((real)4)
 
 typedef struct point_light {

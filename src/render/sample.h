@@ -12,7 +12,7 @@
 #include "base/vec.h"
 #include "image/image.h"
 
-enum { SAMPLE_GENERATOR_VERSION = 2, SAMPLE_MAX_TARGETS = 64 };
+enum { SAMPLE_GENERATOR_VERSION = 3, SAMPLE_MAX_TARGETS = 64 };
 
 /* An image under one more point light, with cast shadows. */
 typedef struct sample_target {

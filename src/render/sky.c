@@ -46,8 +46,8 @@ static outdoors random_outdoors(rng *r)
     bool overcast = rng_uniform(r) < 0.3f;
     o.zenith = overcast ? grey(1) : tinted(0.6f, coolness);
     o.horizon = overcast ? grey(0.7f) : tinted(1, rng_range(r, -0.9f, 0.5f));
-    o.ground = vec3_mul(grey(rng_range(r, 0.1f, 0.5f)),
-                        vec3_make(rng_range(r, 0.6f, 1), rng_range(r, 0.6f, 1), rng_range(r, 0.4f, 0.9f)));
+    float blue = rng_range(r, 0.4f, 0.9f), green = rng_range(r, 0.6f, 1), red = rng_range(r, 0.6f, 1);
+    o.ground = vec3_scale(vec3_make(red, green, blue), rng_range(r, 0.1f, 0.5f));
     o.cloud = grey(rng_range(r, 0.9f, 1.8f));
     o.sun_direction = random_direction(r, 0.08f, 0.95f);
     /* between 3 and 6 degrees wide, far wider than the sun, so that 256 texels around can hold it */
@@ -101,10 +101,12 @@ static room random_room(rng *r)
         o.half[i] = rng_range(r, 1.2f, 4);
         o.eye[i] = o.half[i] * rng_range(r, -0.5f, 0.5f);
     }
-    vec3 paint = tinted(rng_range(r, 0.3f, 0.8f), rng_range(r, -0.8f, 0.4f));
+    float coolness = rng_range(r, -0.8f, 0.4f);
+    vec3 paint = tinted(rng_range(r, 0.3f, 0.8f), coolness);
     for (int i = 0; i < 6; i++)
         o.wall[i] = vec3_scale(paint, rng_range(r, 0.7f, 1.1f));
-    o.wall[2] = tinted(rng_range(r, 0.1f, 0.4f), rng_range(r, -1, 0));
+    coolness = rng_range(r, -1, 0);
+    o.wall[2] = tinted(rng_range(r, 0.1f, 0.4f), coolness);
     o.wall[3] = grey(rng_range(r, 0.6f, 0.9f));
     o.lamp_count = 1 + rng_below(r, ROOM_LAMPS);
     for (int i = 0; i < o.lamp_count; i++) {
@@ -115,7 +117,8 @@ static room random_room(rng *r)
         l->height = rng_range(r, 0.1f, 0.45f);
         l->x = rng_range(r, -0.6f, 0.6f);
         l->y = rng_range(r, -0.2f, 0.5f);
-        l->radiance = tinted(rng_range(r, 6, 40), l->wall == 3 ? rng_range(r, -0.8f, 0.1f) : rng_range(r, -0.2f, 0.8f));
+        coolness = l->wall == 3 ? rng_range(r, -0.8f, 0.1f) : rng_range(r, -0.2f, 0.8f);
+        l->radiance = tinted(rng_range(r, 6, 40), coolness);
     }
     o.seed = rng_u32(r);
     return o;
@@ -171,7 +174,8 @@ static studio random_studio(rng *r)
         o.above[i] = vec3_cross(o.right[i], o.direction[i]);
         o.width[i] = rng_range(r, 0.08f, 0.6f);
         o.height[i] = rng_range(r, 0.08f, 0.6f);
-        o.radiance[i] = tinted(rng_range(r, 3, 40), rng_range(r, -0.6f, 0.5f));
+        float coolness = rng_range(r, -0.6f, 0.5f);
+        o.radiance[i] = tinted(rng_range(r, 3, 40), coolness);
     }
     return o;
 }

@@ -92,7 +92,10 @@ static paint patterned_paint(maker *m)
     bool gradient = kind == PATTERN_GRADIENT;
     p.mix = pattern_between(m, kind, gradient ? 0.6f : 1.2f, gradient ? 1.5f : 10);
     if (!gradient && chance(m, 0.6f)) p.mix.warp = rng_range(m->r, 0.1f, 0.9f);
-    if (chance(m, 0.4f)) pattern_threshold(&p.mix, rng_uniform(m->r), scale_between(m, 0.06f, 0.8f));
+    if (chance(m, 0.4f)) {
+        float width = scale_between(m, 0.06f, 0.8f);
+        pattern_threshold(&p.mix, rng_uniform(m->r), width);
+    }
     if (chance(m, 0.6f)) p.spread = rng_range(m->r, -0.5f, 0.5f);
     return p;
 }
@@ -218,7 +221,8 @@ static void emboss_top_layer(maker *m)
     float frequency = vec3_length(p.frame.row[0]), middle = 0.5f * (p.low + p.high);
     p.low = middle - 0.12f; /* wide enough a slope to catch light */
     p.high = middle + 0.12f;
-    add_bump(m, &p, frequency, (chance(m, 0.5f) ? -1.0f : 1.0f) * rng_range(m->r, 0.04f, 0.15f), l->parts);
+    float side = chance(m, 0.5f) ? -1.0f : 1.0f;
+    add_bump(m, &p, frequency, side * rng_range(m->r, 0.04f, 0.15f), l->parts);
 }
 
 static void make_material(maker *m)

@@ -20,7 +20,7 @@ static status check_fov(float fov)
 static status complete(scn_mesh *mesh, const shape_traits *traits, uint64_t seed, uint64_t index, float fov,
                        scn_object *out)
 {
-    mesh_normalize(mesh);
+    if (!mesh->failed) mesh_normalize(mesh);
     rng pose = rng_at(seed, index, STREAM_POSE), material = rng_at(seed, index, STREAM_MATERIAL);
     if (!mesh->failed) pose_object(&pose, mesh, traits, fov);
     status s = mesh_finish(mesh, traits->crease_cosine);

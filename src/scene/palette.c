@@ -2,17 +2,13 @@
 
 #include <stdbool.h>
 
+#include "image/write.h"
 #include "scene/number.h"
-
-static float decode(float x)
-{
-    return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
-}
 
 static float channel(float hue, float saturation, float value, float offset)
 {
     float k = fmodf(offset + 6 * hue, 6), ramp = min_of(1, max_of(0, min_of(k, 4 - k)));
-    return min_of(0.95f, max_of(0.01f, decode(value * (1 - saturation * ramp))));
+    return min_of(0.95f, max_of(0.01f, srgb_decode(value * (1 - saturation * ramp))));
 }
 
 vec3 colour_hsv(float hue, float saturation, float value)

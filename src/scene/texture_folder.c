@@ -11,7 +11,7 @@
 
 enum { LARGEST_TILE = 512 };
 
-typedef enum map_kind { MAP_ALBEDO, MAP_ROUGHNESS, MAP_NORMAL, MAP_NORMAL_DOWN, MAPS, MAP_OTHER } map_kind;
+typedef enum map_kind { MAP_ALBEDO, MAP_ROUGHNESS, MAP_NORMAL, MAP_NORMAL_DOWN, MAP_OTHER } map_kind;
 
 static const struct {
     const char *word;

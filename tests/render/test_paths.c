@@ -86,6 +86,41 @@ static void convex_object_has_no_indirect_light_at_all(void **state)
     stage_close(&s);
 }
 
+/* Evenly lit from everywhere it returns its albedo's share, however bright the surroundings are. */
+static void surroundings_of_any_radiance_light_a_sphere_in_full(void **state)
+{
+    (void)state;
+    enum { SIZE = 32, WIDTH = 64, HEIGHT = 32 };
+    stage s;
+    environment env;
+    img map;
+    rng r = rng_at(1, 2, 3);
+    assert_int_equal(img_new(&map, WIDTH, HEIGHT, 3), OK);
+    for (size_t i = 0; i < img_value_count(&map); i++)
+        map.data[i] = 1;
+    assert_int_equal(environment_from_map(&map, &r, &env), OK);
+    stage_open(&s, shape_sphere(vec3_make(0, 0, -1), 0.35f, 48), shape_grey);
+    s.scene.diffuse_only = true;
+    image_settings settings = {.size = SIZE, .fov = 60, .strata = 4, .paths = 64};
+    for (float radiance = 0.5f; radiance < 100; radiance *= 10) {
+        sample out;
+        double sum = 0, count = 0;
+        for (size_t i = 0; i < img_value_count(&env.map); i++)
+            env.map.data[i] = radiance;
+        assert_int_equal(render_image(&s.scene, &settings, 1, 0, &env, &out), OK);
+        for (size_t i = 0; i < SIZE * SIZE; i++) {
+            if (out.mask.data[i] < 1) continue;
+            sum += out.env.data[3 * i];
+            count++;
+        }
+        assert_within(sum / count, 0.5 * (double)radiance, 0.02);
+        sample_free(&out);
+    }
+    stage_close(&s);
+    environment_free(&env);
+    img_free(&map);
+}
+
 /* ---- a floor and a wall ---------------------------------------------------------------------------------------- */
 
 static const vec3 floor_origin = {-0.5f, -0.4f, -0.6f}, wall_origin = {-0.5f, -0.4f, -1.6f};
@@ -261,6 +296,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_at_the_centre_of_a_diffuse_sphere_loses_its_albedo_at_each_bounce),
         cmocka_unit_test(convex_object_has_no_indirect_light_at_all),
+        cmocka_unit_test(surroundings_of_any_radiance_light_a_sphere_in_full),
         cmocka_unit_test(open_corner_of_two_diffuse_squares_matches_quadrature),
         cmocka_unit_test(direct_image_agrees_with_the_brdf_applied_to_the_stored_maps),
         cmocka_unit_test(plate_casts_a_shadow_on_the_floor_under_it),
