@@ -84,8 +84,8 @@ typedef enum merlin_stereo_method {
 
 typedef struct merlin_stereo_params {
     merlin_stereo_method method;
-    int keep_edges; /* 1: depth may jump where the normals say so; else it is the least-squares surface of the normals
-                     */
+    int keep_edges; /* 1: depth may jump where the normals say so; else it is the least-squares surface of the normals.
+                       Lights with places are solved with depth, which may jump in any case */
 } merlin_stereo_params;
 
 /* All of the pictures' size, zero where mask is. */

@@ -20,13 +20,15 @@ int detail_views(int views)
     return (views + 1) / 2;
 }
 
-/* What a small picture of an image holds of it, large again. */
+/* What a small picture of an image holds of it, large again. Its pixels count from the least of the object on: whole
+ * parts may be thinner than half of one. */
 static status coarse_part(const img *from, const img *mask, img *out)
 {
     const int side = from->width / COARSE;
     img small_mask = {0}, small = {0};
     status s = img_resize(mask, side, side, &small_mask);
-    if (s == OK) harden_mask(NULL, &small_mask);
+    for (size_t i = 0; s == OK && i < img_value_count(&small_mask); i++)
+        small_mask.data[i] = small_mask.data[i] > 1e-3f;
     if (s == OK) s = surface_resize_image(from, mask, &small_mask, &small);
     if (s == OK) s = surface_resize_image(&small, &small_mask, mask, out);
     img_free(&small_mask);

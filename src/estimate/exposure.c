@@ -31,7 +31,7 @@ static float bright_luminance(const img *color, const img *mask)
 float exposure_gain(const img *color, const img *mask)
 {
     float bright = EXPOSURE_WHITE * bright_luminance(color, mask), change = 1;
-    if (bright > 1e-6f && bright < DARK_END) change = DARK_END / bright;
+    if (bright > 0 && bright < DARK_END) change = DARK_END / bright;
     if (bright > BRIGHT_END) change = BRIGHT_END / bright;
     float most = exp2f(EXPOSURE_MOST_EV);
     return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / most), most);

@@ -7,9 +7,9 @@
 
 #include "image/image.h"
 
-/* mask: 1 channel of the photograph's size in [0, 1], one connected region without holes, edges following the
- * photograph. confidence in [0, 1]: how clearly object and background part; below 0.6 the mask wants a look.
- * ERROR_INPUT if nothing stands out at all. */
+/* mask: 1 channel of the photograph's size in [0, 1], edges following the photograph:
+ * the heaviest connected region, and others that weigh at least a tenth of it. confidence in [0, 1]: how clearly object
+ * and background part; below 0.6 the mask wants a look. ERROR_INPUT if nothing stands out at all. */
 status find_object(const img *photo, img *mask, float *confidence);
 
 #endif

@@ -15,6 +15,7 @@ void stage_free(stage *s)
     surface_free(&s->low);
     img_free(&s->low_photo);
     network_look_free(s->look);
+    s->look = NULL;
     img_free(&s->flash);
     shadow_caster_free(&s->caster);
     horizon_free(&s->horizon);

@@ -110,7 +110,7 @@ void harden_mask(img *image, img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;
     for (size_t i = 0; i < count; i++) {
-        mask->data[i] = mask->data[i] > 0.5f;
+        mask->data[i] = mask->data[i] >= 0.5f;
         for (size_t c = 3 * i; image && c < 3 * i + 3; c++)
             image->data[c] = mask->data[i] > 0 && image->data[c] > 0 ? image->data[c] : 0;
     }

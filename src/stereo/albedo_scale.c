@@ -11,10 +11,14 @@ static const float BRIGHT = 0.9f;
 /* Of pixels with all their channels: a step over values could meet the same channel every time. */
 static size_t sample_values(const img *albedo, const img *mask, float *sample)
 {
-    size_t channels = (size_t)albedo->channels, pixels = img_value_count(mask), count = 0;
-    for (size_t i = 0, step = pixels / MOST_PIXELS + 1; i < pixels; i += step)
-        for (size_t k = channels * i; k < channels * (i + 1) && mask->data[i] > 0.5f; k++)
+    size_t channels = (size_t)albedo->channels, pixels = img_value_count(mask), inside = 0, count = 0;
+    for (size_t i = 0; i < pixels; i++)
+        inside += mask->data[i] > 0.5f;
+    for (size_t i = 0, met = 0, step = inside / MOST_PIXELS + 1; i < pixels; i++) {
+        if (!(mask->data[i] > 0.5f) || met++ % step != 0) continue;
+        for (size_t k = channels * i; k < channels * (i + 1); k++)
             if (isfinite(albedo->data[k])) sample[count++] = albedo->data[k];
+    }
     return count;
 }
 

@@ -4,6 +4,7 @@
 
 #include "stereo/calibrate_parts.h"
 #include "stereo/capture_parts.h"
+#include "stereo/pixel_fit.h"
 
 void pst_calibration_free(pst_calibration *c)
 {
@@ -125,12 +126,6 @@ static status take_picture(const pst_capture *c, int i, pst_ball ball, const img
     return s;
 }
 
-static int compare_levels(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
  * over pictures, for where a light is beside the camera no such side is seen. */
 static status find_room(const pst_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
@@ -145,7 +140,7 @@ static status find_room(const pst_capture *c, const ball_view *view, const pst_c
         if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
         img_free(&picture);
     }
-    qsort(level, count, sizeof *level, compare_levels);
+    qsort(level, count, sizeof *level, pst_ascending);
     for (size_t p = 0; p < pixels_of(c) && count > 0; p++)
         constant->data[p] = level[count / 2];
     free(level);

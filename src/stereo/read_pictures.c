@@ -37,8 +37,17 @@ static status read_one(const reading *r, const char *name, img *out, int *bits)
     return s;
 }
 
-static status check_shape(const reading *r, const pst_capture *c, const char *name, const img *picture)
+/* Floats have a unit of their own, of which whole numbers beside them say nothing. */
+static const char *kind_of(int bits)
 {
+    return bits == 32 ? "floats" : "whole numbers";
+}
+
+static status check_shape(const reading *r, const pst_capture *c, const char *name, const img *picture, int bits)
+{
+    if ((bits == 32) != (r->bits == 32))
+        return fail(ERROR_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
+                    kind_of(bits), c->name[0], kind_of(r->bits));
     if (picture->width != c->width || picture->height != c->height)
         return fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
                     r->folder, name, picture->width, picture->height, c->name[0], c->width, c->height);
@@ -48,16 +57,15 @@ static status check_shape(const reading *r, const pst_capture *c, const char *na
     return OK;
 }
 
-static status store(const reading *r, const img *picture, int bits, uint16_t **out)
+static status store(const reading *r, const img *picture, uint16_t **out)
 {
     size_t count = img_value_count(picture);
     uint16_t *codes = malloc(count * sizeof *codes);
     if (!codes) return fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
     memory_prefer_large_pages(codes, count * sizeof *codes);
     const float *ambient = r->ambient.data;
-    float scale = bits == 32 ? r->scale : 1;
     for (size_t i = 0; i < count; i++) {
-        float value = picture->data[i] * scale, left = ambient ? value - ambient[i] : value;
+        float value = picture->data[i] * r->scale, left = ambient ? value - ambient[i] : value;
         /* what the sensor clipped stays recognizable after the subtraction */
         float code = left * 65535 + 0.5f;
         codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
@@ -141,8 +149,10 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
             s = fail(ERROR_INPUT,
                      "the ambient picture %s is %d x %d with %d channels, but the pictures are %d x %d with %d", path,
                      r->ambient.width, r->ambient.height, r->ambient.channels, c->width, c->height, c->channels);
-        size_t count = s == OK ? (size_t)c->width * (size_t)c->height * (size_t)c->channels : 0;
-        for (size_t i = 0; i < count && bits == 32; i++)
+        if (s == OK && (bits == 32) != (r->bits == 32))
+            s = fail(ERROR_INPUT, "the ambient picture %s has %s, but the pictures have %s; give one of their kind",
+                     path, kind_of(bits), kind_of(r->bits));
+        for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
             r->ambient.data[i] *= r->scale;
     }
     free(path);
@@ -165,8 +175,8 @@ static status take_picture(const reading *r, int i)
     int bits;
     status s = get_picture(r, i, &picture, &bits);
     if (s != OK) return s;
-    s = check_shape(r, r->into, r->into->name[i], &picture);
-    if (s == OK) s = store(r, &picture, bits, &r->into->picture[i]);
+    s = check_shape(r, r->into, r->into->name[i], &picture, bits);
+    if (s == OK) s = store(r, &picture, &r->into->picture[i]);
     img_free(&picture);
     return s;
 }

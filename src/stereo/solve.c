@@ -117,22 +117,27 @@ static status check_mask(const pst_capture *c)
     return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
 }
 
-/* Mean over the object, as if the light were of intensity 1; of large pictures over every so many pixels, for least
- * squares look at none of them twice. */
-static double mean_seen(const pst_problem *p, int k)
+/* Some of the object's pixels, evenly: least squares look at none of a large picture twice. */
+enum { ENOUGH = 1 << 18 };
+static size_t some_pixels(const pst_capture *c, uint32_t some[ENOUGH])
 {
-    enum { ENOUGH = 1 << 18 };
-    const pst_capture *c = p->capture;
-    size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels, inside = 0;
-    size_t step = 2 * (pixels / ENOUGH / 2) + 1; /* odd, so as not to keep to some columns */
+    size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0, count = 0;
+    for (size_t i = 0; i < pixels; i++)
+        inside += c->mask.data[i] > 0.5f;
+    for (size_t i = 0, met = 0, step = inside / ENOUGH + 1; i < pixels; i++)
+        if (c->mask.data[i] > 0.5f && met++ % step == 0) some[count++] = (uint32_t)i;
+    return count;
+}
+
+/* Mean over these pixels, as if the light were of intensity 1. */
+static double mean_seen(const pst_problem *p, int k, const uint32_t *some, size_t count)
+{
+    size_t channels = (size_t)p->capture->channels;
     double sum = 0;
-    for (size_t i = 0; i < pixels; i += step) {
-        if (!(c->mask.data[i] > 0.5f)) continue;
+    for (size_t i = 0; i < count; i++)
         for (size_t ch = 0; ch < channels; ch++)
-            sum += (double)c->picture[k][i * channels + ch] / (double)p->light[k].intensity[ch];
-        inside++;
-    }
-    return sum / (double)inside;
+            sum += (double)p->capture->picture[k][some[i] * channels + ch] / (double)p->light[k].intensity[ch];
+    return sum / (double)count;
 }
 
 /* Few pictures cannot spare one: a flash that failed would be taken for shadow everywhere, and normals turned away from
@@ -143,9 +148,13 @@ static status check_lit(const pst_problem *p)
     static const double BLACK = 0.02; /* of the brightest picture; noise alone is less, the least of lights more */
     const pst_capture *c = p->capture;
     if (c->count >= FEW) return OK;
+    uint32_t *some = malloc(ENOUGH * sizeof *some);
+    if (!some) return fail(ERROR_MEMORY, "no memory for a list of pixels");
+    size_t count = some_pixels(c, some);
     double mean[FEW], most = 0;
     for (int k = 0; k < c->count; k++)
-        most = fmax(most, mean[k] = mean_seen(p, k));
+        most = fmax(most, mean[k] = mean_seen(p, k, some, count));
+    free(some);
     for (int k = 0; k < c->count; k++)
         if (mean[k] < BLACK * most)
             return fail(ERROR_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out", k + 1,

@@ -165,7 +165,7 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
     return OK;
 }
 
-/* The lights go to the surface; a depth that no camera was known for does not. */
+/* The lights go to the surface; a depth and places in a space that no camera was known for do not. */
 static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, pst_surface *out)
 {
     out->light = h->light;
@@ -175,7 +175,10 @@ static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, p
     if (!h->depth.data) return pst_solve_robust(&found, out);
     status s = solve_near(&found, &h->depth, out);
     out->lights_near = camera_known;
-    if (!camera_known) img_free(&out->depth);
+    if (camera_known) return s;
+    img_free(&out->depth);
+    for (int k = 0; k < p->capture->count; k++)
+        out->light[k].position = (vec3){0};
     return s;
 }
 

@@ -82,6 +82,30 @@ static void what_is_fine_comes_from_the_one_and_what_is_coarse_from_the_other(vo
         img_free(all[i]);
 }
 
+/* A bar thinner than half of what coarse and fine are told apart by, as it is seen small; seen large with a tilt. */
+static void what_is_thin_has_a_coarse_part_too(void **state)
+{
+    (void)state;
+    enum { LEFT = 3, RIGHT = 9 };
+    img mask, small, large, fused;
+    assert_int_equal(img_new(&mask, SIDE, SIDE, 1), OK);
+    img *normals[] = {&small, &large};
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(img_new(normals[i], SIDE, SIDE, 3), OK);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = LEFT; x < RIGHT; x++) {
+            *img_at(&mask, x, y) = 1;
+            put_unit(&small, x, y, vec3_make(0.2f, 0, 1));
+            put_unit(&large, x, y, vec3_make(0.2f, 0.4f, 1));
+        }
+    assert_int_equal(img_copy(&fused, &small), OK);
+    assert_int_equal(detail_fuse(&large, &mask, &fused), OK);
+    assert_true(difference(&fused, &small, &mask) < 0.1f * difference(&large, &small, &mask));
+    img *all[] = {&mask, &small, &large, &fused};
+    for (int i = 0; i < 4; i++)
+        img_free(all[i]);
+}
+
 /* ---- as merlin_estimate does it, with random weights ---- */
 
 typedef struct fixture {
@@ -219,6 +243,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_as_large_as_is_asked_for_but_not_larger_than_the_crop),
         cmocka_unit_test(what_is_fine_comes_from_the_one_and_what_is_coarse_from_the_other),
+        cmocka_unit_test(what_is_thin_has_a_coarse_part_too),
         cmocka_unit_test(a_photograph_of_the_networks_size_is_seen_as_ever),
         cmocka_unit_test(of_a_larger_one_normals_get_finer_and_stay_what_they_are_from_afar),
         cmocka_unit_test(it_can_be_stopped_at_every_stage),

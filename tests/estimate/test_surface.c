@@ -327,6 +327,9 @@ static void usual_exposures_are_left_alone_and_others_brought_near(void **state)
         photo.data[i] = 1e-5f;
     assert_float_equal(1e-5f * exposure_gain(&photo, &mask), 0.34, 0.34 * 0.023);
     for (int i = 0; i < 1200; i++)
+        photo.data[i] = 5e-7f;
+    assert_float_equal(5e-7f * exposure_gain(&photo, &mask), 0.34, 0.34 * 0.023);
+    for (int i = 0; i < 1200; i++)
         photo.data[i] = 5e4f;
     assert_float_equal(5e4f * exposure_gain(&photo, &mask), 2.2, 2.2 * 0.023);
     assert_float_equal(exposure_from_ev(2), 4 * EXPOSURE_WHITE, 1e-5);

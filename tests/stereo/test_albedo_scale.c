@@ -39,6 +39,27 @@ static void the_brightest_channel_becomes_bright(void **state)
         }
 }
 
+/* A small object in a large picture is not missed. */
+static void a_small_object_is_seen(void **state)
+{
+    (void)state;
+    enum { SIDE = 2000, OBJECT = 10 };
+    img albedo, mask;
+    float scale;
+    assert_int_equal(img_new(&albedo, SIDE, SIDE, 3), OK);
+    assert_int_equal(img_new(&mask, SIDE, SIDE, 1), OK);
+    for (int y = 0; y < OBJECT; y++)
+        for (int x = 0; x < OBJECT; x++) {
+            *img_at(&mask, 1001 + x, 701 + y) = 1;
+            for (int c = 0; c < 3; c++)
+                img_at(&albedo, 1001 + x, 701 + y)[c] = 0.3f;
+        }
+    assert_int_equal(pst_scale_albedo(&albedo, &mask, &scale), OK);
+    assert_float_equal(scale, 3, 1e-5);
+    img_free(&albedo);
+    img_free(&mask);
+}
+
 static void a_few_highlights_and_what_is_no_number_do_not_count(void **state)
 {
     (void)state;
@@ -70,6 +91,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_brightest_channel_becomes_bright),
+        cmocka_unit_test(a_small_object_is_seen),
         cmocka_unit_test(a_few_highlights_and_what_is_no_number_do_not_count),
         cmocka_unit_test(a_black_albedo_stays_black),
     };

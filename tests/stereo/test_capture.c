@@ -116,6 +116,19 @@ static void floats_share_one_scale_below_saturation(void **state)
     }
 }
 
+/* Whole numbers beside floats say nothing of their unit. */
+static void floats_and_whole_numbers_are_not_mixed(void **state)
+{
+    (void)state;
+    three_float_pictures((const float[]){0.02f, 0.05f, 0.03f});
+    write_flat("ambient.png", 5, 5, 3, 0.01f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "ambient.png has whole numbers, but the pictures have floats");
+    unlink(scratch_path("ambient.png"));
+    unlink(scratch_path("1.exr"));
+    write_flat("1.png", 5, 5, 3, 0.05f, IMG_LINEAR16);
+    assert_refused(&PLAIN, "1.png has whole numbers, but 0.exr has floats");
+}
+
 static void an_lp_file_says_which_picture_has_which_light(void **state)
 {
     (void)state;
@@ -406,6 +419,7 @@ int main(void)
         in_scratch(eight_bit_pictures_are_decoded_unless_they_are_linear),
         in_scratch(ambient_light_is_subtracted_and_clipping_stays),
         in_scratch(floats_share_one_scale_below_saturation),
+        in_scratch(floats_and_whole_numbers_are_not_mixed),
         in_scratch(an_lp_file_says_which_picture_has_which_light),
         in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),

@@ -49,6 +49,38 @@ static void an_inflated_disc_is_a_hemisphere(void **state)
     img_free(&height);
 }
 
+/* Large pictures are solved smaller: a disc of 1200 pixels is as round, wherever it lies. */
+static void a_large_disc_is_inflated_as_well(void **state)
+{
+    (void)state;
+    enum { WIDTH = 2000, HEIGHT = 1500, RADIUS = 600, X = 1250, Y = 700 };
+    img mask, normal, height;
+    assert_int_equal(img_new(&mask, WIDTH, HEIGHT, 1), OK);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            *img_at(&mask, x, y) = (x - X) * (x - X) + (y - Y) * (y - Y) < RADIUS * RADIUS;
+    assert_int_equal(pst_inflate(&mask, &normal, &height), OK);
+    double off = 0, count = 0;
+    float worst = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            float dx = (float)(x - X) / RADIUS, dy = (float)(Y - y) / RADIUS, z2 = 1 - dx * dx - dy * dy;
+            if (*img_at(&mask, x, y) == 0) {
+                assert_true(*img_at(&height, x, y) == 0 && img_at(&normal, x, y)[2] == 0);
+                continue;
+            }
+            off += normal_angle(vec3_of(img_at(&normal, x, y)), vec3_make(dx, dy, sqrtf(fmaxf(z2, 0))));
+            count++;
+            worst = fmaxf(worst, fabsf(*img_at(&height, x, y) - RADIUS * sqrtf(fmaxf(z2, 0))) * (z2 > 0.05f));
+        }
+    print_message("%.2f degrees, %.1f pixels\n", off / count, (double)worst);
+    assert_true(off / count < 1);
+    assert_true(worst < 0.02f * RADIUS);
+    img_free(&mask);
+    img_free(&normal);
+    img_free(&height);
+}
+
 static const rendered bare = {
     .size = 64, .lights = 32, .strata = 2, .roughness = 0.5f, .exposure = 0.15f, .fov = 60, .bulbs = true};
 
@@ -380,6 +412,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_inflated_disc_is_a_hemisphere),
+        cmocka_unit_test(a_large_disc_is_inflated_as_well),
         cmocka_unit_test(near_lights_of_unknown_position_are_found),
         cmocka_unit_test(near_lights_are_found_without_a_camera),
         cmocka_unit_test(half_a_surface_that_faces_away_is_no_answer),
