@@ -326,7 +326,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
     DIR *d = opendir(folder);
     if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
-    for (struct dirent *e; s == OK && (e = readdir(d));) {
+    for (struct dirent *e; s == OK && (errno = 0, e = readdir(d));) {
         if (e->d_name[0] == '.') continue; /* temporary files, too */
         char *path = file_join(folder, e->d_name);
         bool below = path && file_is_folder(path);
@@ -340,6 +340,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
             s = fail(ERROR_MEMORY, "no memory for the names in %s", folder);
         }
     }
+    if (s == OK && errno) s = fail(ERROR_INPUT, "cannot read the folder %s: %s", folder, strerror(errno));
     closedir(d);
     return s;
 }

@@ -9,8 +9,9 @@ enum { PLOT_WIDTH = 844, CHART_HEIGHT = 600, LEFT = 88, RIGHT = 28, TOP = 56, BO
 /* Between plot and legend, and a letter's width of the legend's font in the mean. */
 enum { LEGEND_GAP = 20, LETTER = 8 };
 
-static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663", "#c58af9", "#78d9ec",
-                                      "#fcad70", "#ff8bcb", "#c6e377", "#4db6ac", "#bcaaa4", "#ffffff"};
+static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663", "#c58af9",
+                                      "#78d9ec", "#fcad70", "#ff8bcb", "#c6e377", "#4db6ac",
+                                      "#bcaaa4", "#ffffff", "#a1662f", "#5c7cfa", "#9aa0a6"};
 enum { PALETTE_SIZE = sizeof palette / sizeof *palette };
 
 /* One axis: values low..high lie on pixels first..last; a logarithmic one keeps logarithms here. */

@@ -7,14 +7,15 @@
 #include "base/json.h"
 #include "model/model.h"
 
-enum { MAX_WIDTH = 1024, MAX_BLOCKS = 9, MAX_CONFIG_BYTES = 1 << 20 };
+/* Three times a width is the most that a layer takes in: what it shares, what comes up and what was there before. */
+enum { MAX_WIDTH = 640, MAX_BLOCKS = 9, MAX_CONFIG_BYTES = 1 << 20 };
 
 static const char *const relight_words[] = {"network", "brdf"};
 static const char *const lighting_words[] = {"point", "both"};
 
 static status check_widths(const char *where, const char *key, const int *widths)
 {
-    /* the vector units work on blocks of 16 channels, and a gate's inner width is half of its level's */
+    /* the vector units work on blocks of 8 channels and more, and a gate's inner width is half of its level's */
     for (int i = 0; i < MODEL_LEVELS; i++)
         if (widths[i] % 8) return fail(ERROR_INPUT, "%s: \"%s\" must be multiples of 8", where, key);
     return OK;

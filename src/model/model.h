@@ -100,7 +100,7 @@ typedef enum model_part {
 } model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);
 
-/* A weights file: configuration, graph and parameters in one step. *params matches MODEL_WHOLE's graph and are to be
+/* A weights file: configuration and parameters. *params matches MODEL_WHOLE's graph and are to be
  * used, not trained (nn_params_open). */
 status model_load(const char *weights, model_config *config, nn_params **params);
 /* The configuration alone. */

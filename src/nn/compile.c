@@ -297,7 +297,8 @@ status nn_compile(const nn_graph *g, nn_params *params, const nn_options *option
     free(c.buffers);
     free(c.step_buffers);
     lowering_free(&c.low);
-    p->options.beside = NULL; /* it may be gone before this one */
+    p->options.beside = NULL; /* these may be gone before this one */
+    p->options.outputs = NULL;
     if (s == OK)
         *out = p;
     else

@@ -55,7 +55,6 @@ struct nn_step {
 
 /* Memory that a device allocates must be addressable by the host. */
 typedef struct nn_device {
-    const char *name;
     nn_type (*usable_type)(nn_type wanted); /* wanted, or float32 where the device cannot compute in it */
     nn_type (*fastest_type)(void);
     status (*open)(void **context);

@@ -1,4 +1,4 @@
-/* From a graph to values and steps: what is live, what is fused, which gradients flow, and when memory is needed.
+/* From a graph to values and steps: what is live, what is fused, and which gradients flow.
  * Internal to src/nn; compile.c turns the result into a program. */
 #ifndef MERLIN_NN_LOWER_H
 #define MERLIN_NN_LOWER_H

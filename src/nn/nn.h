@@ -78,7 +78,7 @@ nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block);
 nn_node *nn_spatial_mean(nn_graph *g, nn_node *x);
 /* Unit 3-vectors per pixel; of what is shorter than 1e-6, x·1e6. */
 nn_node *nn_normalize(nn_graph *g, nn_node *x);
-/* 1 / (scale·x + shift): depth from the network's range by (0.4, 0.65). */
+/* 1 / (scale·x + shift): depth from the network's range, for example. */
 nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift);
 /* The rendering layer (the paper's Eq. 2 and 3, the BRDF of src/optics/brdf.h): radiance of the object under one point
  * light, clipped to [0, 1] and multiplied by the mask. albedo (3) and roughness (1) in [-1, 1] as inside the network,

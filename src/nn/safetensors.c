@@ -33,11 +33,6 @@ static size_t begin_of(const st_file *f, const st_tensor *t)
     return (size_t)((const unsigned char *)t->data - f->data);
 }
 
-static size_t bytes_of(const st_tensor *t)
-{
-    return t->count * st_type_size(t->type);
-}
-
 /* A non-negative whole number that a double holds exactly. */
 static bool read_size(const cJSON *item, size_t *out)
 {
@@ -107,7 +102,7 @@ static int compare_places(const void *a, const void *b)
 {
     const st_tensor *x = a, *y = b;
     if (x->data != y->data) return (const char *)x->data < (const char *)y->data ? -1 : 1;
-    size_t size_x = bytes_of(x), size_y = bytes_of(y);
+    size_t size_x = st_bytes_of(x), size_y = st_bytes_of(y);
     if (size_x != size_y) return size_x < size_y ? -1 : 1;
     return strcmp(x->name, y->name);
 }
@@ -121,7 +116,7 @@ static status check_places(const st_file *f)
         if (begin_of(f, t) != expected)
             return fail(ERROR_INPUT, "%s: the tensor \"%s\" %s", f->where, t->name,
                         begin_of(f, t) < expected ? "overlaps another" : "has a hole before it");
-        expected += bytes_of(t);
+        expected += st_bytes_of(t);
     }
     if (expected != f->data_size)
         return fail(ERROR_INPUT, "%s has %zu bytes behind its last tensor", f->where, f->data_size - expected);

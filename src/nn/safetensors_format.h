@@ -18,6 +18,11 @@ static inline size_t st_type_size(st_type type)
     return type == ST_I64 ? 8 : type == ST_F32 ? 4 : 2;
 }
 
+static inline size_t st_bytes_of(const st_tensor *t)
+{
+    return t->count * st_type_size(t->type);
+}
+
 static inline const char *st_type_name(st_type type)
 {
     static const char *const names[ST_TYPES] = {"F32", "F16", "BF16", "I64"};

@@ -10,11 +10,6 @@
 #include "base/file.h"
 #include "nn/safetensors_format.h"
 
-static size_t bytes_of(const st_tensor *t)
-{
-    return t->count * st_type_size(t->type);
-}
-
 static bool add_number(cJSON *array, double value)
 {
     return cJSON_AddItemToArray(array, cJSON_CreateNumber(value));
@@ -28,7 +23,7 @@ static bool describe(cJSON *header, const st_tensor *t, size_t begin)
     if (!shape || !offsets) return false;
     for (int i = 0; i < t->rank; i++)
         if (!add_number(shape, (double)t->shape[i])) return false;
-    return add_number(offsets, (double)begin) && add_number(offsets, (double)(begin + bytes_of(t)));
+    return add_number(offsets, (double)begin) && add_number(offsets, (double)(begin + st_bytes_of(t)));
 }
 
 static bool describe_metadata(cJSON *header, const char *const (*metadata)[2], size_t count, const char *checksum)
@@ -51,9 +46,9 @@ static char *header_of(const st_tensor *tensors, size_t count, const char *const
     size_t at = 0;
     for (size_t i = 0; good && i < count; i++) {
         good = describe(header, &tensors[i], at);
-        at += bytes_of(&tensors[i]);
+        at += st_bytes_of(&tensors[i]);
         /* it starts over when given no buffer, as an empty tensor has none */
-        if (tensors[i].count > 0) sum = libdeflate_crc32(sum, tensors[i].data, bytes_of(&tensors[i]));
+        if (tensors[i].count > 0) sum = libdeflate_crc32(sum, tensors[i].data, st_bytes_of(&tensors[i]));
     }
     char checksum[ST_CHECKSUM_SIZE];
     st_format_checksum(sum, checksum);
@@ -67,7 +62,7 @@ static char *assemble(const char *header, const st_tensor *tensors, size_t count
 {
     size_t length = strlen(header), padded = (length + 7) / 8 * 8, total = ST_PREFIX + padded;
     for (size_t i = 0; i < count; i++)
-        total += bytes_of(&tensors[i]);
+        total += st_bytes_of(&tensors[i]);
     char *file = malloc(total), *p = file;
     if (!file) return NULL;
     for (size_t i = 0; i < ST_PREFIX; i++)
@@ -76,8 +71,8 @@ static char *assemble(const char *header, const st_tensor *tensors, size_t count
     memset(p + length, ' ', padded - length);
     p += padded;
     for (size_t i = 0; i < count; i++) {
-        if (tensors[i].count > 0) memcpy(p, tensors[i].data, bytes_of(&tensors[i]));
-        p += bytes_of(&tensors[i]);
+        if (tensors[i].count > 0) memcpy(p, tensors[i].data, st_bytes_of(&tensors[i]));
+        p += st_bytes_of(&tensors[i]);
     }
     *size = total;
     return file;

@@ -55,11 +55,12 @@ static void blend_param(void *context, size_t i)
         mean[k] += b->rate * (p->value[k] - mean[k]);
 }
 
-void trn_average_add(trn_average *a, int64_t step)
+void trn_average_add(trn_average *a, int64_t step, bool last)
 {
-    if (step % STRIDE) return;
+    int64_t passed = step % STRIDE ? step % STRIDE : STRIDE;
+    if (passed < STRIDE && !last) return;
     double young = (double)(1 + step) / (double)(10 + step), decay = young < a->decay ? young : a->decay;
-    blend b = {a, (float)(1 - pow(decay, STRIDE))};
+    blend b = {a, (float)(1 - pow(decay, (double)passed))};
     parallel_for(nn_params_count(a->params), blend_param, &b);
 }
 

@@ -1,5 +1,6 @@
 #include "train/checkpoint.h"
 
+#include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -95,13 +96,43 @@ static status must_equal(const char *path, const char *what, const char *found, 
     return fail(ERROR_INPUT, "%s was made with another %s; start afresh in another folder", path, what);
 }
 
+/* Settings that say how a run is held, and nothing of what comes of it. */
+static bool is_of_no_matter(const char *key)
+{
+    return strcmp(key, "memory_gib") == 0 || strcmp(key, "checkpoint_minutes") == 0;
+}
+
+/* The first key that b lacks or has another value for; NULL if there is none. */
+static const char *first_difference(const cJSON *a, const cJSON *b)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, a)
+    {
+        if (is_of_no_matter(item->string)) continue;
+        if (!cJSON_Compare(item, cJSON_GetObjectItemCaseSensitive(b, item->string), true)) return item->string;
+    }
+    return NULL;
+}
+
+static status must_match(const char *path, const char *found, const char *wanted)
+{
+    cJSON *before = cJSON_Parse(found ? found : ""), *now = cJSON_Parse(wanted);
+    const char *key = before && now ? first_difference(now, before) : "training";
+    if (!key) key = first_difference(before, now);
+    status s =
+        key ? fail(ERROR_INPUT, "%s was made with another \"%s\"; start afresh in another folder", path, key) : OK;
+    cJSON_Delete(before);
+    cJSON_Delete(now);
+    return s;
+}
+
 static status read_counters(const st_file *f, const char *path, nn_adam *adam, trn_state *state,
                             const trn_identity *identity)
 {
     char samples[32];
     snprintf(samples, sizeof samples, "%zu", identity->samples);
     status s = must_equal(path, "model configuration", st_metadata(f, "config"), identity->model);
-    if (s == OK) s = must_equal(path, "training configuration", st_metadata(f, "training"), identity->training);
+    if (s == OK) s = must_match(path, st_metadata(f, "training"), identity->training);
     if (s == OK) s = must_equal(path, "number of samples", st_metadata(f, "samples"), samples);
     if (s != OK) return s;
     const char *counters = st_metadata(f, "counters"), *open = st_metadata(f, "open_losses");

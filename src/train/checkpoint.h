@@ -28,7 +28,7 @@ typedef struct trn_learner {
 
 status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
                             const trn_identity *identity);
-/* Refuses a checkpoint of another configuration or data set. */
+/* Refuses a checkpoint of another data set or configuration, but for memory_gib and checkpoint_minutes. */
 status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state,
                            const trn_identity *identity);
 

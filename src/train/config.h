@@ -35,7 +35,7 @@ typedef struct train_config {
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
     double memory_gib;    /* samples beyond this are read from disk each time */
     int validation_count; /* the folder's last samples are held back; a multiple of batch */
-    int validation_steps; /* between validations; 0: never */
+    int validation_steps; /* between validations; 0: one, behind the last step, and no weights before */
     int curve_steps;      /* a row of curves.csv is the mean over so many */
     double checkpoint_minutes;
 } train_config;

@@ -1,11 +1,13 @@
 #include "train/curves.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "image/figure.h"
@@ -47,6 +49,15 @@ status trn_curve_append(const char *path, const trn_curve_row *row, const trn_lo
     bool bad = ferror(f) != 0;
     if (fclose(f) != 0 || bad) return fail(ERROR_OUTPUT, "cannot append to %s: %s", path, strerror(errno));
     return OK;
+}
+
+status trn_curve_keep(const char *path)
+{
+    int file = open(path, O_RDONLY);
+    if (file < 0) return errno == ENOENT ? OK : fail(ERROR_OUTPUT, "cannot open %s: %s", path, strerror(errno));
+    bool good = fsync(file) == 0;
+    close(file);
+    return good ? OK : fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
 }
 
 status trn_curve_truncate(const char *path, int64_t step)

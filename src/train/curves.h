@@ -23,6 +23,8 @@ typedef struct trn_curve_row {
 /* Appends the means as one row; losses the model lacks are empty fields. An empty or new file
  * begins with a header. */
 status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l);
+/* So that its rows are on the disk before a checkpoint that stands behind them. A missing file is fine. */
+status trn_curve_keep(const char *path);
 /* Drops rows behind the step, as if the run had ended there. A missing file is fine. */
 status trn_curve_truncate(const char *path, int64_t step);
 /* Draws training and validation losses over presentations; nothing to draw is fine. */

@@ -51,11 +51,11 @@ typedef struct trn_lighting {
     float target_sh[9][3]; /* the target's environment */
 } trn_lighting;
 
-/* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered;
- * loss_mask: covered wholly and not lost to an error of the outline), image encoded for the network, direct clipped as
- * the rendering layer does, reconstruction = clipped direct + indirect, relit = the BRDF under light, maps to the
- * network's ranges. The targets keep the maps' own exposure: only the input image goes through the camera. global: the
- * input has indirect light.
+/* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered, the
+ * outline errors and all; loss_mask: covered wholly and not lost to an error of the outline), image encoded for the
+ * network, direct clipped as the rendering layer does, reconstruction = clipped direct + indirect, relit = the BRDF
+ * under light, maps to the network's ranges. The targets keep the maps' own exposure: only the input image goes through
+ * the camera. global: the input has indirect light.
  *
  * With an environment (setting B) the input is the sum of both images; direct is what the rendering layer makes of
  * flash and coefficients, and indirect takes up what that lacks of the truth: bounces, and the environment's shadows.

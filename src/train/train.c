@@ -60,8 +60,24 @@ static status read_configuration(run *r)
     status s = train_config_read(r->options->config, &r->model, &r->training);
     if (s != OK) return s;
     r->model_json = model_config_write(&r->model);
+    return r->model_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+/* What was trained in, not what was asked for: another type's sums are others. */
+static status record_training(run *r)
+{
+    r->training.type = nn_program_type(r->program);
     r->training_json = train_config_write(&r->training);
-    return r->model_json && r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
+    return r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+static status check_kept(const run *r)
+{
+    bool replaces = r->options->init && file_is_same(r->options->init, r->paths.weights);
+    for (const char *const *w = r->options->init_shared; w && *w; w++)
+        replaces |= file_is_same(*w, r->paths.weights);
+    if (!replaces) return OK;
+    return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", r->paths.weights);
 }
 
 /* The folder itself is made once data and model are accepted. */
@@ -79,13 +95,12 @@ static status name_output(run *r)
         return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
                     folder);
     if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
-    bool replaces = r->options->init && file_is_same(r->options->init, p->weights);
-    for (const char *const *w = r->options->init_shared; w && *w; w++)
-        replaces |= file_is_same(*w, p->weights);
-    if (!replaces) return OK;
-    return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", p->weights);
+    status s = check_kept(r);
+    if (s == OK && !exists && file_exists(p->weights))
+        s = fail(ERROR_USAGE, "%s are a run's whose checkpoint is gone: name another folder, or move them away",
+                 p->weights);
+    return s;
 }
-
 static bool is_lit_by_both(const run *r)
 {
     return r->model.lighting == MODEL_LIGHT_BOTH;
@@ -142,6 +157,7 @@ static status build(run *r)
     s = nn_adam_new(r->params, &adam, &r->adam);
     if (s == OK && c->average_decay > 0) s = trn_average_new(r->params, c->average_decay, &r->average);
     if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
+    if (s == OK) s = record_training(r);
     if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
     if (s == OK) weigh_losses(r->program, c);
     if (s != OK || c->validation_count == 0) return s;
@@ -242,10 +258,17 @@ static status save(run *r)
     trn_learner learner = learner_of(r);
     /* before the checkpoint: behind the last one nothing is done again */
     status s = r->judge ? OK : with_average(r, export_weights);
+    if (s == OK) s = trn_curve_keep(r->paths.curves);
+    if (s == OK) s = trn_curve_keep(r->paths.validation);
     if (s == OK) s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
     if (s == OK) s = write_seconds(r);
     if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
     return s;
+}
+
+static int64_t last_step(const run *r)
+{
+    return ((int64_t)r->training.presentations + r->training.batch - 1) / r->training.batch;
 }
 
 static trn_curve_row row_of(const run *r)
@@ -316,7 +339,7 @@ static status one_step(run *r)
     if (s != OK) return s;
     trn_losses_add(&r->state.open, r->program);
     r->state.step++;
-    if (r->average) trn_average_add(r->average, r->state.step);
+    if (r->average) trn_average_add(r->average, r->state.step, r->state.step == last_step(r));
     if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
     if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
         s = with_average(r, validate);
@@ -350,8 +373,7 @@ static status steps(run *r, int64_t last, progress *bar)
 
 static status go(run *r)
 {
-    int64_t last = ((int64_t)r->training.presentations + r->training.batch - 1) / r->training.batch;
-    int64_t validation_steps = r->training.validation_steps;
+    int64_t last = last_step(r), validation_steps = r->training.validation_steps;
     bool finished_before = r->state.step >= last;
     progress bar;
     progress_begin(&bar, "train", "presentations", (size_t)presented(r), (size_t)(last * r->training.batch),
@@ -359,6 +381,7 @@ static status go(run *r)
     status s = steps(r, last, &bar);
     progress_end(&bar);
     if (s != OK || finished_before) return s;
+    if (!r->judge) s = with_average(r, settle_statistics);
     if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
     return s == OK ? save(r) : s;
 }

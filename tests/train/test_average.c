@@ -56,7 +56,7 @@ static void mean_is(double decay, double (*value)(int step), double expected, do
     assert_int_equal(trn_average_new(params, decay, &average), OK);
     for (int step = 1; step <= steps; step++) {
         set_all(params, value(step));
-        trn_average_add(average, step);
+        trn_average_add(average, step, step == steps);
     }
     trn_average_swap(average);
     all_equal(params, expected, tolerance);
@@ -82,6 +82,25 @@ static void mean_of_a_line_lags_by_its_length(void **state)
     mean_is(decay, line, steps - decay / (1 - decay), 8);
 }
 
+/* A run shorter than the stride has a mean too: of five steps, each takes it for as long as the fifth. */
+static void the_last_steps_count(void **state)
+{
+    (void)state;
+    nn_graph *graph;
+    nn_params *params = new_params(&graph);
+    trn_average *average;
+    set_all(params, 30);
+    assert_int_equal(trn_average_new(params, 0.999, &average), OK);
+    set_all(params, 0);
+    for (int step = 1; step <= 5; step++)
+        trn_average_add(average, step, step == 5);
+    trn_average_swap(average);
+    all_equal(params, 30 * pow(6.0 / 15, 5), 1e-5);
+    trn_average_free(average);
+    nn_params_free(params);
+    nn_graph_free(graph);
+}
+
 static void swapping_twice_changes_nothing(void **state)
 {
     (void)state;
@@ -105,6 +124,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_is_nearer_to_the_centre_than_any_step),
         cmocka_unit_test(mean_of_a_line_lags_by_its_length),
+        cmocka_unit_test(the_last_steps_count),
         cmocka_unit_test(swapping_twice_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

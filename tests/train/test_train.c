@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "model/model.h"
@@ -385,7 +387,41 @@ static void checkpoint_of_another_configuration_is_refused(void **state)
     assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
     write_config(f, 14, 2, 2, jitter);
     assert_int_equal(train(f, "a", true, 0), ERROR_INPUT);
-    assert_non_null(strstr(status_message(), "training configuration"));
+    assert_non_null(strstr(status_message(), "another \"presentations\""));
+}
+
+/* How much memory samples may take and how often a checkpoint is written change nothing that comes of a run. */
+static void a_run_goes_on_with_less_memory(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 12, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    size_t size;
+    char *text;
+    assert_int_equal(file_read(f->config, 1 << 20, &text, &size), OK);
+    char *memory = strstr(text, "\"memory_gib\": ");
+    assert_non_null(memory);
+    memory[strlen("\"memory_gib\": ")] = '0';
+    assert_int_equal(file_write(f->config, text, size), OK);
+    free(text);
+    if (train(f, "a", true, 0) != OK) fail_msg("%s", status_message());
+}
+
+static void weights_without_a_checkpoint_are_kept(void **state)
+{
+    const fixture *f = *state;
+    char path[256];
+    write_config(f, 4, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 0), OK);
+    snprintf(path, sizeof path, "%s/a/checkpoint.safetensors", f->root);
+    assert_int_equal(unlink(path), 0);
+    snprintf(path, sizeof path, "%s/a/validation.csv", f->root);
+    struct stat before, after;
+    assert_int_equal(stat(path, &before), 0);
+    assert_int_equal(train(f, "a", false, 0), ERROR_USAGE);
+    assert_non_null(strstr(status_message(), "checkpoint is gone"));
+    assert_int_equal(stat(path, &after), 0);
+    assert_true(before.st_size > 0 && after.st_size == before.st_size);
 }
 
 static void more_held_back_than_there_are_is_refused(void **state)
@@ -492,6 +528,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_curve_cut_within_its_header_begins_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_goes_on_with_less_memory, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(weights_without_a_checkpoint_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),

@@ -89,7 +89,6 @@ static void convert(const nn_tensor *from, nn_tensor *to)
 const nn_device *cpu_device(void)
 {
     static const nn_device device = {
-        .name = "cpu",
         .usable_type = usable_type,
         .fastest_type = fastest_type,
         .open = dnn_open,

@@ -39,13 +39,6 @@ static vec3 albedo_at(const row *r, size_t i)
     return vec3_fma(half, 0.5f, vec3_of(r->albedo + 3 * i));
 }
 
-static void put3(float *to, size_t i, vec3 v)
-{
-    to[3 * i] = v.x;
-    to[3 * i + 1] = v.y;
-    to[3 * i + 2] = v.z;
-}
-
 void cpu_shade_environment(const cpu_environment *in, const cpu_tensor *mask, cpu_tensor *y)
 {
     const vec3 black = {0, 0, 0};
@@ -55,7 +48,7 @@ void cpu_shade_environment(const cpu_environment *in, const cpu_tensor *mask, cp
         row r = row_at(in, mask, k);
         float *out = (float *)y->data + 3 * r.first;
         for (size_t i = 0; i < r.width; i++)
-            put3(out, i, r.mask[i] != 0 ? vec3_mul(white(&r, i), albedo_at(&r, i)) : black);
+            vec3_put(r.mask[i] != 0 ? vec3_mul(white(&r, i), albedo_at(&r, i)) : black, out + 3 * i);
     }
 }
 

@@ -147,7 +147,7 @@ ALWAYS_INLINE void finish(eight *v, const winograd_after *after, size_t c, float
         eight_load(&other, to);
         *v += other;
     }
-    if (after->relu) *v = (eight)((eight_bits)*v & (*v > 0));
+    if (after->relu) *v = (eight)((eight_bits)*v & ~(*v < 0)); /* NaN passes, so that a broken run shows */
     eight_store(v, to);
 }
 
