@@ -192,8 +192,9 @@ static status compare(const request *r, const photo_list *photos, size_t *failur
 static status check_output(const request *r, const photo_list *photos)
 {
     for (size_t i = 0; i < photos->count; i++)
-        if (file_is_same(r->output, photos->at[i].photo))
-            return fail(ERROR_USAGE, "-o %s is one of the photographs", r->output);
+        if (file_is_same(r->output, photos->at[i].photo) ||
+            (photos->at[i].mask && file_is_same(r->output, photos->at[i].mask)))
+            return fail(ERROR_USAGE, "-o %s is one of the photographs or masks", r->output);
     return OK;
 }
 

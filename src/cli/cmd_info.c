@@ -1,6 +1,7 @@
 /* merlin info: what is in a weights file. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/json_line.h"
@@ -60,12 +61,6 @@ static status read_info(const char *path, weights_info *out)
     return s;
 }
 
-static const char *type_name(st_type type)
-{
-    static const char *const names[] = {[ST_F32] = "F32", [ST_F16] = "F16", [ST_BF16] = "BF16", [ST_I64] = "I64"};
-    return names[type];
-}
-
 static void format_shape(const st_tensor *t, char *out, size_t size)
 {
     size_t used = 0;
@@ -89,14 +84,15 @@ static void print_text(const weights_info *info, bool tensors)
         const st_tensor *t = st_at(info->file, i);
         char shape[96];
         format_shape(t, shape, sizeof shape);
-        printf("  %-48s %-5s %s\n", t->name, type_name(t->type), shape);
+        printf("  %-48s %-5s %s\n", t->name, st_type_name(t->type), shape);
     }
 }
 
-/* Numbers and objects as such where the text is JSON of them, else as text. */
+/* Numbers and objects as such where the whole text is JSON of them, else as text; so are all notes, for a commit may
+ * look like a number. */
 static void add_text(cJSON *o, const char *key, const char *text)
 {
-    cJSON *value = cJSON_Parse(text);
+    cJSON *value = strcmp(key, "note") != 0 ? cJSON_ParseWithOpts(text, NULL, true) : NULL;
     if (value && (cJSON_IsNumber(value) || cJSON_IsObject(value))) {
         cJSON_AddItemToObject(o, key, value);
         return;
@@ -111,8 +107,8 @@ static void add_tensors(cJSON *o, const st_file *file)
     for (size_t i = 0; i < st_count(file); i++) {
         const st_tensor *t = st_at(file, i);
         cJSON *entry = cJSON_CreateObject();
-        cJSON_AddStringToObject(entry, "name", t->name);
-        cJSON_AddStringToObject(entry, "type", type_name(t->type));
+        json_line_text(entry, "name", t->name);
+        cJSON_AddStringToObject(entry, "type", st_type_name(t->type));
         cJSON *shape = cJSON_AddArrayToObject(entry, "shape");
         for (int k = 0; k < t->rank; k++)
             cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[k]));

@@ -33,7 +33,7 @@ static const char help[] =
     "                       with --near as the lights tell, else 1); depth is in it. Wants --near or --fov\n"
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
     "                       near for positions, uncalibrated without lights; auto (default): near with --near,\n"
-    "                       else robust\n"
+    "                       else robust; of one photograph near (default) or uncalibrated\n"
     "      --mask FILE      white on the object (default: mask.png or *.mask.png in DIR, else what\n"
     "                       is brighter than a dark background)\n"
     "      --ambient FILE   a picture without the lights, to subtract (default: ambient.* in DIR)\n"
@@ -128,6 +128,11 @@ static status check(request *r)
         (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
         return fail(ERROR_USAGE,
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
+    bool is_distant = r->folder.method == PST_LS || r->folder.method == PST_ROBUST || r->folder.method == PST_SEMI;
+    if (file_exists(r->input) && !is_capture(r) && is_distant)
+        return fail(ERROR_USAGE,
+                    "--method %s is for distant lights, and one photograph is relit by near ones: use near",
+                    pst_method_name(r->folder.method));
     if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");

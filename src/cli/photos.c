@@ -278,15 +278,21 @@ static status find_shipped(const char *name, char **path)
 
 status photo_find_model(const char *asked, char **path)
 {
-    const char *environment = getenv("MERLIN_MODEL");
-    if (!asked && environment && *environment) asked = environment;
+    const char *environment = getenv("MERLIN_MODEL"), *by = "";
+    if (!asked && environment && *environment) {
+        asked = environment;
+        by = "MERLIN_MODEL: ";
+        if (strchr(asked, '/') && !file_exists(asked))
+            return fail(ERROR_INPUT, "%sthere is no weights file %s", by, asked);
+    }
     /* the folder of what merlin-env found may well be called so */
     bool is_file =
         asked && (strchr(asked, '/') || strchr(asked, '.') || (file_exists(asked) && !file_is_folder(asked)));
     if (is_file) return (*path = strdup(asked)) ? OK : no_memory();
     status s = find_shipped(asked ? asked : "merlin-point", path);
     if (s != OK || *path) return s;
-    if (asked) return fail(ERROR_INPUT, "there is no weights file %s, nor are weights of that name with merlin", asked);
+    if (asked)
+        return fail(ERROR_INPUT, "%sthere is no weights file %s, nor are weights of that name with merlin", by, asked);
     return fail(ERROR_INPUT, "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
 }
 

@@ -204,15 +204,6 @@ static status stage_mesh(const stereo_files *files, const staging *maps, const c
     return write_mesh(r, staging_path(*out, file_name_of(path), aside));
 }
 
-/* The folder first: it has the most to fail. */
-static status commit_all(staging **t, int count, staged_files *written)
-{
-    status s = OK;
-    for (int i = 0; i < count; i++)
-        s = s == OK ? staging_commit(t[i], written) : staging_abort(t[i], s);
-    return s;
-}
-
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
 {
     staging *t[1 + STEREO_MOST_MESHES] = {NULL};
@@ -224,7 +215,7 @@ status stereo_write(const stereo_files *files, const stereo_result *r, const cJS
         s = stage_mesh(files, t[0], files->mesh[i], r, &t[count]);
         count += t[count] != NULL;
     }
-    if (s == OK) return commit_all(t, count, written);
+    if (s == OK) return staging_commit_all(t, count, written);
     while (count > 0)
         s = staging_abort(t[--count], s);
     return s;

@@ -8,10 +8,11 @@
 #include "cli/photo_doubts.h"
 #include "eval/draws.h"
 #include "eval/relit.h"
+#include "eval/surface_error.h"
 #include "stereo/integrate.h"
 
 enum { LARGEST_SIDE = 512 };
-static const float DEGREES = 57.2957795f, SPREAD_WHITE = 20;
+static const float SPREAD_WHITE = 20;
 
 /* Everything relit, and what the draws add up to. */
 typedef struct work {
@@ -72,11 +73,6 @@ static vec3 normal_at(const img *normal, size_t pixel)
     return vec3_of(normal->data + 3 * pixel);
 }
 
-static float angle(vec3 a, vec3 b)
-{
-    return DEGREES * atan2f(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
-}
-
 /* Of one pixel; returns the root mean square angle of the draws to their mean, in degrees. */
 static float average(const work *w, size_t pixel, float *mean)
 {
@@ -87,7 +83,7 @@ static float average(const work *w, size_t pixel, float *mean)
     vec3_put(sum, mean);
     float square = 0;
     for (int d = 0; d < DRAW_MOST; d++) {
-        float a = angle(normal_at(&w->normals[d], pixel), sum);
+        float a = (float)normal_angle(normal_at(&w->normals[d], pixel), sum);
         square += a * a / DRAW_MOST;
     }
     return sqrtf(square);
@@ -109,7 +105,7 @@ static void average_all(const work *w, stereo_result *out, cJSON *report)
         if (out->mask.data[i] <= 0.5f) continue;
         out->error.data[i] = average(w, i, out->normal.data + 3 * i);
         spread += (double)out->error.data[i];
-        off += (double)angle(normal_at(&out->normal, i), normal_at(&w->relit.maps.normal, i));
+        off += normal_angle(normal_at(&out->normal, i), normal_at(&w->relit.maps.normal, i));
         left += believe_network(w, i, out);
         count++;
     }

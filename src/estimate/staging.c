@@ -141,7 +141,7 @@ static status check(const staging *t, const char *to, staged_files *written)
 {
     if (file_is_folder(to)) return fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
     if (is_input(t, to))
-        return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another output folder", to);
+        return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another name or folder", to);
     return written ? add_written(written, to) : OK;
 }
 
@@ -161,28 +161,40 @@ static status check_or_move(const staging *t, const char *name, bool only_check,
     return s;
 }
 
+static status over_files(const staging *t, bool only_check, staged_files *written)
+{
+    DIR *d = opendir(t->hidden);
+    if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    status s = OK;
+    for (struct dirent *e; s == OK && (e = readdir(d));)
+        if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, only_check, written);
+    closedir(d);
+    return s;
+}
+
 /* Looks at all before moving any. */
-static status move_all(const staging *t, staged_files *written)
+status staging_commit_all(staging *const *t, int count, staged_files *written)
 {
     status s = OK;
-    for (int pass = 0; pass < 2 && s == OK; pass++) {
-        DIR *d = opendir(t->hidden);
-        if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
-        for (struct dirent *e; s == OK && (e = readdir(d));)
-            if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, pass == 0, written);
-        closedir(d);
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < count && s == OK; i++)
+            s = over_files(t[i], pass == 0, written);
+    if (s == OK && written && written->count > 1)
+        qsort(written->at, written->count, sizeof *written->at, compare_names);
+    for (int i = count - 1; i >= 0; i--) {
+        if (s != OK) {
+            s = staging_abort(t[i], s);
+            continue;
+        }
+        rmdir(t[i]->hidden);
+        staging_free(t[i]);
     }
     return s;
 }
 
 status staging_commit(staging *t, staged_files *written)
 {
-    status s = move_all(t, written);
-    if (s != OK) return staging_abort(t, s);
-    if (written && written->count > 1) qsort(written->at, written->count, sizeof *written->at, compare_names);
-    rmdir(t->hidden);
-    staging_free(t);
-    return OK;
+    return staging_commit_all(&t, 1, written);
 }
 
 /* A message about the hidden folder would name a path that nobody can look at any more. */

@@ -33,6 +33,8 @@ void staged_files_free(staged_files *files);
 /* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
  * and frees t. ERROR_OUTPUT, with nothing moved, if a folder or one of the inputs is in the way of one. */
 status staging_commit(staging *t, staged_files *written);
+/* Those of several folders at once: nothing is moved if anything is in the way of any. */
+status staging_commit_all(staging *const *t, int count, staged_files *written);
 /* Removes what was written, and the folders that staging_begin made; frees t. Returns s, its message naming the folder
  * instead of the hidden one. */
 status staging_abort(staging *t, status s);

@@ -1,8 +1,10 @@
 /* stereo_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "eval/draws.h"
 #include "eval/stereo_table.h"
 
@@ -103,7 +105,9 @@ static void add_number(cJSON *o, const char *key, double value)
 static cJSON *object_json(const stereo_column *column)
 {
     cJSON *o = cJSON_CreateObject();
-    cJSON_AddStringToObject(o, "name", column->name);
+    char *name = utf8_valid(column->name); /* a folder's */
+    cJSON_AddStringToObject(o, "name", name ? name : "");
+    free(name);
     cJSON_AddNumberToObject(o, "pixels", (double)column->pixels);
     cJSON_AddNumberToObject(o, "real_pictures", column->pictures);
     for (int row = 0; row < STEREO_ROWS; row++) {

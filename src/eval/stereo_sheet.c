@@ -2,10 +2,11 @@
 
 #include <math.h>
 
+#include "eval/surface_error.h"
 #include "image/figure.h"
 
 enum { COLUMNS = 2 + 2 * STEREO_ROWS };
-static const float DEGREES = 57.2957795f, WHITE = 45;
+static const float WHITE = 45;
 
 static const char *const labels[COLUMNS] = {"photograph",    "normal, true", "single image", "off",
                                             "relit",         "off",          "real",         "off",
@@ -22,9 +23,8 @@ static status show_angle(const img *normal, const pst_capture *c, img *out)
     status s = img_new(out, c->width, c->height, 1);
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; s == OK && i < n; i++) {
         if (c->mask.data[i] <= 0.5f) continue;
-        const float *a = normal->data + 3 * i, *b = c->normal_true.data + 3 * i;
-        float cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        float angle = DEGREES * acosf(fminf(fmaxf(cosine, -1), 1)) / WHITE;
+        vec3 found = vec3_of(normal->data + 3 * i), truth = vec3_of(c->normal_true.data + 3 * i);
+        float angle = (float)normal_angle(found, truth) / WHITE;
         out->data[i] = fminf(angle * angle, 1); /* shown as sRGB, so that grey grows about evenly with the angle */
     }
     return s;

@@ -105,7 +105,7 @@ static status read_codes(reader *r, const char *path)
     if (!r->codes || !r->rows) return fail(ERROR_MEMORY, "no memory to read %s", path);
     for (int y = 0; y < r->height; y++)
         r->rows[y] = r->codes + (size_t)y * line;
-    return read_rows(r) ? OK : fail(ERROR_INPUT, "cannot read %s: %s", path, r->words);
+    return read_rows(r) ? OK : fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
 }
 
 static void apply_exponent(float exponent, img *color)

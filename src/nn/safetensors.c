@@ -27,6 +27,12 @@ struct st_file {
     size_t data_size;
 };
 
+const char *st_type_name(st_type type)
+{
+    static const char *const names[ST_TYPES] = {"F32", "F16", "BF16", "I64"};
+    return names[type];
+}
+
 /* Where a tensor lies in the data. */
 static size_t begin_of(const st_file *f, const st_tensor *t)
 {

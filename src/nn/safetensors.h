@@ -9,6 +9,8 @@
 #include "base/status.h"
 
 typedef enum st_type { ST_F32, ST_F16, ST_BF16, ST_I64 } st_type;
+/* As files call it: "F32". */
+const char *st_type_name(st_type type);
 
 typedef struct st_tensor {
     const char *name;

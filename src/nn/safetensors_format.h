@@ -23,12 +23,6 @@ static inline size_t st_bytes_of(const st_tensor *t)
     return t->count * st_type_size(t->type);
 }
 
-static inline const char *st_type_name(st_type type)
-{
-    static const char *const names[ST_TYPES] = {"F32", "F16", "BF16", "I64"};
-    return names[type];
-}
-
 static inline void st_format_checksum(uint32_t sum, char out[ST_CHECKSUM_SIZE])
 {
     snprintf(out, ST_CHECKSUM_SIZE, "%08x", (unsigned)sum);

@@ -30,6 +30,8 @@ refuses 2 'end in .png' photos folder --model weights.safetensors -o none.jpg
 cp folder/disc.hdr kept.png
 refuses 2 'one of the photographs' photos kept.png --model weights.safetensors -o ./kept.png
 cmp -s kept.png folder/disc.hdr || complain "the photograph was replaced"
+cp folder/disc.hdr painted.png
+refuses 2 'one of the photographs or masks' photos folder/disc.hdr --mask painted.png --model weights.safetensors -o ./painted.png
 refuses 1 'missing' photos missing --model weights.safetensors -o none.png --quiet
 refuses 1 'missing.safetensors' photos --quiet folder --model missing.safetensors -o none.png
 echo "not an image" >folder/worse.png

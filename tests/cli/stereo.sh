@@ -128,6 +128,7 @@ rm -r sizes/stereo
 cp disc.merlin/overview.png sizes/dome_003.png
 refuses 1 'dome_003.png' stereo sizes -o none
 refuses 1 'missing.safetensors' stereo disc.hdr --model missing.safetensors -o none
+refuses 2 'near ones: use near' stereo disc.hdr --method robust -o none
 # every reader, each with one line and nothing written
 copy_of() { rm -rf "$1" && mkdir "$1" && cp dome/*.png "$1"; }
 copy_of text && echo "up and left" >text/lights.txt
@@ -163,10 +164,12 @@ refuses 1 '/proc/a.ply' stereo dome --method ls --mesh /proc/a.ply -o none
 refuses 1 '/proc/b.glb' stereo dome --method ls --mesh first.obj --mesh /proc/b.glb -o none
 mkdir folder.ply
 refuses 1 'folder.ply' stereo dome --method ls --mesh second.ply --mesh folder.ply -o none
+mkdir taken.mtl # found only when all is moved into place
+refuses 1 'taken.mtl' stereo dome --method ls --mesh taken.obj -o none
 refuses 1 'maps/depth.obj.*the map depth.png' stereo dome --method ls --mesh maps/depth.obj -o maps
 refuses 1 'dome/dome_000.obj.*dome_000.png' stereo dome --method ls --mesh dome/dome_000.obj -o none
 refuses 1 'dome/cup.obj.*among what is read' stereo dome --method ls --mesh dome/cup.obj -o none
-absent none maps dome/cup.{obj,mtl,png} first.obj first.mtl first.png second.ply
+absent none maps dome/cup.{obj,mtl,png} taken.obj first.obj first.mtl first.png second.ply
 for blocks in 1 8 60; do # on a disk that is full soon, later, and only when the meshes come
     refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls -o none
     refuses 1 'cannot write' limited $blocks "$MERLIN" stereo dome --method ls --mesh third.ply --mesh third.obj -o none

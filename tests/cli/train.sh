@@ -13,7 +13,8 @@ refuses 1 "no weights file merlin-pint" "${train[@]}" --init-shared merlin-pint
 refuses 1 "no weights file merlin-pint" "${train[@]}" --init-shared merlin-point --init-shared merlin-pint
 refuses 1 "missing.safetensors" "${train[@]}" --init "$scratch/missing.safetensors"
 [[ ! -e $scratch/more ]] || complain "a run that could not start left a folder"
-"${train[@]}" --init "$scratch/weights.safetensors" || complain "training does not start from its own weights"
+"${train[@]}" --init "$scratch/weights.safetensors" --note 816b79b || complain "training does not start from its own weights"
+succeeds '"note":.*"816b79b"' "$MERLIN" info "$scratch/more/weights.safetensors" --json
 refuses 2 "holds a run already" "${train[@]}" --init "$scratch/weights.safetensors"
 refuses 2 "exclude each other" "${train[@]}" --init merlin-point --resume
 refuses 2 "exclude each other" "${train[@]}" --init-shared merlin-point --resume
