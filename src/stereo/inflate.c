@@ -27,6 +27,7 @@ static void field_free(field *f)
 {
     free(f->u);
     free(f->inside);
+    *f = (field){0};
 }
 
 static status field_new(const img *mask, field *f)
