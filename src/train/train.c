@@ -71,6 +71,7 @@ static status record_training(run *r)
     return r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
 }
 
+/* What a run begins from is not what it writes. */
 static status check_kept(const run *r)
 {
     bool replaces = r->options->init && file_is_same(r->options->init, r->paths.weights);
@@ -101,6 +102,7 @@ static status name_output(run *r)
                  p->weights);
     return s;
 }
+
 static bool is_lit_by_both(const run *r)
 {
     return r->model.lighting == MODEL_LIGHT_BOTH;
