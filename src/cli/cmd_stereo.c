@@ -124,12 +124,12 @@ static status check(request *r)
         return fail(ERROR_USAGE,
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
     r->maps = !o->lights && holds_maps(r->input);
-    if (file_exists(r->input) && !is_capture(r) &&
-        (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
+    bool is_one_photo = file_exists(r->input) && !is_capture(r);
+    if (is_one_photo && (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
         return fail(ERROR_USAGE,
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
     bool is_distant = r->folder.method == PST_LS || r->folder.method == PST_ROBUST || r->folder.method == PST_SEMI;
-    if (file_exists(r->input) && !is_capture(r) && is_distant)
+    if (is_one_photo && is_distant)
         return fail(ERROR_USAGE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
                     pst_method_name(r->folder.method));

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-static const int steps = 400;
+enum { STEPS = 400 };
 
 static nn_params *new_params(nn_graph **graph)
 {
@@ -46,8 +46,14 @@ static double line(int step)
     return step;
 }
 
+static double nothing(int step)
+{
+    (void)step;
+    return 0;
+}
+
 /* Weights that are 30 at first and then value(step): their mean after the last step. */
-static void mean_is(double decay, double (*value)(int step), double expected, double tolerance)
+static void mean_is(double decay, double (*value)(int step), int steps, double expected, double tolerance)
 {
     nn_graph *graph;
     nn_params *params = new_params(&graph);
@@ -70,7 +76,7 @@ static void mean_is(double decay, double (*value)(int step), double expected, do
 static void mean_is_nearer_to_the_centre_than_any_step(void **state)
 {
     (void)state;
-    mean_is(0.95, swing, 1, 0.03);
+    mean_is(0.95, swing, STEPS, 1, 0.03);
 }
 
 /* A line rising by one a step lies decay / (1 - decay) steps before its exponential mean. Taken every eighth step it is
@@ -79,26 +85,14 @@ static void mean_of_a_line_lags_by_its_length(void **state)
 {
     (void)state;
     const double decay = 0.97;
-    mean_is(decay, line, steps - decay / (1 - decay), 8);
+    mean_is(decay, line, STEPS, STEPS - decay / (1 - decay), 8);
 }
 
 /* A run shorter than the stride has a mean too: of five steps, each takes it for as long as the fifth. */
 static void the_last_steps_count(void **state)
 {
     (void)state;
-    nn_graph *graph;
-    nn_params *params = new_params(&graph);
-    trn_average *average;
-    set_all(params, 30);
-    assert_int_equal(trn_average_new(params, 0.999, &average), OK);
-    set_all(params, 0);
-    for (int step = 1; step <= 5; step++)
-        trn_average_add(average, step, step == 5);
-    trn_average_swap(average);
-    all_equal(params, 30 * pow(6.0 / 15, 5), 1e-5);
-    trn_average_free(average);
-    nn_params_free(params);
-    nn_graph_free(graph);
+    mean_is(0.999, nothing, 5, 30 * pow(6.0 / 15, 5), 1e-5);
 }
 
 static void swapping_twice_changes_nothing(void **state)
