@@ -1,0 +1,40 @@
+/* What a person should know of a result before they trust it: each warning has a code for programs, in snake_case, and
+ * one sentence for people. They are gathered while the work is done and told once, at its end:
+ *
+ *     warnings doubts = {0};
+ *     if (burnt_out >= 0.1) warnings_add(&doubts, "burnt_out", "%.0f %% of the object is burnt out", 100 * burnt_out);
+ *     ...
+ *     cJSON_AddItemToObject(report, "warnings", warnings_json(&doubts));      [{"code": ..., "message": ...}, ...]
+ *     if (!quiet) warnings_print(&doubts, "estimate", photo, 3);              one line on standard error
+ *
+ * Nothing is allocated, so that a warning cannot get lost when memory runs out, and a list may be copied. */
+#ifndef MERLIN_BASE_WARNINGS_H
+#define MERLIN_BASE_WARNINGS_H
+
+#include <cJSON.h>
+#include <stddef.h>
+
+enum { WARNINGS_MOST = 24, WARNING_WORDS = 512 };
+
+typedef struct warning {
+    const char *code; /* a literal */
+    char message[WARNING_WORDS];
+} warning;
+
+typedef struct warnings {
+    size_t count; /* in the list: at most WARNINGS_MOST */
+    size_t more;  /* that it had no room for */
+    warning at[WARNINGS_MOST];
+} warnings;
+
+/* Adds one behind the others; the message is kept to one line, without a full stop. The most important come first. */
+void warnings_add(warnings *list, const char *code, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Returns the first of this code, or NULL. */
+const warning *warnings_find(const warnings *list, const char *code);
+/* Returns an array of objects with code and message; NULL if memory ran out. */
+cJSON *warnings_json(const warnings *list);
+/* Prints "merlin COMMAND: SUBJECT: message; message" on one line to standard error, the first `most` of them and how
+ * many more there are; nothing without any. */
+void warnings_print(const warnings *list, const char *command, const char *subject, size_t most);
+
+#endif
