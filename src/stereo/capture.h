@@ -62,7 +62,8 @@ typedef struct pst_read_options {
     const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
     const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or found (pst_capture_find_mask) */
     const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
-    bool near;           /* the list holds positions; an .lp file's unit directions are 1 from (0, 0, -1) */
+    bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object at the
+                          * distance (of unit length: 1 where it is not known), unless all have z below 0 */
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
     float field_of_view; /* horizontal, degrees; 0: from the layout, else 60 when near */

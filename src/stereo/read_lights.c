@@ -126,24 +126,55 @@ static bool are_written_positions(const light_list *list)
     return false;
 }
 
-static status set_lights(const char *path, const light_list *list, bool near, pst_capture *c)
+/* Adds the origin of an .lp file's positions, in the camera's space: the object, which a dome stands round. Lights
+ * behind it would light nothing that is seen, so that where all z are negative the camera must be meant. */
+static status find_origin(const char *path, const light_list *list, float distance, vec3 *origin)
 {
-    c->lighting = near ? PST_NEAR : PST_DISTANT;
-    if (near && are_directions(list))
+    size_t before = 0;
+    *origin = vec3_make(0, 0, 0);
+    for (size_t i = 0; i < list->count; i++)
+        before += light_list_written(list, i).z > (real)1e-4 * list->length[i];
+    if (before == 0) return OK;
+    bool units = !are_written_positions(list);
+    if (distance > 0 || units) *origin = vec3_make(0, 0, distance > 0 ? -distance : -1);
+    if (before < list->count && !units)
+        return fail(ERROR_INPUT,
+                    "%s has lights before and behind z = 0, so that its positions may be about the object or from the "
+                    "camera; list them from the camera, as x y z a line in a .txt file",
+                    path);
+    if (vec3_length(*origin) > 0) return OK;
+    return fail(ERROR_INPUT,
+                "%s lists positions about the object, as an .lp file does: say how far the camera is by --distance, or "
+                "list them from the camera in a .txt file, or take them for distant lights without --near",
+                path);
+}
+
+static status set_positions(const char *path, const light_list *list, float distance, pst_capture *c)
+{
+    vec3 origin = {0, 0, 0};
+    if (are_directions(list))
         return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
-    bool written = near && are_written_positions(list);
-    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
+    status s = list->name ? find_origin(path, list, distance, &origin) : OK;
+    for (size_t i = 0; i < list->count && s == OK; i++)
+        c->light[i].position = list->name ? vec3_add(light_list_written(list, i), origin) : list->at[i];
+    return s;
+}
+
+static status set_directions(const char *path, const light_list *list, pst_capture *c)
+{
     for (size_t i = 0; i < list->count; i++) {
-        vec3 at = list->at[i];
-        if (near) {
-            c->light[i].position = written ? light_list_written(list, i) : at;
-            continue;
-        }
-        c->light[i].direction = list->name ? light_list_direction(list, i) : vec3_normalize(at);
+        c->light[i].direction = list->name ? light_list_direction(list, i) : vec3_normalize(list->at[i]);
         if (!(vec3_length(c->light[i].direction) > 0.5f))
             return fail(ERROR_INPUT, "%s: the direction of light %zu has no length", path, i + 1);
     }
     return OK;
+}
+
+static status set_lights(const char *path, const light_list *list, const pst_read_options *options, pst_capture *c)
+{
+    c->lighting = options->near ? PST_NEAR : PST_DISTANT;
+    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
+    return options->near ? set_positions(path, list, options->distance, c) : set_directions(path, list, c);
 }
 
 static status set_one_intensity(const text_numbers *t, float intensity[3])
@@ -189,13 +220,13 @@ status pst_read_intensities(const char *folder, pst_capture *c)
     return s;
 }
 
-static status read_listed(const char *folder, const char *lights, bool near, pst_capture *c)
+static status read_listed(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c)
 {
     light_list list;
     status s = light_list_read(lights, &list);
     if (s != OK) return s;
     s = list.name ? names_from_list(folder, lights, &list, c) : pst_take_pictures(folder, false, lights, list.count, c);
-    if (s == OK) s = set_lights(lights, &list, near, c);
+    if (s == OK) s = set_lights(lights, &list, options, c);
     light_list_free(&list);
     return s;
 }
@@ -214,7 +245,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
                     "holds them, or use method uncalibrated",
                     folder);
-    if (s == OK) s = read_listed(folder, lights, options->near, c);
+    if (s == OK) s = read_listed(folder, lights, options, c);
     if (s == OK) s = pst_read_intensities(folder, c);
     free(lights);
     return s;
