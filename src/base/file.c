@@ -61,9 +61,20 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
     return OK;
 }
 
+/* What is no file or folder gets a descriptor that tells what it is (fstat) and opens nothing: a pipe would be waited
+ * for, and a device set to work. One that takes the file's place meanwhile is not waited for either. */
 static int open_descriptor(const char *path)
 {
-    return open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    struct stat s;
+    bool harmless = stat(path, &s) == 0 && (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
+    return open(path, harmless ? O_RDONLY | O_CLOEXEC | O_NONBLOCK : O_PATH | O_CLOEXEC);
+}
+
+status file_check_plain(const char *path)
+{
+    struct stat s;
+    if (stat(path, &s) != 0) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
+    return S_ISREG(s.st_mode) ? OK : fail(ERROR_INPUT, "%s is not a plain file", path);
 }
 
 FILE *file_open(const char *path)

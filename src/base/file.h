@@ -8,9 +8,12 @@
 
 #include "base/status.h"
 
-/* Opens a file for reading in binary; NULL and errno as fopen's. A pipe that nobody writes to is not waited for, so
- * that it can be refused like anything else that is not a plain file. */
+/* Opens a file for reading in binary; NULL and errno as fopen's. Pipes, sockets and devices are not opened: what comes
+ * of them can be told by fstat, to be refused, and not be read. */
 FILE *file_open(const char *path);
+/* For libraries that open by name: ERROR_INPUT for what is missing or is no plain file, which opening could wait for.
+ */
+status file_check_plain(const char *path);
 
 /* Reads all of a file; *data is malloc'ed, one zero byte is put behind it, *size excludes that byte. Refuses files over
  * limit bytes. */

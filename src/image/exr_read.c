@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/half.h"
 #include "image/exr.h"
 #include "image/exr_context.h"
@@ -64,6 +65,8 @@ static status open_part(exr_file *f)
 
 static status open_file(exr_file *f)
 {
+    status s = file_check_plain(f->path);
+    if (s != OK) return s;
     exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
     if (r == EXR_ERR_SUCCESS) r = exr_get_count(f->context, &f->parts);

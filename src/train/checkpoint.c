@@ -2,6 +2,7 @@
 
 #include <cjson/cJSON.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,10 +50,17 @@ static void print_losses(const trn_losses *l, char *out, size_t size)
         n += snprintf(out + n, size - (size_t)n, " %a", l->each[i]);
 }
 
+/* No run has more steps than presentations, which a configuration holds to an int. */
+static bool is_count(int64_t n)
+{
+    return n >= 0 && n <= INT_MAX;
+}
+
 static bool scan_losses(const char *text, trn_losses *l)
 {
     char *end;
     l->count = strtoll(text, &end, 10);
+    if (!is_count(l->count)) return false;
     l->total = strtod(end, &end);
     /* a checkpoint of an earlier version may lack the last losses: its model has none of them */
     for (int i = 0; i < MODEL_LOSSES; i++)
@@ -139,9 +147,11 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     const char *best = st_metadata(f, "best");
     int64_t steps = 0, skipped = 0;
     if (!counters || !open || !best || !scan_losses(open, &state->open) ||
-        sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 || state->step < 0)
+        sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 ||
+        !is_count(state->step) || !is_count(steps) || !is_count(skipped))
         return fail(ERROR_INPUT, "%s is not a checkpoint of merlin train", path);
     state->best = strtod(best, NULL);
+    if (isnan(state->best)) return fail(ERROR_INPUT, "%s is damaged: its best loss is no number", path);
     nn_adam_set_steps(adam, steps, skipped);
     return OK;
 }

@@ -1,5 +1,7 @@
 #include "base/file.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -220,6 +222,33 @@ static void what_is_no_plain_file_is_not_replaced(void **state)
     free(pipe);
 }
 
+/* A pipe that somebody reads can be opened for writing; one that nobody does cannot without waiting. */
+static void what_is_no_plain_file_is_not_opened(void **state)
+{
+    (void)state;
+    char *pipe = in_folder("pipe"), *data;
+    size_t size;
+    file_view view;
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    FILE *f = file_open(pipe);
+    assert_non_null(f);
+    assert_int_equal(open(pipe, O_WRONLY | O_NONBLOCK), -1);
+    assert_int_equal(errno, ENXIO);
+    assert_int_equal(fgetc(f), EOF);
+    fclose(f);
+    const char *const paths[] = {pipe, "/dev/zero", folder};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        assert_int_equal(file_read(paths[i], 100, &data, &size), ERROR_INPUT);
+        assert_int_equal(file_map(paths[i], 100, &view), ERROR_INPUT);
+        assert_int_equal(file_check_plain(paths[i]), ERROR_INPUT);
+        assert_non_null(strstr(status_message(), "is not a plain file"));
+        assert_non_null(strstr(status_message(), paths[i]));
+    }
+    assert_int_equal(file_check_plain("/nowhere/a"), ERROR_INPUT);
+    unlink(pipe);
+    free(pipe);
+}
+
 /* Of as many bytes as a name may have, in letters of three bytes. */
 static void the_longest_names_can_be_written(void **state)
 {
@@ -346,6 +375,7 @@ int main(void)
         cmocka_unit_test(printed_numbers_have_points_in_every_locale),
         cmocka_unit_test(a_print_that_fails_says_why),
         cmocka_unit_test(what_is_no_plain_file_is_not_replaced),
+        cmocka_unit_test(what_is_no_plain_file_is_not_opened),
         cmocka_unit_test(the_longest_names_can_be_written),
         cmocka_unit_test(whether_a_file_can_be_written_is_known_before_it_is),
         cmocka_unit_test(committing_replaces_the_file),

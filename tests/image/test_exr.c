@@ -1,5 +1,7 @@
 #include <OpenEXR/openexr.h>
 #include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/rng.h"
 #include "image/exr.h"
@@ -213,6 +215,11 @@ static void missing_and_foreign_files_are_refused(void **state)
     assert_int_equal(file_write(scratch_path("text.exr"), "not a picture\n", 14), OK);
     assert_int_equal(exr_open(scratch_path("text.exr"), &f), ERROR_INPUT);
     assert_null(f);
+    assert_int_equal(mkfifo(scratch_path("pipe.exr"), 0600), 0);
+    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    assert_int_equal(exr_open(scratch_path("pipe.exr"), &f), ERROR_INPUT);
+    alarm(0);
+    assert_non_null(strstr(status_message(), "not a plain file"));
 }
 
 static void failed_write_leaves_nothing(void **state)

@@ -390,6 +390,52 @@ static void checkpoint_of_another_configuration_is_refused(void **state)
     assert_non_null(strstr(status_message(), "another \"presentations\""));
 }
 
+/* Writes the checkpoint anew with another value of one of its words. */
+static void falsify_checkpoint(const char *path, const char *key, const char *value)
+{
+    static const char *const KEYS[] = {"checkpoint", "config", "training",   "samples",
+                                       "counters",   "best",   "open_losses"};
+    enum { COUNT = sizeof KEYS / sizeof *KEYS };
+    const char *metadata[COUNT][2];
+    st_file *file;
+    assert_int_equal(st_open(path, &file), OK);
+    for (size_t i = 0; i < COUNT; i++) {
+        metadata[i][0] = KEYS[i];
+        metadata[i][1] = strcmp(KEYS[i], key) == 0 ? value : st_metadata(file, KEYS[i]);
+    }
+    st_tensor *tensors = calloc(st_count(file), sizeof *tensors);
+    assert_non_null(tensors);
+    for (size_t i = 0; i < st_count(file); i++)
+        tensors[i] = *st_at(file, i);
+    assert_int_equal(st_write(path, tensors, st_count(file), (const char *const(*)[2])metadata, COUNT), OK);
+    free(tensors);
+    st_close(file);
+}
+
+/* Steps times a batch must stay a number. */
+static void checkpoint_of_impossible_counts_is_refused(void **state)
+{
+    static const char *const LIES[][2] = {
+        {"counters", "9223372036854775807 1 0"},    {"counters", "1 9223372036854775807 0"},
+        {"counters", "1 1 9223372036854775807"},    {"counters", "1 1 -1"},
+        {"open_losses", "9223372036854775807 0 0"}, {"best", "nan"}};
+    const fixture *f = *state;
+    char path[600];
+    snprintf(path, sizeof path, "%s/a/checkpoint.safetensors", f->root);
+    write_config(f, 12, 2, 2, jitter);
+    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    size_t size;
+    char *good;
+    assert_int_equal(file_read(path, 1 << 28, &good, &size), OK);
+    for (size_t i = 0; i < sizeof LIES / sizeof *LIES; i++) {
+        assert_int_equal(file_write(path, good, size), OK);
+        falsify_checkpoint(path, LIES[i][0], LIES[i][1]);
+        assert_int_equal(train(f, "a", true, 0), ERROR_INPUT);
+        assert_non_null(strstr(status_message(), path));
+    }
+    free(good);
+}
+
 /* How much memory samples may take and how often a checkpoint is written change nothing that comes of a run. */
 static void a_run_goes_on_with_less_memory(void **state)
 {
@@ -531,6 +577,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_run_goes_on_with_less_memory, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_without_a_checkpoint_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(checkpoint_of_impossible_counts_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(more_held_back_than_there_are_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(exported_weights_load_as_a_model, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_that_a_run_starts_from_are_not_replaced, set_up, tear_down),
