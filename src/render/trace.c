@@ -1,9 +1,10 @@
 #include "render/trace.h"
 
-#include <embree3/rtcore.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "render/embree.h"
 
 struct trace_device {
     RTCDevice device;
@@ -117,10 +118,7 @@ void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, tr
         packet.ray.mask[i] = 0xffffffffu;
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, bvh_of(scene), &context, &packet);
+    embree_intersect16(valid, bvh_of(scene), &packet, EMBREE_COHERENT);
     scene->rays += (uint64_t)count;
     for (int i = 0; i < count; i++) {
         bool met = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
@@ -153,12 +151,10 @@ static void fill_rays(trace_scene *scene, const ray_packet *from, struct RTCRay1
 void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRACE_PACKET])
 {
     struct RTCRayHit16 packet;
-    struct RTCIntersectContext context;
     _Alignas(64) int valid[TRACE_PACKET];
     fill_rays(scene, rays, &packet.ray, valid);
     memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID); /* RTC_INVALID_GEOMETRY_ID */
-    rtcInitIntersectContext(&context);
-    rtcIntersect16(valid, bvh_of(scene), &context, &packet);
+    embree_intersect16(valid, bvh_of(scene), &packet, EMBREE_INCOHERENT);
     for (int i = 0; i < TRACE_PACKET; i++) {
         bool met = rays->valid[i] && packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
         hits[i].at = (scn_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
@@ -169,12 +165,10 @@ void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRA
 void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far)
 {
     struct RTCRay16 packet;
-    struct RTCIntersectContext context;
     _Alignas(64) int valid[TRACE_PACKET];
     fill_rays(scene, rays, &packet, valid);
     if (far) memcpy(packet.tfar, far, sizeof packet.tfar);
-    rtcInitIntersectContext(&context);
-    rtcOccluded16(valid, bvh_of(scene), &context, &packet);
+    embree_occluded16(valid, bvh_of(scene), &packet);
     for (int i = 0; i < TRACE_PACKET; i++)
         if (packet.tfar[i] < 0) rays->valid[i] = 0;
 }
@@ -224,9 +218,7 @@ bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface 
 {
     struct RTCRayHit ray = {.ray = make_ray(origin, direction, FLT_MAX)};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(bvh_of(scene), &context, &ray);
+    embree_intersect1(bvh_of(scene), &ray);
     scene->rays++;
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     trace_hit hit = {{ray.hit.primID, ray.hit.u, ray.hit.v}, ray.ray.tfar};
@@ -238,9 +230,7 @@ bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface 
 bool trace_occluded(trace_scene *scene, vec3 origin, vec3 direction, float distance)
 {
     struct RTCRay ray = make_ray(origin, direction, distance);
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(bvh_of(scene), &context, &ray);
+    embree_occluded1(bvh_of(scene), &ray);
     scene->rays++;
     return ray.tfar < 0;
 }

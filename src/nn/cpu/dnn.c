@@ -1,7 +1,6 @@
 #include "nn/cpu/dnn.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char *reason(dnnl_status_t code)
 {
@@ -51,79 +50,12 @@ dnnl_data_type_t dnn_type(nn_type type)
     return type == NN_BFLOAT16 ? dnnl_bf16 : dnnl_f32;
 }
 
-dnnl_memory_desc_t dnn_activation(const nn_tensor *t, nn_type type)
+dnn_shape dnn_activation(const nn_tensor *t, nn_type type)
 {
-    dnnl_memory_desc_t layout;
-    const dnnl_dims_t size = {t->n, t->c, t->h, t->w};
-    dnnl_memory_desc_init_by_tag(&layout, 4, size, dnn_type(type), dnnl_nhwc);
-    return layout;
+    return (dnn_shape){4, {t->n, t->c, t->h, t->w}, dnn_type(type), dnnl_nhwc};
 }
 
-static status make_attributes(dnnl_primitive_attr_t *attributes, bool relu)
-{
-    dnnl_post_ops_t post = NULL;
-    dnnl_status_t code = dnnl_primitive_attr_create(attributes);
-    if (code == dnnl_success) code = dnnl_primitive_attr_set_scratchpad_mode(*attributes, dnnl_scratchpad_mode_user);
-    if (code == dnnl_success && relu) {
-        code = dnnl_post_ops_create(&post);
-        if (code == dnnl_success) code = dnnl_post_ops_append_eltwise(post, 1, dnnl_eltwise_relu, 0, 0);
-        if (code == dnnl_success) code = dnnl_primitive_attr_set_post_ops(*attributes, post);
-        if (post) dnnl_post_ops_destroy(post);
-    }
-    return dnn_check(code, "attributes");
-}
-
-status dnn_describe(dnn_call *call, const dnn_context *context, const void *descriptor, bool relu, const dnn_call *hint)
-{
-    dnnl_primitive_attr_t attributes = NULL;
-    status s = make_attributes(&attributes, relu);
-    if (s == OK)
-        s = dnn_check(dnnl_primitive_desc_create(&call->description, descriptor, attributes, context->engine,
-                                                 hint ? hint->description : NULL),
-                      "primitive description");
-    if (attributes) dnnl_primitive_attr_destroy(attributes);
-    return s;
-}
-
-static bool is_called(dnnl_primitive_desc_t description, const char *part)
-{
-    const char *name = NULL;
-    dnnl_primitive_desc_query(description, dnnl_query_impl_info_str, 0, (void *)&name);
-    return name && strstr(name, part);
-}
-
-static status find_otherwise(dnn_call *call, dnnl_primitive_desc_iterator_t at, const char *avoided)
-{
-    for (;;) {
-        dnnl_primitive_desc_t found = dnnl_primitive_desc_iterator_fetch(at);
-        if (!found) return fail(ERROR_MEMORY, "oneDNN: no memory for a primitive description");
-        if (!is_called(found, avoided)) {
-            call->description = found;
-            return OK;
-        }
-        dnnl_primitive_desc_destroy(found);
-        status s = dnn_check(dnnl_primitive_desc_iterator_next(at), "another primitive description");
-        if (s != OK) return s;
-    }
-}
-
-status dnn_describe_otherwise(dnn_call *call, const dnn_context *context, const void *descriptor, const char *avoided,
-                              const dnn_call *hint)
-{
-    dnnl_primitive_attr_t attributes = NULL;
-    dnnl_primitive_desc_iterator_t at = NULL;
-    status s = make_attributes(&attributes, false);
-    if (s == OK)
-        s = dnn_check(
-            dnnl_primitive_desc_iterator_create(&at, descriptor, attributes, context->engine, hint->description),
-            "primitive descriptions");
-    if (s == OK) s = find_otherwise(call, at, avoided);
-    if (at) dnnl_primitive_desc_iterator_destroy(at);
-    if (attributes) dnnl_primitive_attr_destroy(attributes);
-    return s;
-}
-
-const dnnl_memory_desc_t *dnn_query(const dnn_call *call, dnnl_query_t what)
+dnn_layout dnn_query(const dnn_call *call, dnnl_query_t what)
 {
     return dnnl_primitive_desc_query_md(call->description, what, 0);
 }
@@ -133,7 +65,7 @@ size_t dnn_scratch_bytes(const dnn_call *call)
     return call->description ? dnnl_memory_desc_get_size(dnn_query(call, dnnl_query_scratchpad_md)) : 0;
 }
 
-status dnn_argument(dnn_call *call, const dnn_context *context, int kind, const dnnl_memory_desc_t *layout, void *data)
+status dnn_argument(dnn_call *call, const dnn_context *context, int kind, dnn_layout layout, void *data)
 {
     dnnl_exec_arg_t *argument = &call->arguments[call->count];
     status s = dnn_check(dnnl_memory_create(&argument->memory, layout, context->engine, data), "memory");
@@ -141,6 +73,16 @@ status dnn_argument(dnn_call *call, const dnn_context *context, int kind, const 
     argument->arg = kind;
     call->count++;
     return OK;
+}
+
+status dnn_argument_of(dnn_call *call, const dnn_context *context, int kind, const dnn_shape *shape, void *data)
+{
+    dnnl_memory_desc_t memory;
+    status s = dnn_memory_init(&memory, shape);
+    if (s != OK) return s;
+    s = dnn_argument(call, context, kind, dnn_layout_of(&memory), data);
+    dnn_memory_free(&memory);
+    return s;
 }
 
 status dnn_make(dnn_call *call, void *scratch, const dnn_context *context)
@@ -152,8 +94,8 @@ status dnn_make(dnn_call *call, void *scratch, const dnn_context *context)
     return s;
 }
 
-status dnn_make_reorder(dnn_call *call, const dnn_context *context, const dnnl_memory_desc_t *from, void *source,
-                        const dnnl_memory_desc_t *to, void *target)
+static status make_reorder(dnn_call *call, const dnn_context *context, dnn_layout from, void *source, dnn_layout to,
+                           void *target)
 {
     status s = dnn_check(
         dnnl_reorder_primitive_desc_create(&call->description, from, context->engine, to, context->engine, NULL),
@@ -161,6 +103,28 @@ status dnn_make_reorder(dnn_call *call, const dnn_context *context, const dnnl_m
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_FROM, from, source);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_TO, to, target);
     if (s == OK) s = dnn_check(dnnl_primitive_create(&call->primitive, call->description), "reorder");
+    return s;
+}
+
+status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_layout from, void *source,
+                             const dnn_shape *to, void *target)
+{
+    dnnl_memory_desc_t memory;
+    status s = dnn_memory_init(&memory, to);
+    if (s != OK) return s;
+    s = make_reorder(call, context, from, source, dnn_layout_of(&memory), target);
+    dnn_memory_free(&memory);
+    return s;
+}
+
+status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, void *source,
+                           dnn_layout to, void *target)
+{
+    dnnl_memory_desc_t memory;
+    status s = dnn_memory_init(&memory, from);
+    if (s != OK) return s;
+    s = make_reorder(call, context, dnn_layout_of(&memory), source, to, target);
+    dnn_memory_free(&memory);
     return s;
 }
 

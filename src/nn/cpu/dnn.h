@@ -1,5 +1,7 @@
-/* Short words for oneDNN: statuses with messages, channels-last descriptors, a primitive with its arguments.
- * Internal to src/nn/cpu. */
+/* Short words for oneDNN: statuses with messages, channels-last shapes, convolutions, a primitive with its arguments.
+ * Internal to src/nn/cpu.
+ *
+ * Versions 2 and 3 describe memory and operations by different calls; dnn_describe.c alone knows which one is there. */
 #ifndef MERLIN_NN_CPU_DNN_H
 #define MERLIN_NN_CPU_DNN_H
 
@@ -19,9 +21,24 @@ void dnn_close(void *context);
 /* OK, or ERROR_DEVICE with "oneDNN: what: reason". */
 status dnn_check(dnnl_status_t code, const char *what);
 
-/* Channels-last memory of a tensor's shape in a type. */
-dnnl_memory_desc_t dnn_activation(const nn_tensor *t, nn_type type);
+/* A tensor's sizes and type in memory; the tag says in which order, or dnnl_format_tag_any. */
+typedef struct dnn_shape {
+    int rank;
+    dnnl_dims_t size;
+    dnnl_data_type_t type;
+    dnnl_format_tag_t tag;
+} dnn_shape;
+
+/* oneDNN's own description of memory, which belongs to the call it was asked of. */
+#if DNNL_VERSION_MAJOR < 3
+typedef const dnnl_memory_desc_t *dnn_layout;
+#else
+typedef const_dnnl_memory_desc_t dnn_layout;
+#endif
+
 dnnl_data_type_t dnn_type(nn_type type);
+/* Returns the channels-last shape of a tensor in a type. */
+dnn_shape dnn_activation(const nn_tensor *t, nn_type type);
 
 enum { DNN_MAX_ARGUMENTS = 6 };
 
@@ -33,22 +50,36 @@ typedef struct dnn_call {
     int count;
 } dnn_call;
 
-/* Describes a primitive from an operation descriptor; relu is a post-operation; hint a forward description or NULL. */
-status dnn_describe(dnn_call *call, const dnn_context *context, const void *descriptor, bool relu,
-                    const dnn_call *hint);
-/* The same without ReLU, by the first implementation whose name does not have `avoided` in it. */
-status dnn_describe_otherwise(dnn_call *call, const dnn_context *context, const void *descriptor, const char *avoided,
-                              const dnn_call *hint);
+/* A convolution or one of its gradients: source, weights, bias and target are then those of what kind computes. */
+typedef struct dnn_convolution {
+    dnnl_prop_kind_t kind;
+    dnn_shape source, weights, bias, target;
+    bool has_bias;
+    bool relu;            /* behind it, forward alone */
+    const char *avoided;  /* part of the name of an implementation that is not to be taken, or NULL */
+    const dnn_call *hint; /* a forward description, of gradients */
+    dnnl_dims_t strides, before, behind;
+} dnn_convolution;
+
+status dnn_describe(dnn_call *call, const dnn_context *context, const dnn_convolution *wanted);
 size_t dnn_scratch_bytes(const dnn_call *call);
-const dnnl_memory_desc_t *dnn_query(const dnn_call *call, dnnl_query_t what);
+dnn_layout dnn_query(const dnn_call *call, dnnl_query_t what);
 /* Adds an argument that lies at data. */
-status dnn_argument(dnn_call *call, const dnn_context *context, int kind, const dnnl_memory_desc_t *layout, void *data);
+status dnn_argument(dnn_call *call, const dnn_context *context, int kind, dnn_layout layout, void *data);
+status dnn_argument_of(dnn_call *call, const dnn_context *context, int kind, const dnn_shape *shape, void *data);
 /* Makes the primitive from its description. */
 status dnn_make(dnn_call *call, void *scratch, const dnn_context *context);
-/* A call that copies with change of layout and type. */
-status dnn_make_reorder(dnn_call *call, const dnn_context *context, const dnnl_memory_desc_t *from, void *source,
-                        const dnnl_memory_desc_t *to, void *target);
+/* Makes calls that copy with change of layout and type, out of what a primitive asked for and into it. */
+status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_layout from, void *source,
+                             const dnn_shape *to, void *target);
+status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, void *source,
+                           dnn_layout to, void *target);
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);
+
+/* What differs between versions 2 and 3. Every init needs its free. */
+status dnn_memory_init(dnnl_memory_desc_t *memory, const dnn_shape *shape);
+dnn_layout dnn_layout_of(const dnnl_memory_desc_t *memory);
+void dnn_memory_free(dnnl_memory_desc_t *memory);
 
 #endif

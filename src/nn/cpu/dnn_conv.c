@@ -13,61 +13,51 @@
 typedef struct conv {
     dnn_call forward, data, weights;
     dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
-    dnnl_memory_desc_t plain;                /* the float32 weights */
+    dnn_shape plain;                         /* the float32 weights */
     void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
     bool has_bias;
 } conv;
 
-/* Strides and padding: (k - 1)/2 before, the rest behind. */
-typedef struct geometry {
-    dnnl_dims_t strides, before, behind;
-} geometry;
+static dnn_shape weights_shape(const nn_step *step, nn_type type, dnnl_format_tag_t order)
+{
+    const int kernel = step->at.kernel;
+    return (dnn_shape){4, {step->out.c, step->in[0].c, kernel, kernel}, dnn_type(type), order};
+}
 
-static geometry geometry_of(const nn_step *step)
+static dnn_shape any_weights(const nn_step *step, nn_type type)
+{
+    return weights_shape(step, type, dnnl_format_tag_any);
+}
+
+static dnn_shape bias_shape(const nn_step *step)
+{
+    return (dnn_shape){1, {step->out.c}, dnnl_f32, dnnl_a};
+}
+
+/* Strides and padding: (k - 1)/2 before, the rest behind. */
+static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind)
 {
     int k = step->at.kernel, stride = step->at.stride, before = (k - 1) / 2, behind = k - stride - before;
     if (behind < 0) behind = 0; /* a kernel smaller than its stride leaves pixels out */
-    return (geometry){{stride, stride}, {before, before}, {behind, behind}};
-}
-
-static dnnl_memory_desc_t weights_layout(const nn_step *step)
-{
-    int64_t in = step->in[0].c, out = step->out.c, k = step->at.kernel;
-    dnnl_memory_desc_t layout;
-    const dnnl_dims_t size = {out, in, k, k};
-    const dnnl_dims_t strides = {in * k * k, k * k, k, 1};
-    dnnl_memory_desc_init_by_strides(&layout, 4, size, dnnl_f32, strides);
-    return layout;
-}
-
-static dnnl_memory_desc_t any_weights(const nn_step *step, nn_type type)
-{
-    dnnl_memory_desc_t layout;
-    const dnnl_dims_t size = {step->out.c, step->in[0].c, step->at.kernel, step->at.kernel};
-    dnnl_memory_desc_init_by_tag(&layout, 4, size, dnn_type(type), dnnl_format_tag_any);
-    return layout;
-}
-
-static dnnl_memory_desc_t bias_layout(const nn_step *step)
-{
-    dnnl_memory_desc_t layout;
-    const dnnl_dims_t size = {step->out.c};
-    dnnl_memory_desc_init_by_tag(&layout, 1, size, dnnl_f32, dnnl_a);
-    return layout;
+    return (dnn_convolution){
+        .kind = kind,
+        .source = dnn_activation(&step->in[0], step->compute),
+        .weights = any_weights(step, step->compute),
+        .bias = bias_shape(step),
+        .target = dnn_activation(&step->out, step->compute),
+        .strides = {stride, stride},
+        .before = {before, before},
+        .behind = {behind, behind},
+    };
 }
 
 static status describe_forward(nn_step *step, conv *state)
 {
-    geometry g = geometry_of(step);
-    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), w = any_weights(step, step->compute),
-                       b = bias_layout(step), y = dnn_activation(&step->out, step->out.type);
-    dnnl_prop_kind_t kind = step->train ? dnnl_forward_training : dnnl_forward_inference;
-    const dnnl_memory_desc_t *bias = state->has_bias ? &b : NULL;
-    dnnl_convolution_desc_t descriptor;
-    dnnl_status_t code = dnnl_convolution_forward_desc_init(&descriptor, kind, dnnl_convolution_direct, &x, &w, bias,
-                                                            &y, g.strides, g.before, g.behind);
-    status s = dnn_check(code, "convolution");
-    return s == OK ? dnn_describe(&state->forward, step->context, &descriptor, step->relu, NULL) : s;
+    dnn_convolution wanted = convolution_of(step, step->train ? dnnl_forward_training : dnnl_forward_inference);
+    wanted.target = dnn_activation(&step->out, step->out.type);
+    wanted.has_bias = state->has_bias;
+    wanted.relu = step->relu;
+    return dnn_describe(&state->forward, step->context, &wanted);
 }
 
 /* The forward primitive that oneDNN wants as a hint for backward: without float32 output and post-operations. */
@@ -84,14 +74,9 @@ static status describe_hint(nn_step *step, dnn_call *hint)
 
 static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
 {
-    geometry g = geometry_of(step);
-    dnnl_memory_desc_t dx = dnn_activation(&step->in[0], step->compute), w = any_weights(step, step->compute),
-                       dy = dnn_activation(&step->out, step->compute);
-    dnnl_convolution_desc_t descriptor;
-    dnnl_status_t code = dnnl_convolution_backward_data_desc_init(&descriptor, dnnl_convolution_direct, &dx, &w, &dy,
-                                                                  g.strides, g.before, g.behind);
-    status s = dnn_check(code, "convolution backward data");
-    return s == OK ? dnn_describe(&state->data, step->context, &descriptor, false, hint) : s;
+    dnn_convolution wanted = convolution_of(step, dnnl_backward_data);
+    wanted.hint = hint;
+    return dnn_describe(&state->data, step->context, &wanted);
 }
 
 /* With fewer than 16 channels, the weights' gradient of oneDNN 2.6.3's 1×1 convolution with a stride differs from run
@@ -104,20 +89,15 @@ static bool differs_from_run_to_run(const nn_step *step)
 
 static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
 {
-    geometry g = geometry_of(step);
-    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), dw = any_weights(step, NN_FLOAT32),
-                       db = bias_layout(step), dy = dnn_activation(&step->out, step->compute);
-    const dnnl_memory_desc_t *bias = state->has_bias ? &db : NULL;
-    dnnl_convolution_desc_t descriptor;
-    dnnl_status_t code = dnnl_convolution_backward_weights_desc_init(&descriptor, dnnl_convolution_direct, &x, &dw,
-                                                                     bias, &dy, g.strides, g.before, g.behind);
-    status s = dnn_check(code, "convolution backward weights");
-    if (s == OK && differs_from_run_to_run(step))
-        return dnn_describe_otherwise(&state->weights, step->context, &descriptor, "1x1", hint);
-    return s == OK ? dnn_describe(&state->weights, step->context, &descriptor, false, hint) : s;
+    dnn_convolution wanted = convolution_of(step, dnnl_backward_weights);
+    wanted.weights = any_weights(step, NN_FLOAT32);
+    wanted.has_bias = state->has_bias;
+    wanted.hint = hint;
+    wanted.avoided = differs_from_run_to_run(step) ? "1x1" : NULL;
+    return dnn_describe(&state->weights, step->context, &wanted);
 }
 
-static status own(nn_step *step, const dnnl_memory_desc_t *layout, void **memory)
+static status own(nn_step *step, dnn_layout layout, void **memory)
 {
     return conv_own(step, dnnl_memory_desc_get_size(layout), memory);
 }
@@ -164,13 +144,13 @@ static status bind_forward(nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->forward;
-    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), b = bias_layout(step),
-                       y = dnn_activation(&step->out, step->out.type);
-    const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
-    status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    dnn_shape x = dnn_activation(&step->in[0], step->compute), b = bias_shape(step),
+              y = dnn_activation(&step->out, step->out.type);
+    dnn_layout w = dnn_query(call, dnnl_query_weights_md);
+    status s = dnn_argument_of(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
-    if (s == OK && state->has_bias) s = dnn_argument(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
-    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DST, &y, step->out.data);
+    if (s == OK && state->has_bias) s = dnn_argument_of(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DST, &y, step->out.data);
     return s == OK ? dnn_make(call, step->forward_space, context) : s;
 }
 
@@ -199,12 +179,12 @@ static status bind_data(nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->data;
-    dnnl_memory_desc_t dx = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute);
-    const dnnl_memory_desc_t *w = dnn_query(call, dnnl_query_weights_md);
+    dnn_shape dx = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute);
+    dnn_layout w = dnn_query(call, dnnl_query_weights_md);
     void *target = step->accumulate[0] ? unaccumulated_place(step) : step->in_gradient[0].data;
-    status s = dnn_argument(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    status s = dnn_argument_of(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->data_weights);
-    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_SRC, &dx, target);
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DIFF_SRC, &dx, target);
     return s == OK ? dnn_make(call, library_place(step), context) : s;
 }
 
@@ -212,18 +192,18 @@ static status bind_weights(nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->weights;
-    dnnl_memory_desc_t x = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute),
-                       db = bias_layout(step);
-    const dnnl_memory_desc_t *dw = dnn_query(call, dnnl_query_diff_weights_md);
-    status s = dnn_argument(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
-    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    dnn_shape x = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute),
+              db = bias_shape(step);
+    dnn_layout dw = dnn_query(call, dnnl_query_diff_weights_md);
+    status s = dnn_argument_of(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_WEIGHTS, dw, state->weight_gradient);
     if (s == OK && state->has_bias)
-        s = dnn_argument(call, context, DNNL_ARG_DIFF_BIAS, &db, step->params.bias->gradient);
+        s = dnn_argument_of(call, context, DNNL_ARG_DIFF_BIAS, &db, step->params.bias->gradient);
     if (s == OK) s = dnn_make(call, library_place(step), context);
     if (s == OK)
-        s = dnn_make_reorder(&state->collect, context, dw, state->weight_gradient, &state->plain,
-                             step->params.weight->gradient);
+        s = dnn_make_reorder_from(&state->collect, context, dw, state->weight_gradient, &state->plain,
+                                  step->params.weight->gradient);
     return s;
 }
 
@@ -241,11 +221,11 @@ static status make_conversions(const nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
     float *master = conv_weights(step, step->forward_space);
-    const dnnl_memory_desc_t *w = dnn_query(&state->forward, dnnl_query_weights_md);
-    status s = dnn_make_reorder(&state->convert, context, &state->plain, master, w, state->forward_weights);
+    dnn_layout w = dnn_query(&state->forward, dnnl_query_weights_md);
+    status s = dnn_make_reorder_to(&state->convert, context, &state->plain, master, w, state->forward_weights);
     if (s != OK || !state->data.primitive) return s;
     w = dnn_query(&state->data, dnnl_query_weights_md);
-    return dnn_make_reorder(&state->convert_back, context, &state->plain, master, w, state->data_weights);
+    return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master, w, state->data_weights);
 }
 
 static status conv_refresh(nn_step *step)
@@ -299,7 +279,7 @@ status conv_create(nn_step *step)
     step->run = &functions;
     step->state = state;
     state->has_bias = step->at.bias || step->folded.weight;
-    state->plain = weights_layout(step);
+    state->plain = weights_shape(step, NN_FLOAT32, dnnl_oihw);
     conv_count_flops(step);
     status s = conv_own_folded_bias(step, &state->folded_bias);
     if (s == OK) s = describe_forward(step, state);
