@@ -23,6 +23,13 @@ static struct {
 static const library_function wanted[] = {LIBRAW_FUNCTIONS(WANTED)};
 static library libraw = {.file = MERLIN_LIBRAW, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
+/* Version 0.21 has no callback for memory, and so no option against it. */
+#if LIBRAW_COMPILE_CHECK_VERSION_NOTLESS(0, 21)
+enum { WITHOUT_CALLBACKS = LIBRAW_OPIONS_NO_DATAERR_CALLBACK };
+#else
+enum { WITHOUT_CALLBACKS = LIBRAW_OPIONS_NO_MEMERR_CALLBACK | LIBRAW_OPIONS_NO_DATAERR_CALLBACK };
+#endif
+
 static void note_damage(void *damaged, const char *file, const int offset)
 {
     (void)file;
@@ -47,7 +54,7 @@ static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
 {
     status s = library_need(&libraw);
     if (s != OK) return s;
-    libraw_data_t *file = raw.init(LIBRAW_OPIONS_NO_MEMERR_CALLBACK | LIBRAW_OPIONS_NO_DATAERR_CALLBACK);
+    libraw_data_t *file = raw.init(WITHOUT_CALLBACKS);
     if (!file) return fail(ERROR_MEMORY, "no memory to read %s", path);
     raw.set_dataerror_handler(file, note_damage, damaged);
     int error = raw.open_file(file, path);
