@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "nn/cpu/dnn_pack.h"
+
 static const char *reason(dnnl_status_t code)
 {
     switch (code) {
@@ -117,11 +119,13 @@ status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_lay
     return s;
 }
 
-status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, void *source,
+status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, float *source,
                            dnn_layout to, void *target)
 {
     dnnl_memory_desc_t memory;
-    status s = dnn_memory_init(&memory, from);
+    status s = dnn_packing_new(from, source, to, target, &call->packing);
+    if (s != OK || call->packing) return s;
+    s = dnn_memory_init(&memory, from);
     if (s != OK) return s;
     s = make_reorder(call, context, dnn_layout_of(&memory), source, to, target);
     dnn_memory_free(&memory);
@@ -130,6 +134,10 @@ status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn
 
 status dnn_run(const dnn_call *call, const dnn_context *context)
 {
+    if (call->packing) {
+        dnn_pack(call->packing);
+        return OK;
+    }
     return dnn_check(dnnl_primitive_execute(call->primitive, context->stream, call->count, call->arguments), "execute");
 }
 
@@ -137,6 +145,7 @@ void dnn_release(dnn_call *call)
 {
     for (int i = 0; i < call->count; i++)
         dnnl_memory_destroy(call->arguments[i].memory);
+    dnn_packing_free(call->packing);
     if (call->primitive) dnnl_primitive_destroy(call->primitive);
     if (call->description) dnnl_primitive_desc_destroy(call->description);
     *call = (dnn_call){0};

@@ -48,6 +48,7 @@ typedef struct dnn_call {
     dnnl_primitive_t primitive;
     dnnl_exec_arg_t arguments[DNN_MAX_ARGUMENTS];
     int count;
+    struct dnn_packing *packing; /* instead of a primitive (dnn_pack.h), or NULL */
 } dnn_call;
 
 /* A convolution or one of its gradients: source, weights, bias and target are then those of what kind computes. */
@@ -69,10 +70,11 @@ status dnn_argument(dnn_call *call, const dnn_context *context, int kind, dnn_la
 status dnn_argument_of(dnn_call *call, const dnn_context *context, int kind, const dnn_shape *shape, void *data);
 /* Makes the primitive from its description. */
 status dnn_make(dnn_call *call, void *scratch, const dnn_context *context);
-/* Makes calls that copy with change of layout and type, out of what a primitive asked for and into it. */
+/* Make calls that copy float32 weights with change of layout and type, out of what a primitive asked for and into it.
+ */
 status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_layout from, void *source,
                              const dnn_shape *to, void *target);
-status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, void *source,
+status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, float *source,
                            dnn_layout to, void *target);
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);

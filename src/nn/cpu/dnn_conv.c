@@ -228,15 +228,20 @@ static status make_conversions(const nn_step *step, conv *state)
     return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master, w, state->data_weights);
 }
 
+static bool is_made(const dnn_call *conversion)
+{
+    return conversion->primitive || conversion->packing;
+}
+
 static status conv_refresh(nn_step *step)
 {
     conv *state = step->state;
-    status s = state->convert.primitive ? OK : make_conversions(step, state);
+    status s = is_made(&state->convert) ? OK : make_conversions(step, state);
     if (s != OK) return s;
     /* into the scratch of forward, which is free between runs */
     conv_make_weights(step, step->forward_space, state->folded_bias);
     s = dnn_run(&state->convert, step->context);
-    if (s == OK && state->convert_back.primitive) s = dnn_run(&state->convert_back, step->context);
+    if (s == OK && is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);
     return s;
 }
 
