@@ -191,27 +191,6 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
     return s;
 }
 
-static void print_doubts(const char *input, const stereo_result *result)
-{
-    const struct {
-        bool holds;
-        const char *words;
-    } doubts[] = {
-        {result->lights_in_order, "none of the pictures that the .lp file names is there: its lights were taken in the "
-                                  "order of the pictures' names"},
-        {result->strengths_unsure,
-         "the object is too flat or the pictures are too few to tell how strong the lights are, and normals may be "
-         "many degrees off: state the strengths in light_intensities.txt"},
-        {result->distance_unsure,
-         "these lights do not tell how far the object is, and normals may be many degrees off: "
-         "state it by --distance, or take more lights, at different heights"},
-        {result->lights_unsure, "the pictures hardly tell where the lights are, and normals may be many degrees off, "
-                                "or bulge where the object recedes: state the lights' directions in lights.txt"},
-    };
-    for (size_t i = 0; i < sizeof doubts / sizeof *doubts; i++)
-        if (doubts[i].holds) fprintf(stderr, "merlin stereo: %s: %s\n", input, doubts[i].words);
-}
-
 static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
                        double seconds)
 {
@@ -220,7 +199,8 @@ static status announce(const request *r, const char *output, const stereo_result
         s = json_line_print(report);
     else if (!r->quiet)
         printf("%s: %s (%.2f s)\n", r->input, output, seconds);
-    if (!r->quiet) print_doubts(r->input, result);
+    enum { TOLD = 3 };
+    if (!r->quiet) warnings_print(&result->doubts, "stereo", r->input, TOLD);
     return s;
 }
 
@@ -239,6 +219,7 @@ static status work(request *r, const char *output, cJSON *report)
         cJSON_AddStringToObject(report, "error_map", result.error_name);
         cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
         cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
+        cJSON_AddItemToObject(report, "warnings", warnings_json(&result.doubts));
         cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
         files.folder = output;

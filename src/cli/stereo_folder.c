@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "cli/json_line.h"
 #include "eval/surface_error.h"
+#include "stereo/doubts.h"
 
 static const float RESIDUAL_WHITE = 0.25f;
 
@@ -116,10 +117,6 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
     size_t values = 3 * (size_t)c->width * (size_t)c->height, channels = (size_t)s->albedo.channels;
     for (size_t i = 0; i < values; i++)
         r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
-    r->strengths_unsure = s->strengths_unsure;
-    r->distance_unsure = s->distance_unsure;
-    r->lights_unsure = s->lights_unsure;
-    r->lights_in_order = c->lights_in_order;
     r->normal = s->normal;
     r->depth = s->depth;
     r->error = s->residual;
@@ -130,13 +127,16 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
 static status solve(const stereo_folder *f, const pst_capture *c, stereo_result *out, cJSON *report)
 {
     pst_surface surface;
+    warnings doubts = {0};
     double began = clock_seconds();
     status s = pst_solve(c, &(pst_options){.method = f->method}, &surface);
     if (s != OK) return s;
     double solved = clock_seconds();
     s = pst_surface_integrate(c, f->integrate, f->preserve_edges, &surface);
+    if (s == OK) s = pst_doubts(c, &surface, &doubts);
     if (s == OK) s = take_surface(c, &surface, out);
     if (s == OK) s = put_report(report, c, &surface, out);
+    out->doubts = doubts;
     cJSON_AddNumberToObject(report, "seconds_solve", solved - began);
     cJSON_AddNumberToObject(report, "seconds_integrate", clock_seconds() - solved);
     pst_surface_free(&surface);

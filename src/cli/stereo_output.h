@@ -4,6 +4,7 @@
 
 #include <cJSON.h>
 
+#include "base/warnings.h"
 #include "estimate/staging.h"
 #include "stereo/capture.h"
 
@@ -15,10 +16,7 @@ typedef struct stereo_result {
     const char *error_name;          /* what error is: the residual, or the spread in degrees */
     float error_white;               /* shown as white */
     pst_camera camera;
-    bool strengths_unsure; /* as in solve.h */
-    bool distance_unsure;
-    bool lights_unsure;
-    bool lights_in_order; /* as in capture.h */
+    warnings doubts;
 } stereo_result;
 
 void stereo_result_free(stereo_result *r);

@@ -1,0 +1,15 @@
+/* What a person should know of a capture and of the surface found from it before they trust that.
+ *
+ *     warnings doubts = {0};
+ *     status s = pst_doubts(&capture, &surface, &doubts); */
+#ifndef MERLIN_STEREO_DOUBTS_H
+#define MERLIN_STEREO_DOUBTS_H
+
+#include "base/warnings.h"
+#include "stereo/solve.h"
+
+/* Adds lights_do_not_fit, lights_behind, lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out,
+ * lights_in_order, strengths_unsure, distance_unsure and lights_unsure, where they hold. */
+status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out);
+
+#endif

@@ -1,0 +1,291 @@
+/* What is said of captures whose lights, pictures or places are not what they are taken for, and not of those that are.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+#include "base/rng.h"
+#include "relief.h"
+#include "stereo/doubts.h"
+
+enum { SIZE = 72, LIGHTS = 12 };
+
+/* A ball; one with a second bump; a dish, a coin and bumps, which fill the picture. */
+typedef enum shape { BALL, PEAR, DISH, COIN, BUMPS } shape;
+
+static float height_of(shape what, float x, float y)
+{
+    float r = hypotf(x, y), bump = hypotf(x - 14, y - 9), s = 6.2831853f / SIZE;
+    switch (what) {
+    case BALL:
+        return sqrtf(fmaxf(900 - r * r, 0));
+    case PEAR:
+        return sqrtf(fmaxf(900 - r * r, 0)) + 10 * expf(-bump * bump / 60);
+    case DISH:
+        return 0.012f * r * r;
+    case COIN:
+        return 0.6f * sinf(2 * s * x + 0.5f) * cosf(3 * s * y) +
+               (r < 20 ? 1.5f : 1.5f * expf(-(r - 20) * (r - 20) / 8));
+    default:
+        return 5 * (sinf(2 * s * x + 0.5f) * cosf(1.5f * s * y) + 0.5f * sinf(4 * s * y + 0.3f * s * x));
+    }
+}
+
+static bool is_of(shape what, float x, float y)
+{
+    float r = hypotf(x, y);
+    return what == BALL || what == PEAR ? r < 29 : what == DISH ? r < 33 : true;
+}
+
+/* Two rings of lights that are not each other's mirror images. */
+static vec3 light_at(int k)
+{
+    float tilt = k % 3 == 0   ? 0.35f
+                 : k % 3 == 1 ? 0.6f
+                              : 0.8f,
+          phi = 6.2831853f * ((float)k + 0.3f * (float)(k % 4)) / LIGHTS;
+    return vec3_make(sinf(tilt) * cosf(phi), sinf(tilt) * sinf(phi), cosf(tilt));
+}
+
+static void take(shape what, float noise, pst_capture *c)
+{
+    rng random = rng_at(7, 0, 0);
+    capture_new(c, SIZE, LIGHTS, 1);
+    for (int k = 0; k < LIGHTS; k++)
+        c->light[k].direction = light_at(k);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const float x = (float)(i % SIZE) + 0.5f - 0.5f * SIZE, y = 0.5f * SIZE - (float)(i / SIZE) - 0.5f, d = 0.1f;
+        if (!is_of(what, x, y)) continue;
+        c->mask.data[i] = 1;
+        vec3 n = vec3_normalize(vec3_make((height_of(what, x - d, y) - height_of(what, x + d, y)) / (2 * d),
+                                          (height_of(what, x, y - d) - height_of(what, x, y + d)) / (2 * d), 1));
+        for (int k = 0; k < LIGHTS; k++) {
+            float seen = 0.6f * fmaxf(vec3_dot(n, c->light[k].direction), 0) + noise * (rng_uniform(&random) - 0.5f);
+            c->picture[k][i] = relief_code(fmaxf(seen, 0));
+        }
+    }
+}
+
+/* The warnings of the capture solved by least squares. */
+static warnings doubts_of(const pst_capture *c)
+{
+    pst_surface surface;
+    warnings doubts = {0};
+    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_LS}, &surface), OK);
+    assert_int_equal(pst_doubts(c, &surface, &doubts), OK);
+    pst_surface_free(&surface);
+    return doubts;
+}
+
+static void assert_told(const pst_capture *c, const char *code, const char *words)
+{
+    warnings doubts = doubts_of(c);
+    const warning *w = warnings_find(&doubts, code);
+    if (!w) fail_msg("no word of %s", code);
+    if (!strstr(w->message, words)) fail_msg("\"%s\" is not in \"%s\"", words, w->message);
+}
+
+static void assert_silent(const pst_capture *c)
+{
+    warnings doubts = doubts_of(c);
+    if (doubts.count) fail_msg("%s: %s", doubts.at[0].code, doubts.at[0].message);
+}
+
+static void reverse(pst_capture *c, float x, float y)
+{
+    for (int k = 0; k < c->count; k++) {
+        c->light[k].direction.x *= x;
+        c->light[k].direction.y *= y;
+    }
+}
+
+static void lights_that_fit_are_not_doubted(void **state)
+{
+    (void)state;
+    for (shape what = BALL; what <= BUMPS; what++)
+        for (int noisy = 0; noisy < 2; noisy++) {
+            pst_capture c;
+            take(what, noisy ? 0.02f : 0, &c);
+            assert_silent(&c);
+            capture_drop(&c);
+        }
+}
+
+static void reversed_axes_are_named(void **state)
+{
+    (void)state;
+    for (shape what = BALL; what <= PEAR; what++) {
+        pst_capture c;
+        take(what, 0.01f, &c);
+        reverse(&c, 1, -1);
+        assert_told(&c, "lights_do_not_fit", "they fit with y reversed: it points up");
+        reverse(&c, -1, -1);
+        assert_told(&c, "lights_do_not_fit", "they fit with x reversed: it points to the right");
+        reverse(&c, 1, -1);
+        assert_told(&c, "lights_do_not_fit", "they fit with x and y reversed, unless the object is a hollow");
+        capture_drop(&c);
+    }
+}
+
+static void without_an_outline_the_curl_tells_of_reversed_axes(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(BUMPS, 0.01f, &c);
+    reverse(&c, 1, -1);
+    assert_told(&c, "lights_do_not_fit", "they fit with y (or x) reversed");
+    capture_drop(&c);
+}
+
+static void exchanged_axes_are_named(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(PEAR, 0.01f, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = vec3_make(c.light[k].direction.y, c.light[k].direction.x, c.light[k].direction.z);
+    assert_told(&c, "lights_do_not_fit", "they fit with x and y exchanged");
+    for (int k = 0; k < LIGHTS; k++) {
+        vec3 l = light_at(k);
+        c.light[k].direction = vec3_make(l.x, l.z, -l.y);
+    }
+    assert_told(&c, "lights_do_not_fit", "x is +x, y -z, z +y of the list");
+    capture_drop(&c);
+}
+
+/* In the alphabet 10, 11 and 12 stand behind 1. */
+static void another_order_is_named(void **state)
+{
+    (void)state;
+    static char names[LIGHTS][16];
+    static const int alphabet[LIGHTS] = {0, 9, 10, 11, 1, 2, 3, 4, 5, 6, 7, 8};
+    char *name[LIGHTS];
+    pst_capture c;
+    take(PEAR, 0.01f, &c);
+    for (int k = 0; k < LIGHTS; k++) {
+        snprintf(names[k], sizeof names[k], "img_%d.png", k + 1);
+        name[k] = names[k];
+        c.light[k].direction = light_at(alphabet[k]);
+    }
+    c.name = name;
+    assert_told(&c, "lights_do_not_fit", "they fit in the alphabetical order of the pictures' names");
+    reverse(&c, 1, -1);
+    assert_told(&c, "lights_do_not_fit", "where 10 stands before 9, and with y reversed");
+    c.name = NULL;
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = light_at(LIGHTS - 1 - k);
+    assert_told(&c, "lights_do_not_fit", "they fit in reverse order");
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = light_at((k + 1) % LIGHTS);
+    assert_told(&c, "lights_do_not_fit", "moved by -1 (light 12 for the first picture)");
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = light_at(k == 2 ? 7 : k == 7 ? 2 : k);
+    assert_told(&c, "lights_do_not_fit", "those of pictures 3 and 8 exchanged");
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = light_at(5 * k % 13 % LIGHTS);
+    assert_told(&c, "lights_do_not_fit", "is their list in the order");
+    capture_drop(&c);
+}
+
+static void strengths_that_do_not_fit_are_doubted(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(PEAR, 0.01f, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int ch = 0; ch < 3; ch++)
+            c.light[k].intensity[ch] = 0.5f + (float)(k * 7 % LIGHTS) / LIGHTS;
+    assert_told(&c, "lights_do_not_fit", "they fit as lights of one strength");
+    capture_drop(&c);
+}
+
+static void a_copied_picture_is_named(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(PEAR, 0.01f, &c);
+    memcpy(c.picture[6], c.picture[4], (size_t)SIZE * SIZE * sizeof **c.picture);
+    assert_told(&c, "same_pictures", "pictures 5 and 7 are the same");
+    c.light[6] = c.light[4];
+    warnings doubts = doubts_of(&c);
+    assert_null(warnings_find(&doubts, "same_pictures"));
+    capture_drop(&c);
+}
+
+static void burnt_out_pictures_are_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(BALL, 0.01f, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int i = 0; i < SIZE * SIZE; i++)
+            c.picture[k][i] = relief_code(4 * (float)c.picture[k][i] / 65535);
+    assert_told(&c, "burnt_out", "take them darker");
+    capture_drop(&c);
+}
+
+static void lights_from_one_side_or_from_behind_are_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(BALL, 0, &c);
+    for (int k = 0; k < LIGHTS; k++) {
+        vec3 l = light_at(k);
+        c.light[k].direction = vec3_normalize(vec3_make(0.08f * l.x, 0.08f * l.y, l.z));
+    }
+    assert_told(&c, "lights_alike", "light the object from more sides");
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].direction = light_at(k);
+    c.light[3].direction.z *= -1;
+    assert_told(&c, "lights_behind", "1 of 12 lights stand behind the object");
+    capture_drop(&c);
+}
+
+static void places_in_another_unit_or_behind_the_camera_are_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    pst_surface surface = {.method = PST_NEAR_LIGHTS};
+    warnings doubts = {0};
+    take(BALL, 0, &c);
+    c.lighting = PST_NEAR;
+    c.camera = pst_camera_of(SIZE, SIZE, 30);
+    c.camera.mean_distance = 0.6f;   /* metres */
+    for (int k = 0; k < LIGHTS; k++) /* millimetres */
+        c.light[k].position = vec3_add(vec3_scale(light_at(k), 400), vec3_make(0, 0, -600));
+    assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
+    assert_non_null(warnings_find(&doubts, "other_unit"));
+    assert_null(warnings_find(&doubts, "lights_behind_camera"));
+    c.camera.mean_distance = 600;
+    doubts = (warnings){0};
+    assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
+    assert_null(warnings_find(&doubts, "other_unit"));
+    for (int k = 0; k < LIGHTS; k++)
+        c.light[k].position = vec3_scale(light_at(k), 400);
+    assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
+    assert_non_null(warnings_find(&doubts, "lights_behind_camera"));
+    capture_drop(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lights_that_fit_are_not_doubted),
+        cmocka_unit_test(reversed_axes_are_named),
+        cmocka_unit_test(without_an_outline_the_curl_tells_of_reversed_axes),
+        cmocka_unit_test(exchanged_axes_are_named),
+        cmocka_unit_test(another_order_is_named),
+        cmocka_unit_test(strengths_that_do_not_fit_are_doubted),
+        cmocka_unit_test(a_copied_picture_is_named),
+        cmocka_unit_test(burnt_out_pictures_are_told),
+        cmocka_unit_test(lights_from_one_side_or_from_behind_are_told),
+        cmocka_unit_test(places_in_another_unit_or_behind_the_camera_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
