@@ -85,6 +85,7 @@ static status print_json(const request *r, const pst_calibration *c, const stage
         cJSON_AddItemToArray(directions,
                              cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
     }
+    cJSON_AddItemToObject(report, "warnings", warnings_json(&c->doubts));
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
     status s = json_line_print(report);
     cJSON_Delete(report);
@@ -123,6 +124,7 @@ static status run(const request *r)
     cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
     s = write_files(r, &c, &written);
     if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);
+    if (s == OK && !r->quiet) warnings_print(&c.doubts, "stereo calibrate", r->input, 3);
     staged_files_free(&written);
     pst_calibration_free(&c);
     return s;

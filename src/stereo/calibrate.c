@@ -1,5 +1,6 @@
 #include "stereo/calibrate.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "stereo/calibrate_parts.h"
@@ -83,23 +84,49 @@ static status outline_picture(const img *brightest, img *out)
     return s == OK ? smooth(out) : s;
 }
 
-static status find_circle(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
-                          pst_calibration *out, vec3 *center)
+/* As it is without its highlights, which move. */
+static status find_darkest(const pst_capture *c, img *out)
+{
+    img darkest;
+    status s = img_new(&darkest, c->width, c->height, 3);
+    if (s != OK) return s;
+    for (int i = 0; i < c->count; i++)
+        for (size_t p = 0; p < 3 * pixels_of(c); p++) {
+            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            darkest.data[p] = i ? fminf(darkest.data[p], value) : value;
+        }
+    s = outline_picture(&darkest, out);
+    img_free(&darkest);
+    return s;
+}
+
+static status search_outlines(const pst_capture *c, pst_ball ball, const img *picture, ball_outlines *out)
+{
+    img darkest = {0};
+    status s = find_darkest(c, &darkest);
+    if (s == OK) s = ball_list_outlines(picture, &darkest, ball, out);
+    img_free(&darkest);
+    return s;
+}
+
+/* The outline of the mask, or the picture to search in, and what may be outlines there. */
+static status find_outlines(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
+                            pst_calibration *out, img *picture, ball_outlines *outlines)
 {
     char *mask;
+    bool found = false;
+    *outlines = (ball_outlines){0};
     status s = pst_find_mask(folder, options->mask, &mask);
     if (s != OK) return s;
-    img picture = {0};
-    bool found = false;
     out->from_mask = mask != NULL;
-    s = mask ? img_copy(&picture, &c->mask) : outline_picture(&out->brightest, &picture);
-    if (s == OK && mask) s = smooth(&picture);
-    if (s == OK) s = ball_find(&picture, &out->circle, &found);
-    if (s == OK && found && c->camera.focal > 0) s = ball_center(&picture, &c->camera, &out->circle, center);
-    if (s == OK && !found && mask) s = fail(ERROR_INPUT, "the mask %s is not round", mask);
-    if (s == OK && !found)
-        s = fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
-    img_free(&picture);
+    s = mask ? img_copy(picture, &c->mask) : outline_picture(&out->brightest, picture);
+    if (s == OK && mask) s = smooth(picture);
+    if (s == OK && mask) s = ball_find(picture, NULL, &outlines->at[0], &found);
+    if (s == OK && !mask) s = search_outlines(c, options->ball, picture, outlines);
+    if (found) outlines->count = 1;
+    if (s == OK && outlines->count == 0)
+        s = mask ? fail(ERROR_INPUT, "the mask %s is not round", mask)
+                 : fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
     free(mask);
     return s;
 }
@@ -169,35 +196,151 @@ static status find_lights(const pst_capture *c, const img *constant, const ball_
     return s;
 }
 
-static status reserve(pst_capture *c, pst_calibration *out)
+static status reserve(int count, pst_calibration *out)
 {
-    size_t count = (size_t)c->count;
-    out->count = c->count;
-    out->name = c->name;
-    c->name = NULL;
-    out->direction = calloc(count, sizeof *out->direction);
+    out->count = count;
+    out->direction = calloc((size_t)count, sizeof *out->direction);
     if (out->ball == PST_CHROME)
-        out->highlight = calloc(count, sizeof *out->highlight);
+        out->highlight = calloc((size_t)count, sizeof *out->highlight);
     else
-        out->residual = calloc(count, sizeof *out->residual);
+        out->residual = calloc((size_t)count, sizeof *out->residual);
     return out->direction && (out->highlight || out->residual) ? OK : fail(ERROR_MEMORY, "no memory for lights");
 }
 
-static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
+/* All lights by one outline. */
+static status calibrate_by(const pst_capture *c, const img *picture, pst_calibration *out)
 {
     img constant = {0};
-    ball_view view = {.camera = c->camera};
-    status s = find_brightest(c, &out->brightest);
-    if (s == OK) s = find_circle(folder, options, c, out, &view.center);
-    view.circle = out->circle;
-    if (s == OK) s = img_new(&constant, c->width, c->height, 1);
+    ball_view view = {.circle = out->circle, .camera = c->camera};
+    status s = img_new(&constant, c->width, c->height, 1);
+    if (s == OK && c->camera.focal > 0) s = ball_center(picture, &c->camera, &out->circle, &view.center);
     if (s == OK && out->ball == PST_CHROME) find_constant(c, &constant);
-    if (s == OK) s = reserve(c, out);
+    if (s == OK) s = reserve(c->count, out);
     if (s == OK) s = find_lights(c, &constant, &view, out);
     if (s == OK && out->ball == PST_MATTE) s = find_room(c, &view, out, &constant);
     if (s == OK && out->ball == PST_MATTE) s = find_lights(c, &constant, &view, out);
     img_free(&constant);
     return s;
+}
+
+/* ---- which outline ---- */
+
+static float mean_residual(const pst_calibration *c)
+{
+    float sum = 0;
+    for (int i = 0; i < c->count; i++)
+        sum += c->residual[i] / (float)c->count;
+    return sum;
+}
+
+static int lights_behind(const pst_calibration *c)
+{
+    int count = 0;
+    for (int i = 0; i < c->count; i++)
+        count += c->direction[i].z < 0;
+    return count;
+}
+
+/* Another outline than the likelier one before: a matte ball's has the shading of one, a mirror's no lights behind. */
+static bool is_better(const pst_calibration *trial, const pst_calibration *best)
+{
+    static const float CLEARLY = 0.8f;
+    if (trial->ball == PST_MATTE) return mean_residual(trial) < CLEARLY * mean_residual(best);
+    return lights_behind(trial) == 0 && lights_behind(best) > 0;
+}
+
+static void take_lights(pst_calibration *from, pst_calibration *to)
+{
+    free(to->direction);
+    free(to->highlight);
+    free(to->residual);
+    to->circle = from->circle;
+    to->count = from->count;
+    to->direction = from->direction;
+    to->highlight = from->highlight;
+    to->residual = from->residual;
+    from->direction = NULL;
+    from->highlight = NULL;
+    from->residual = NULL;
+}
+
+/* The first outline's failure is the one that is told. */
+static status choose_outline(const pst_capture *c, const img *picture, ball_outlines *outlines, pst_calibration *out,
+                             int *chosen)
+{
+    status first = OK;
+    char words[512] = "";
+    *chosen = -1;
+    for (int i = 0; i < outlines->count; i++) {
+        pst_calibration trial = {
+            .ball = out->ball, .circle = outlines->at[i], .from_mask = out->from_mask, .name = c->name};
+        status s = calibrate_by(c, picture, &trial);
+        outlines->residual[i] = s == OK && out->ball == PST_MATTE ? mean_residual(&trial) : 2;
+        if (s == OK && (*chosen < 0 || is_better(&trial, out))) {
+            take_lights(&trial, out);
+            *chosen = i;
+        }
+        if (i == 0 && (first = s) != OK) snprintf(words, sizeof words, "%s", status_message());
+        trial.name = NULL;
+        pst_calibration_free(&trial);
+        if (s != OK && s != ERROR_INPUT) return s;
+    }
+    return *chosen >= 0 ? OK : fail(first, "%s", words);
+}
+
+/* An inner circle of this size is the horizon that a mirror ball has of a wide table. */
+static bool is_horizon(float ratio)
+{
+    return ratio > 0.67f && ratio < 0.74f;
+}
+
+/* Of two circles one within the other. */
+static bool is_decided(const ball_outlines *outlines, pst_ball ball, int chosen)
+{
+    static const float CLEARLY = 0.6f;
+    if (ball == PST_CHROME) return chosen == 0 && is_horizon(outlines->ratio);
+    return outlines->residual[chosen] < CLEARLY * outlines->residual[1 - chosen];
+}
+
+static void doubt(const ball_outlines *outlines, int chosen, pst_calibration *c)
+{
+    const pst_circle *other = &outlines->at[1 - chosen % 2];
+    if (outlines->nested && chosen < 2 && !is_decided(outlines, c->ball, chosen))
+        warnings_add(
+            &c->doubts, "circle_unsure",
+            "two circles may be the ball's outline, one of radius %.1f within one of %.1f, and that of %.1f was "
+            "taken: if calibration.png does not show it on the outline, give a mask",
+            (double)fminf(other->radius, c->circle.radius), (double)fmaxf(other->radius, c->circle.radius),
+            (double)c->circle.radius);
+    if (chosen == (outlines->nested ? 2 : 1))
+        warnings_add(
+            &c->doubts, "circle_unsure",
+            "the ball was taken to be at %.0f, %.0f with radius %.1f, beside what looks most like one but does not "
+            "shine like one: if calibration.png does not show it there, give a mask",
+            (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);
+    int behind = lights_behind(c);
+    if (behind)
+        warnings_add(
+            &c->doubts, "lights_behind",
+            "%d of %d lights would stand behind the ball: if the circle in calibration.png is not its outline, "
+            "give a mask",
+            behind, c->count);
+}
+
+static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
+{
+    img picture = {0};
+    ball_outlines outlines;
+    int chosen = 0;
+    status s = find_brightest(c, &out->brightest);
+    if (s == OK) s = find_outlines(folder, options, c, out, &picture, &outlines);
+    if (s == OK) s = choose_outline(c, &picture, &outlines, out, &chosen);
+    if (s == OK) doubt(&outlines, chosen, out);
+    img_free(&picture);
+    if (s != OK) return s;
+    out->name = c->name;
+    c->name = NULL;
+    return OK;
 }
 
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)

@@ -9,6 +9,7 @@
 #ifndef MERLIN_STEREO_CALIBRATE_H
 #define MERLIN_STEREO_CALIBRATE_H
 
+#include "base/warnings.h"
 #include "stereo/capture.h"
 
 typedef enum pst_ball { PST_CHROME, PST_MATTE } pst_ball;
@@ -34,6 +35,7 @@ typedef struct pst_calibration {
     vec3 *direction;       /* unit, to the light */
     pst_circle *highlight; /* chrome: centre of each highlight, radius of a disk of its area; NULL for matte */
     float *residual;       /* matte: root mean square over the pixels used, relative to the light; NULL for chrome */
+    warnings doubts;       /* circle_unsure, lights_behind */
     img brightest;         /* 3 channels, linear: the pixelwise maximum, which calibration.png shows */
 } pst_calibration;
 

@@ -6,12 +6,13 @@
 #include "base/rng.h"
 #include "stereo/calibrate_parts.h"
 
-enum { MOST_EDGES = 4000, TRIES = 8000, BINS = 72, REFINEMENTS = 12 };
+enum { MOST_EDGES = 4000, LEAST_EDGES = 24, TRIES = 8000, BINS = 72, REFINEMENTS = 12 };
 
 static const float LEAST_RADIUS = 8;    /* pixels: below, normals are too coarse to calibrate with */
 static const float NEAR_CIRCLE = 1.5f;  /* pixels */
 static const float ALONG_RADIUS = 0.9f; /* cosine between an edge's normal and the radius */
 static const float LEAST_SEEN = 0.3f;   /* of the outline */
+static const float PLAINLY_SEEN = 0.8f; /* of one that is no more than second best */
 
 typedef struct edge {
     float x, y, nx, ny, strength;
@@ -49,7 +50,7 @@ static bool is_ridge(const img *strength, int x, int y, float nx, float ny)
     return here > 0 && here >= sample(strength, x + dx, y + dy) && here > sample(strength, x - dx, y - dy);
 }
 
-static void collect(const img *picture, const img *strength, edges *out)
+static void collect(const img *picture, const img *strength, size_t most, edges *out)
 {
     for (int y = 2; y < picture->height - 2; y++)
         for (int x = 2; x < picture->width - 2; x++) {
@@ -59,10 +60,10 @@ static void collect(const img *picture, const img *strength, edges *out)
             out->at[out->count++] = (edge){(float)x + 0.5f, (float)y + 0.5f, gx / g, gy / g, g};
         }
     qsort(out->at, out->count, sizeof *out->at, stronger_first);
-    if (out->count > MOST_EDGES) out->count = MOST_EDGES;
+    if (out->count > most) out->count = most;
 }
 
-static status find_edges(const img *picture, edges *out)
+static status find_edges(const img *picture, size_t most, edges *out)
 {
     img strength;
     status s = img_new(&strength, picture->width, picture->height, 1);
@@ -78,7 +79,7 @@ static status find_edges(const img *picture, edges *out)
             gradient(picture, x, y, &gx, &gy);
             *img_at(&strength, x, y) = hypotf(gx, gy);
         }
-    collect(picture, &strength, out);
+    collect(picture, &strength, most, out);
     img_free(&strength);
     return OK;
 }
@@ -169,16 +170,52 @@ static float sample_circles(const edges *e, const img *picture, pst_circle *best
     return most;
 }
 
-status ball_find(const img *picture, pst_circle *circle, bool *found)
+/* Without those of another ball, what is about it included. */
+static void keep_beside(edges *e, const pst_circle *other)
+{
+    static const float ABOUT = 1.1f; /* radii */
+    size_t kept = 0;
+    for (size_t i = 0; i < e->count; i++)
+        if (hypotf(e->at[i].x - other->x, e->at[i].y - other->y) > ABOUT * other->radius) e->at[kept++] = e->at[i];
+    e->count = kept < MOST_EDGES ? kept : MOST_EDGES;
+}
+
+status ball_find(const img *picture, const pst_circle *beside, pst_circle *circle, bool *found)
 {
     *found = false;
     edges e;
-    status s = find_edges(picture, &e);
+    status s = find_edges(picture, beside ? SIZE_MAX : MOST_EDGES, &e);
     if (s != OK) return s;
+    if (beside) keep_beside(&e, beside);
     if (e.count > 8 && sample_circles(&e, picture, circle) > 0.5f * LEAST_SEEN) {
         refine(&e, circle);
-        *found = share_seen(&e, circle) >= LEAST_SEEN;
+        *found = share_seen(&e, circle) >= (beside ? PLAINLY_SEEN : LEAST_SEEN);
     }
+    free(e.at);
+    return OK;
+}
+
+/* Of those near the circle alone, so that stronger ones elsewhere take no room. */
+static void keep_near(edges *e, const pst_circle *c)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < e->count; i++) {
+        float distance, cosine;
+        if (is_near(&e->at[i], c, 2 * NEAR_CIRCLE, &distance, &cosine)) e->at[kept++] = e->at[i];
+    }
+    e->count = kept;
+}
+
+status ball_refine(const img *picture, pst_circle *circle)
+{
+    edges e;
+    status s = find_edges(picture, SIZE_MAX, &e);
+    if (s != OK) return s;
+    pst_circle found = *circle;
+    keep_near(&e, circle);
+    refine(&e, &found);
+    float moved = hypotf(found.x - circle->x, found.y - circle->y) + fabsf(found.radius - circle->radius);
+    if (e.count >= LEAST_EDGES && moved < 4 * NEAR_CIRCLE) *circle = found;
     free(e.at);
     return OK;
 }
@@ -255,7 +292,7 @@ static vec3 center_of(const edges *e, edges *turned, const pst_camera *camera, c
 status ball_center(const img *picture, const pst_camera *camera, const pst_circle *circle, vec3 *center)
 {
     edges e;
-    status s = find_edges(picture, &e);
+    status s = find_edges(picture, MOST_EDGES, &e);
     if (s != OK) return s;
     edges turned = {malloc(MOST_EDGES * sizeof *turned.at), 0};
     if (turned.at)

@@ -4,8 +4,30 @@
 
 #include "stereo/calibrate.h"
 
-/* The circle whose edge is seen most completely in a picture of one channel; false if there is none. */
-status ball_find(const img *picture, pst_circle *circle, bool *found);
+/* The circle whose edge is seen most completely in a picture of one channel, beside another or NULL; false if there is
+ * none. */
+status ball_find(const img *picture, const pst_circle *beside, pst_circle *circle, bool *found);
+
+/* A circle around one that was found, all along which the picture, of logarithms, steps sharply up or down
+ * (calibrate_outline.c); false if there is none. */
+bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer);
+/* Whether a circle within it is where a mirror ball of this outline has the horizon of what it lies on. */
+bool ball_has_horizon(const img *picture, const pst_circle *circle);
+/* To the edges that lie nearest, however strong others are. */
+status ball_refine(const img *picture, pst_circle *circle);
+
+enum { BALL_MOST_OUTLINES = 3 };
+
+/* The outlines that the ball may have, the likeliest first: the circle that is seen best, one around it, one beside. */
+typedef struct ball_outlines {
+    pst_circle at[BALL_MOST_OUTLINES];
+    int count;
+    bool nested;                        /* the first and the second are one within the other */
+    float residual[BALL_MOST_OUTLINES]; /* of a matte ball's shading, once it is tried; above 1: it has none */
+    float ratio;                        /* of nested ones' radii, the lesser against the larger */
+} ball_outlines;
+/* picture: of the brightest that each pixel is, darkest: of the darkest, without highlights. */
+status ball_list_outlines(const img *picture, const img *darkest, pst_ball ball, ball_outlines *out);
 
 /* The ball in space, as much as the view tells. */
 typedef struct ball_view {
