@@ -10,6 +10,7 @@
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
+#include "cli/stage_bar.h"
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
 #include "cli/stereo_photo.h"
@@ -185,6 +186,7 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
                       .params = r->params,
                       .method = r->folder.method,
                       .preserve_edges = r->folder.preserve_edges,
+                      .watch = r->folder.watch,
                       .quiet = r->quiet};
     s = stereo_from_photo(&p, out, report);
     free(weights);
@@ -210,8 +212,12 @@ static status work(request *r, const char *output, cJSON *report)
     stereo_result result = {0};
     staged_files written = {0};
     const pst_read_options *read = &r->folder.read;
+    stage_bar bar = {.quiet = r->quiet};
+    watch shown = {stage_bar_tell, &bar};
+    r->folder.watch = r->folder.read.watch = &shown;
     json_line_text(report, "input", r->input);
     status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    stage_bar_end(&bar);
     float scale = 1;
     if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
     if (s == OK) {

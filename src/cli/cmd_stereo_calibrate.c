@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
+#include "cli/stage_bar.h"
 #include "cli/stereo_commands.h"
 #include "estimate/staging.h"
 #include "stereo/calibrate.h"
@@ -114,12 +115,16 @@ static status write_files(const request *r, const pst_calibration *c, staged_fil
     return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }
 
-static status run(const request *r)
+static status run(request *r)
 {
     double began = clock_seconds();
     pst_calibration c;
     staged_files written = {0};
+    stage_bar bar = {.quiet = r->quiet};
+    watch shown = {stage_bar_tell, &bar};
+    r->options.watch = &shown;
     status s = pst_calibrate_sphere(r->input, &r->options, &c);
+    stage_bar_end(&bar);
     if (s != OK) return s;
     cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
     s = write_files(r, &c, &written);

@@ -129,7 +129,7 @@ static status solve(const stereo_folder *f, const pst_capture *c, stereo_result 
     pst_surface surface;
     warnings doubts = {0};
     double began = clock_seconds();
-    status s = pst_solve(c, &(pst_options){.method = f->method}, &surface);
+    status s = pst_solve(c, &(pst_options){.method = f->method, .watch = f->watch}, &surface);
     if (s != OK) return s;
     double solved = clock_seconds();
     s = pst_surface_integrate(c, f->integrate, f->preserve_edges, &surface);

@@ -11,6 +11,7 @@ typedef struct stereo_folder {
     const char *folder;
     pst_read_options read;
     pst_method method;
+    const watch *watch;
     bool integrate; /* even if the method finds depth itself */
     bool preserve_edges;
 } stereo_folder;

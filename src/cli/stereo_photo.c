@@ -61,8 +61,11 @@ static status solve_all(work *w)
 {
     int (*stop)(void) = w->photo->params.stop;
     status s = OK;
-    for (int d = 0; d < DRAW_MOST && s == OK; d++)
+    for (int d = 0; d < DRAW_MOST && s == OK; d++) {
+        watch_tell(w->photo->watch, "solving", (double)(d + 1) / (DRAW_MOST + 1));
         s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : solve_draw(w, d);
+    }
+    if (s == OK) watch_tell(w->photo->watch, "solving", 1);
     return s;
 }
 
@@ -145,6 +148,7 @@ status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *repor
 {
     work w = {.photo = p};
     *out = (stereo_result){0};
+    watch_tell(p->watch, "solving", 0); /* the photograph and its relit pictures take as long as a draw */
     status s = open_photo(&w);
     if (s == OK) s = result_new(&w, out);
     if (s == OK) s = solve_all(&w);

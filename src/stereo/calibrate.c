@@ -346,7 +346,8 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
 {
     *out = (pst_calibration){.ball = options->ball};
-    pst_read_options reading = {.mask = options->mask, .unknown_lights = true, .linear = options->linear};
+    pst_read_options reading = {
+        .mask = options->mask, .unknown_lights = true, .linear = options->linear, .watch = options->watch};
     pst_capture c;
     status s = pst_capture_read(folder, &reading, &c);
     if (s != OK) return s;

@@ -18,6 +18,7 @@ typedef struct pst_calibrate_options {
     pst_ball ball;
     const char *mask;    /* of the ball; NULL: mask.png or NAME.mask.png in the folder, else the ball is searched for */
     float field_of_view; /* of the camera, horizontal, degrees; 0: an orthographic view */
+    const watch *watch;  /* may be NULL */
     bool linear;         /* 8-bit pictures are linear already */
 } pst_calibrate_options;
 

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "base/vec.h"
+#include "base/watch.h"
 #include "image/image.h"
 
 typedef enum pst_lighting {
@@ -67,6 +68,7 @@ typedef struct pst_read_options {
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
     float field_of_view; /* horizontal, degrees; 0: from the layout, else 60 when near */
+    const watch *watch;  /* told of the pictures that are read; may be NULL */
     float distance;      /* mean, from the camera to the object; 0: from the layout, or not known */
 } pst_read_options;
 

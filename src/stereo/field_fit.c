@@ -224,6 +224,9 @@ static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *
     return pst_fall_off_of(d, &deeper, kind, &f->shading[i]);
 }
 
+/* Of a fit from nothing, in others. */
+enum { FIT_EFFORT = 4 };
+
 /* Whether the task has anything to do there. */
 static bool concerns(const fit_job *job, size_t i)
 {
@@ -276,6 +279,8 @@ static void fit_block(void *context, size_t block)
         pixel[count] = f->pixel[i];
         wanted[count++] = i;
     }
+    if (f->problem->effort)
+        pst_effort_add(f->problem->effort, job->task == FIT ? FIT_EFFORT * (end - first) : end - first);
     if (count == 0) return;
     pst_gather(f->problem, pixel, count, g.value, g.usable, stride);
     for (size_t j = 0; j < count; j++)

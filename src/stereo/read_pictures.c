@@ -20,6 +20,7 @@ enum { READERS = 4 };
 typedef struct reading {
     const char *folder;
     bool decode;
+    const watch *watch;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
     img *first;       /* the first picture, until it is stored */
@@ -90,6 +91,7 @@ static status for_pictures(const reading *r, status (*work)(const reading *r, in
 {
     status s = OK;
     for (int i = 0; i < r->into->count && s == OK; i += READERS) {
+        watch_tell(r->watch, "reading", (double)i / r->into->count);
         int left = r->into->count - i;
         s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
     }
@@ -184,7 +186,8 @@ static status take_picture(const reading *r, int i)
 status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
 {
     img first = {0};
-    reading r = {.folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c};
+    reading r = {
+        .folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c, .watch = options->watch};
     status s = read_first_shape(&r, c);
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = for_pictures(&r, take_picture);

@@ -246,6 +246,24 @@ static status run(const pst_problem *p, pst_surface *out)
     }
 }
 
+void pst_effort_add(pst_effort *e, size_t fits)
+{
+    size_t done = atomic_fetch_add_explicit(&e->done, fits, memory_order_relaxed) + fits;
+    if (!pthread_equal(e->owner, pthread_self())) return;
+    double share = (double)done / (double)e->expected;
+    watch_tell(e->watch, "solving", share < 1 ? share : 1);
+}
+
+/* A fit from nothing counts as four. Each method's own are so many times the pixels, near's first ones are on small
+ * pictures. */
+static size_t expected_effort(const pst_problem *p, pst_method method)
+{
+    static const size_t passes[] = {[PST_ROBUST] = 9, [PST_NEAR_LIGHTS] = 11, [PST_SEMI] = 9, [PST_UNCALIBRATED] = 13};
+    enum { SMALL_ONES = 300000 };
+    bool known = (size_t)method < sizeof passes / sizeof *passes;
+    return (known ? passes[method] : 1) * p->pixel_count + (method == PST_NEAR_LIGHTS ? SMALL_ONES : 0) + 1;
+}
+
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
 {
     *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
@@ -259,10 +277,14 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
                      .shadow = options->shadow,
                      .saturation = options->saturation > 0 ? options->saturation : PST_SATURATED,
                      .iterations = options->iterations};
+    pst_effort effort = {.watch = options->watch, .owner = pthread_self()};
+    if (options->watch) p.effort = &effort;
+    watch_tell(options->watch, "solving", 0);
     s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
     if (s == OK && out->method != PST_SEMI && out->method != PST_UNCALIBRATED) s = check_lit(&p);
     if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
+    effort.expected = expected_effort(&p, out->method);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
     if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);

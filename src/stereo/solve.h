@@ -19,9 +19,10 @@ typedef enum pst_method {
 
 typedef struct pst_options {
     pst_method method;
-    float shadow;     /* values at or below this share of full scale are left out; 0: chosen */
-    float saturation; /* values at or above; 0: PST_SATURATED */
-    int iterations;   /* of iterative methods; 0: chosen */
+    float shadow;       /* values at or below this share of full scale are left out; 0: chosen */
+    float saturation;   /* values at or above; 0: PST_SATURATED */
+    int iterations;     /* of iterative methods; 0: chosen */
+    const watch *watch; /* may be NULL */
 } pst_options;
 
 typedef struct pst_surface {

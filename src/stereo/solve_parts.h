@@ -6,7 +6,21 @@
 #ifndef MERLIN_STEREO_SOLVE_PARTS_H
 #define MERLIN_STEREO_SOLVE_PARTS_H
 
+#include <pthread.h>
+#include <stdatomic.h>
+
 #include "stereo/solve.h"
+
+/* What a solver has done of its fits, by all threads. */
+typedef struct pst_effort {
+    const watch *watch;
+    pthread_t owner; /* the thread that began */
+    atomic_size_t done;
+    size_t expected;
+} pst_effort;
+
+/* Called by any thread; the owner tells. */
+void pst_effort_add(pst_effort *e, size_t fits);
 
 typedef struct pst_problem {
     const pst_capture *capture; /* of at most PST_MAX_LIGHTS pictures, but for ls */
@@ -15,6 +29,7 @@ typedef struct pst_problem {
     size_t pixel_count;
     float shadow, saturation; /* shares of full scale: usable is shadow < value < saturation */
     int iterations;           /* 0: the solver's own */
+    pst_effort *effort;       /* may be NULL */
 } pst_problem;
 
 /* Directions are unit already. Fewer than 3 lights, or all in a plane through the origin, are refused. */

@@ -1,0 +1,21 @@
+/* How far long work is, told to whoever waits for it. Libraries take one and never print:
+ *
+ *     watch_tell(w, "solving", 0.4);          w may be NULL */
+#ifndef MERLIN_BASE_WATCH_H
+#define MERLIN_BASE_WATCH_H
+
+#include <stddef.h>
+
+typedef struct watch {
+    /* what: the stage, a literal; share of it that is done, in [0, 1]. Called from one thread at a time,
+     * the one that began the work. */
+    void (*tell)(void *context, const char *what, double share);
+    void *context;
+} watch;
+
+static inline void watch_tell(const watch *w, const char *what, double share)
+{
+    if (w) w->tell(w->context, what, share);
+}
+
+#endif

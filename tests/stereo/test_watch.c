@@ -1,0 +1,56 @@
+/* Whoever waits for a solver hears how far it is. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* behind ours: it has a macro named fail */
+
+#include "relief.h"
+
+typedef struct heard {
+    int count;
+    double last;
+} heard;
+
+static void hear(void *context, const char *what, double share)
+{
+    heard *h = context;
+    assert_string_equal(what, "solving");
+    assert_true(share >= h->last && share <= 1);
+    h->last = share;
+    h->count++;
+}
+
+static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
+{
+    (void)state;
+    const relief how = {
+        .size = 96, .lights = 20, .channels = 1, .bump = 4, .specular = 0.5f, .roughness = 0.3f, .exposure = 1};
+    static const pst_method methods[] = {PST_LS, PST_ROBUST, PST_SEMI, PST_UNCALIBRATED};
+    pst_capture c;
+    relief_capture(&how, &c);
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        heard h = {0};
+        watch w = {hear, &h};
+        pst_surface watched, alone;
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &watched), OK);
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i]}, &alone), OK);
+        assert_memory_equal(watched.normal.data, alone.normal.data, img_value_count(&alone.normal) * sizeof(float));
+        if (methods[i] != PST_LS) {
+            print_message("%s: told %d times, to %.2f\n", pst_method_name(methods[i]), h.count, h.last);
+            assert_true(h.count > 20 && h.last > 0.6);
+        }
+        pst_surface_free(&watched);
+        pst_surface_free(&alone);
+    }
+    capture_drop(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_solver_tells_how_far_it_is_and_finds_the_same)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
