@@ -5,8 +5,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "base/threads.h"
+
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context)
 {
+    threads_begin();
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < count; i++)
         body(context, i);
@@ -49,6 +52,7 @@ status parallel_try(size_t count, status (*body)(void *context, size_t i), void 
 
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context)
 {
+    threads_begin();
 #pragma omp parallel
     {
         size_t threads = (size_t)omp_get_num_threads(), t = (size_t)omp_get_thread_num();
@@ -64,5 +68,5 @@ int parallel_threads(void)
 
 void parallel_set_threads(int count)
 {
-    omp_set_num_threads(count);
+    threads_use_here(count);
 }

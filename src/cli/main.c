@@ -69,16 +69,6 @@ static void reuse_memory(void)
     mallopt(M_MMAP_THRESHOLD, 8 << 20);
 }
 
-/* Beside other work a thread of OpenMP waits for one that has no processor, and takes another's meanwhile. It spins for
- * milliseconds before it sleeps: five estimates one after the other take 1.9 s, and two such rows at once 7.9 s on two
- * cores; with 1000 turns, some tens of microseconds, 1.9 and 3.4. libgomp asks the environment before main, so the
- * program starts once more. */
-static void wait_briefly(char *const *argv)
-{
-    if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv("/proc/self/exe", argv); /* without /proc all goes on so */
-}
-
 /* Its matrices are too small for several threads to gain from, and the other work has them all. It asks when it is
  * loaded. */
 static void one_thread_for_blas(void)
@@ -112,7 +102,6 @@ int main(int argc, char **argv)
         fprintf(stderr, "merlin: %s (try merlin --help)\n", status_message());
         return 2;
     }
-    wait_briefly(argv);
     reuse_memory();
     return finish(command->run(argc - 1, argv + 1));
 }

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "base/threads.h"
 #include "image/image.h"
 #include "merlin/merlin.h"
 
@@ -23,9 +24,10 @@ static inline merlin_status result_of(status s)
     return (merlin_status)s;
 }
 
-/* ERROR_USAGE where a public function got NULL for something that it needs. */
+/* Begins a public function: ERROR_USAGE where it got NULL for something that it needs. */
 static inline status api_needs(const char *function, bool all_there)
 {
+    threads_begin();
     return all_there ? OK : fail(ERROR_USAGE, "%s was called with a null pointer", function);
 }
 

@@ -4,6 +4,8 @@
 
 #include "nn/cpu/dnn_pack.h"
 
+#include "base/threads.h"
+
 static const char *reason(dnnl_status_t code)
 {
     switch (code) {
@@ -27,6 +29,7 @@ status dnn_check(dnnl_status_t code, const char *what)
 status dnn_open(void **out)
 {
     *out = NULL;
+    threads_begin();
     dnn_context *context = calloc(1, sizeof *context);
     if (!context) return fail(ERROR_MEMORY, "no memory for a device");
     status s = dnn_check(dnnl_engine_create(&context->engine, dnnl_cpu, 0), "engine");
