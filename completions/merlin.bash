@@ -4,7 +4,7 @@ _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} more=()
     local -A options=(
         [estimate]="--mask --output --model --size --views --exposure --mesh --json --quiet --help"
-        [relight]="--light --lights --orbit --dome --lp --env --rotate --env-exposure --by --no-shadows --frame --mask --output --model --size --views --exposure --json --quiet --help"
+        [relight]="--light --direction --lights --orbit --dome --lp --near --radius --power --color --exposure --format --env --rotate --env-exposure --by --no-shadows --matte --frame --mask --output --model --size --views --photo-exposure --json --quiet --help"
         [stereo]="--lights --near --fov --distance --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
             --json --quiet --help"
         ["stereo calibrate"]="--sphere --mask --linear --fov --output --json --quiet --help"

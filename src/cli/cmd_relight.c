@@ -1,13 +1,15 @@
 /* merlin relight: the object of a photograph under other light. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/light_list.h"
 #include "base/progress.h"
+#include "base/warnings.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
+#include "cli/lamps.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photo_doubts.h"
@@ -18,56 +20,112 @@
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
+    "       merlin relight PHOTO|DIR --direction x,y,z [options]\n"
     "       merlin relight PHOTO|DIR --lights FILE [options]\n"
     "       merlin relight PHOTO|DIR --orbit N [options]\n"
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
-    "Shows an object under a point light, an environment, or both instead of the flash. DIR is a folder made by\n"
+    "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
     "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO is estimated first.\n"
     "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
-    "counts as a frame 60 degrees wide.\n\n"
-    "      --light x,y,z    a light's position; may be given again\n"
-    "      --lights FILE    positions from a file: x y z a line, or the directions of an .lp file\n"
-    "      --orbit N        N frames (2 to 240) with the light on a circle in front of the object, also as orbit.webp\n"
+    "counts as a frame 60 degrees wide.\n\n";
+
+/* Apart, since compilers need not take texts of more than 4095 characters. */
+static const char help_on_options[] =
+    "      --light x,y,z    a lamp's place; may be given again, for another picture\n"
+    "      --direction x,y,z\n"
+    "                       a lamp far away, toward which x,y,z points; as bright as one at distance 1; likewise\n"
+    "      --lights FILE    lamps from a file: places, x y z a line, or the directions of an .lp file (far away, but\n"
+    "                       with --near)\n"
+    "      --orbit N        N frames (2 to 240) with the lamp on a circle in front of the object, also as orbit.webp\n"
     "                       and orbit.gif\n"
-    "      --dome N         N pictures (3 to 999), dome_000.png and on, under lights spread evenly over the frontal\n"
-    "                       hemisphere, and mask.png\n"
+    "      --dome N         N pictures (3 to 999), dome_000.png and on, under far lights spread evenly over the "
+    "frontal\n"
+    "                       hemisphere, for RTI tools and merlin stereo, and mask.webp; all of one exposure\n"
     "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo; that of an\n"
     "                       earlier dome in the same folder is renewed without it, too\n"
-    "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each light;\n"
-    "                       with --orbit they go round once, and the light stays\n"
+    "      --near           the dome's lamps stand beside the object, and lights.txt lists their places, x y z from\n"
+    "                       the camera, as merlin stereo --near reads them\n"
+    "      --radius R       with --near: how far from 0,0,-1 (default 1)\n"
+    "      --power P        lamps P times as strong (default 1); behind a --light or --direction this one alone,\n"
+    "                       before the first all that have no power of their own; the same holds of\n"
+    "      --color C        linear r,g,b, or #rrggbb as in sRGB, or a temperature such as 2700K\n"
+    "      --exposure EV|auto\n"
+    "                       brighter by EV stops than the photograph, or than a lamp at distance 1 makes a white "
+    "matte\n"
+    "                       surface white; auto: what is brightest just stays below white, as do white matte\n"
+    "                       surfaces (default: auto for --dome, and for a surface of merlin stereo; else 0)\n"
+    "      --format F       png (default) or jpg, of high quality, for pictures of the photograph's size\n"
+    "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each lamp;\n"
+    "                       with --orbit they go round once, and the lamp stays\n"
     "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
     "      --env-exposure EV\n"
     "                       makes them brighter or darker by EV stops (default 0: mean luminance 1)\n"
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
-    "                       network: the relighting decoder, made for lights at distance 1 from 0,0,-1 with z >= -1\n"
-    "      --no-shadows     brdf without cast shadows (lights and surroundings), as in the paper\n"
-    "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin)\n"
+    "                       network: the relighting decoder, made for lamps at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --no-shadows     brdf without cast shadows (lamps and surroundings), as in the paper\n"
+    "      --matte          brdf without gloss: what least squares, as of RTI tools, finds normals in\n"
+    "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin); - writes\n"
+    "                       one picture to standard output\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
-    "      --mask FILE, --size N, --views N, --exposure EV\n"
-    "                       for a PHOTO, as in merlin estimate\n"
+    "      --mask FILE, --size N, --views N\n"
+    "                       for a PHOTO, as in merlin estimate; so is --photo-exposure EV|auto, its --exposure\n"
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
     "                       $MERLIN_MODEL, else merlin-point)\n"
     "      --json           a report as JSON on standard output\n"
     "      --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
-    "Writes relit_000.png and on, and relit.png with all of them; for an orbit frame_000.png and on, and orbit.png.\n";
+    "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
+    "them;\n"
+    "for an orbit frame_000.png and on, and orbit.png.\n";
+
+/* --exposure */
+typedef struct exposing {
+    bool given, automatic;
+    float ev;
+} exposing;
 
 typedef struct request {
     const char *input, *list, *mask, *weights, *output, *env;
-    float rotate, env_exposure;
-    light_list lights;
+    float rotate, env_exposure, radius;
+    lamp_options lamps;
     merlin_params params;
     merlin_relighting how;
-    int orbit, frame, dome;
-    bool lp, no_shadows, json, quiet, help;
+    exposing exposing;
+    img_file_kind format;
+    int orbit, frame;
+    relight_dome dome;
+    bool near, no_shadows, matte, json, quiet, help;
 } request;
 
-static status take_light(const char *text, void *lights)
+static status take_exposing(const char *text, void *into)
 {
-    float v[3];
-    status s = cli_vec3("--light", text, v);
-    return s == OK ? light_list_add(lights, vec3_of(v)) : s;
+    exposing *e = into;
+    double ev = 0;
+    *e = (exposing){.given = true, .automatic = strcmp(text, "auto") == 0};
+    status s = e->automatic ? OK : cli_float("--exposure", text, -20, 20, &ev);
+    e->ev = (float)ev;
+    return s;
+}
+
+static status take_format(const char *text, void *into)
+{
+    img_file_kind *format = into;
+    if (strcmp(text, "png") == 0)
+        *format = IMG_PNG;
+    else if (strcmp(text, "jpg") == 0 || strcmp(text, "jpeg") == 0)
+        *format = IMG_JPEG;
+    else
+        return fail(ERROR_USAGE, "--format wants png or jpg, not \"%s\"", text);
+    return OK;
+}
+
+static status take_radius(const char *text, void *into)
+{
+    double radius = 0;
+    status s = cli_float("--radius", text, 0.1, 1000, &radius);
+    *(float *)into = (float)radius;
+    return s;
 }
 
 static status take_way(const char *text, void *into)
@@ -82,43 +140,95 @@ static status take_way(const char *text, void *into)
     return OK;
 }
 
+static bool to_standard_output(const request *r)
+{
+    return r->output && strcmp(r->output, "-") == 0;
+}
+
+static status check_dome(request *r)
+{
+    int count = r->dome.count;
+    if (r->dome.lp && count == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
+    if (r->near && count == 0 && !r->list)
+        return fail(ERROR_USAGE, "--near is of the lamps of a --dome or an .lp file");
+    if (r->radius > 0 && !r->near) return fail(ERROR_USAGE, "--radius is of --near lamps");
+    if (r->near && r->dome.lp)
+        return fail(ERROR_USAGE, "--lp lists distant lights, and --near has none: their places go to lights.txt");
+    if (r->how == MERLIN_BY_NETWORK && count && !r->near)
+        return fail(ERROR_USAGE, "the relighting decoder knows no distant lights: give --near, too");
+    if (r->env && count) return fail(ERROR_USAGE, "--dome is of lamps alone, without --env");
+    r->dome.near = r->near ? r->radius > 0 ? r->radius : 1 : 0;
+    return OK;
+}
+
+static status check_standard_output(const request *r)
+{
+    if (!to_standard_output(r)) return OK;
+    if (r->orbit || r->dome.count || r->lamps.count > 1)
+        return fail(ERROR_USAGE, "-o - writes one picture to standard output; for several name a folder");
+    if (r->json) return fail(ERROR_USAGE, "-o - leaves standard output to the picture; there is no room for --json");
+    return OK;
+}
+
+static status check_way(request *r)
+{
+    bool by_network = r->how == MERLIN_BY_NETWORK;
+    if (r->no_shadows && by_network)
+        return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
+    if (r->matte && by_network)
+        return fail(ERROR_USAGE, "--matte is of --by brdf; the relighting decoder paints gloss");
+    if (by_network && stereo_maps_in(r->input))
+        return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
+    if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
+    return OK;
+}
+
+static status check_photo(const request *r)
+{
+    if (!file_is_folder(r->input) || (!r->mask && !photo_params_given(&r->params))) return OK;
+    return fail(ERROR_USAGE, "--mask, --size, --views and --photo-exposure are for a photograph; %s holds maps already",
+                r->input);
+}
+
 static status check(request *r)
 {
-    if (r->lights.count == 0 && !r->list && r->orbit == 0 && r->dome == 0 && !r->env)
-        return fail(ERROR_USAGE, "no light: give --light, --lights, --orbit, --dome or --env");
+    if (r->lamps.count == 0 && !r->list && r->orbit == 0 && r->dome.count == 0 && !r->env)
+        return fail(ERROR_USAGE, "no light: give --light, --direction, --lights, --orbit, --dome or --env");
     if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
         return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
-    if (r->env && r->dome) return fail(ERROR_USAGE, "--dome is of point lights alone, without --env");
     if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
-    if (r->no_shadows && r->how == MERLIN_BY_NETWORK)
-        return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
-    if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
-    status s = file_is_folder(r->input) ? photo_check_maps(r->input, r->mask, &r->params) : OK;
-    if (s != OK) return s;
-    if (r->how == MERLIN_BY_NETWORK && stereo_maps_in(r->input))
-        return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
-    if (r->lp && r->dome == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
-    return OK;
+    status s = check_dome(r);
+    if (s == OK) s = check_standard_output(r);
+    if (s == OK) s = check_photo(r);
+    return s == OK ? check_way(r) : s;
 }
 
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
-        {"light", .take = take_light, .into = &r->lights},
+        {"light", .take = lamp_take_light, .into = &r->lamps},
+        {"direction", .take = lamp_take_direction, .into = &r->lamps},
         {"lights", .text = &r->list},
         {"orbit", .integer = &r->orbit, .low = 2, .high = RELIGHT_MOST_FRAMES},
-        {"dome", .integer = &r->dome, .low = 3, .high = RELIGHT_MOST_DOME},
-        {"lp", .flag = &r->lp},
+        {"dome", .integer = &r->dome.count, .low = 3, .high = RELIGHT_MOST_DOME},
+        {"lp", .flag = &r->dome.lp},
+        {"near", .flag = &r->near},
+        {"radius", .take = take_radius, .into = &r->radius},
+        {"power", .take = lamp_take_power, .into = &r->lamps},
+        {"color", .take = lamp_take_color, .into = &r->lamps},
+        {"exposure", .take = take_exposing, .into = &r->exposing},
+        {"format", .take = take_format, .into = &r->format},
         {"env", .text = &r->env},
         {"rotate", .real = &r->rotate, .low = -1000000, .high = 1000000},
         {"env-exposure", .real = &r->env_exposure, .low = -20, .high = 20},
         {"by", .take = take_way, .into = &r->how},
         {"no-shadows", .flag = &r->no_shadows},
+        {"matte", .flag = &r->matte},
         {"frame", .integer = &r->frame, .low = 32, .high = 1024},
         {"mask", .text = &r->mask},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
-        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"photo-exposure", .take = photo_take_exposure, .into = &r->params},
         {"model", .text = &r->weights},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
@@ -134,25 +244,22 @@ static status parse(int *argc, char ***argv, request *r)
     return check(r);
 }
 
-static status read_lights(request *r)
+/* Those of a list, too. */
+static status check_lamps(const request *r)
 {
-    if (!r->list) return OK;
-    light_list more;
-    status s = light_list_read(r->list, &more);
-    if (s != OK) return s;
-    for (size_t i = 0; i < more.count && s == OK; i++)
-        s = light_list_add(&r->lights, more.at[i]);
-    light_list_free(&more);
-    return s;
+    status s = OK;
+    if (r->env && r->orbit && r->lamps.count > 1)
+        return fail(ERROR_USAGE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
+    for (size_t i = 0; i < r->lamps.count && s == OK; i++)
+        s = stage_check(r->how, &r->lamps.at[i], r->env);
+    if (s == OK && r->env && r->lamps.count == 0) s = stage_check(r->how, NULL, true);
+    return s == OK ? check_standard_output(r) : s;
 }
 
-/* Those of a list, too. */
-static status check_lights(const request *r)
+static status read_lamps(request *r)
 {
-    if (!r->env) return OK;
-    if (r->orbit && r->lights.count > 1)
-        return fail(ERROR_USAGE, "an --orbit of the --env goes round beside one --light, not %zu", r->lights.count);
-    return stage_check(r->how, r->lights.count > 0);
+    status s = r->list ? lamp_read_list(r->list, r->dome.near, &r->lamps) : OK;
+    return s == OK ? check_lamps(r) : s;
 }
 
 /* From a folder of estimate's or stereo's, or by estimating now. */
@@ -166,31 +273,58 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     return s;
 }
 
-static status print_json(const request *r, const relight_job *job, const staged_files *written, double seconds)
+/* ---- what is said of it ---- */
+
+static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
+    if (result->burnt == 0) return;
+    char of_several[96] = "";
+    if (result->pictures > 1)
+        snprintf(of_several, sizeof of_several, " at most, %zu of %zu pictures more than %.0f %%", result->burnt,
+                 result->pictures, 100 * RELIGHT_MUCH_BURNT_OUT);
+    warnings_add(doubts, "relit_burnt_out", "%.0f %% of the object is burnt out when relit%s: darken it by %s",
+                 100 * result->burnt_out, of_several,
+                 job->exposing == RELIGHT_AS_SOURCE ? "--exposure auto or an EV below 0" : "--exposure EV");
+}
+
+static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
+{
+    warnings doubts = {0};
     cJSON *report = cJSON_CreateObject();
+    find_doubts(job, result, &doubts);
     json_line_text(report, "input", r->input);
-    json_line_files(report, job->output, written->at, written->count);
-    cJSON_AddNumberToObject(report, "lights", (double)job->lights.count);
+    json_line_files(report, job->output, result->files.at, result->files.count);
+    cJSON_AddNumberToObject(report, "lights", (double)job->lamps.count);
     cJSON_AddNumberToObject(report, "orbit", job->orbit);
-    cJSON_AddNumberToObject(report, "dome", job->dome);
+    cJSON_AddNumberToObject(report, "dome", job->dome.count);
     cJSON_AddStringToObject(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
     cJSON_AddStringToObject(report, "model", merlin_model_name(job->model));
+    cJSON_AddNumberToObject(report, "exposure", round(100 * (double)result->ev) / 100);
+    cJSON_AddNumberToObject(report, "burnt_out", round(1e4 * result->burnt_out) / 1e4);
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    cJSON_AddItemToObject(report, "warnings", warnings_json(&doubts));
     status s = json_line_print(report);
     cJSON_Delete(report);
     return s;
 }
 
-static status announce(const request *r, const relight_job *job, const staged_files *written, double seconds)
+static status announce(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
-    if (r->json) return print_json(r, job, written, seconds);
-    if (!r->quiet) printf("%s: %s (%.2f s)\n", r->input, job->output, seconds);
+    warnings doubts = {0};
+    find_doubts(job, result, &doubts);
+    if (!r->quiet) warnings_print(&doubts, "relight", r->input, WARNINGS_MOST);
+    if (r->json) return print_json(r, job, result, seconds);
+    if (r->quiet || to_standard_output(r)) return OK;
+    printf("%s: %s (%.2f s", r->input, job->output, seconds);
+    if (fabsf(result->ev) >= 0.005f) printf(", exposure %+.2f EV", (double)result->ev);
+    puts(")");
     return OK;
 }
 
+/* ---- the work ---- */
+
 /* Where there is something to wait for. */
-static status write_all(const request *r, const relight_job *job, staged_files *written)
+static status write_all(const request *r, const relight_job *job, relight_result *result)
 {
     enum { SOON_DONE = 8 };
     progress p;
@@ -198,24 +332,37 @@ static status write_all(const request *r, const relight_job *job, staged_files *
     size_t count = relight_count(job);
     progress_begin(&p, "relighting", "pictures", 0, count, r->quiet || count <= SOON_DONE);
     watched.progress = &p;
-    status s = relight_output(&watched, written);
+    status s = to_standard_output(r) ? relight_print(&watched, result) : relight_output(&watched, result);
     progress_end(&p);
     return s;
+}
+
+static relight_job job_of(const request *r, const char *output)
+{
+    bool captured = stereo_maps_in(r->input);
+    relight_job job = {.output = output,
+                       .lamps = r->lamps,
+                       .how = r->how,
+                       .matte = r->matte || captured,
+                       .format = r->format,
+                       .ev = r->exposing.ev,
+                       .dome = r->dome,
+                       .orbit = r->orbit,
+                       .frame = r->frame,
+                       .stop = cli_interrupted};
+    if (r->exposing.automatic || (!r->exposing.given && r->dome.count))
+        job.exposing = RELIGHT_AUTO;
+    else if (!r->exposing.given && captured)
+        job.exposing = RELIGHT_BY_LAMPS;
+    return job;
 }
 
 static status relight(const request *r, const char *weights, const char *output)
 {
     double began = clock_seconds();
-    staged_files written = {0};
-    relight_job job = {.output = output,
-                       .inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list},
-                       .lights = r->lights,
-                       .how = r->how,
-                       .dome = r->dome,
-                       .lp = r->lp,
-                       .orbit = r->orbit,
-                       .frame = r->frame,
-                       .stop = cli_interrupted};
+    relight_result result = {0};
+    relight_job job = job_of(r, output);
+    job.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list};
     merlin_maps maps = {0};
     merlin_environment *environment = NULL;
     status s = OK;
@@ -224,9 +371,9 @@ static status relight(const request *r, const char *weights, const char *output)
     if (s == OK) s = (status)merlin_model_open(weights, &job.model);
     if (s == OK) s = get_maps(r, job.model, &maps);
     job.maps = &maps;
-    if (s == OK) s = write_all(r, &job, &written);
-    if (s == OK) s = announce(r, &job, &written, clock_seconds() - began);
-    staged_files_free(&written);
+    if (s == OK) s = write_all(r, &job, &result);
+    if (s == OK) s = announce(r, &job, &result, clock_seconds() - began);
+    staged_files_free(&result.files);
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
     merlin_environment_free(environment);
@@ -236,9 +383,8 @@ static status relight(const request *r, const char *weights, const char *output)
 static status run(request *r)
 {
     char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
-    status s = output ? read_lights(r) : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = output ? read_lamps(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
-    if (s == OK) s = check_lights(r);
     if (s == OK) s = photo_find_model(r->weights, &weights);
     if (s == OK) s = relight(r, weights, output);
     free(weights);
@@ -248,18 +394,19 @@ static status run(request *r)
 
 int cmd_relight(int argc, char **argv)
 {
-    request r = {.params = merlin_params_default()};
+    request r = {.params = merlin_params_default(), .lamps = lamp_options_new()};
     r.params.stop = cli_interrupted;
     int code = 0;
     if (parse(&argc, &argv, &r) != OK) {
         code = cli_usage("relight", "%s", status_message());
     } else if (r.help) {
         fputs(help, stdout);
+        fputs(help_on_options, stdout);
     } else {
         cli_catch_interrupts();
         status s = run(&r);
         if (s != OK) code = cli_fail("relight", s);
     }
-    light_list_free(&r.lights);
+    lamp_options_free(&r.lamps);
     return code;
 }

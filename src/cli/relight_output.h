@@ -1,27 +1,45 @@
-/* The files of merlin relight: a picture a light or environment, frames and animations of an orbit, contact sheets. */
+/* The files of merlin relight: a picture a light or environment, domes, frames and animations of an orbit, contact
+ * sheets. */
 #ifndef MERLIN_CLI_RELIGHT_OUTPUT_H
 #define MERLIN_CLI_RELIGHT_OUTPUT_H
 
 #include <stdbool.h>
 
-#include "base/light_list.h"
 #include "base/progress.h"
 #include "base/status.h"
+#include "cli/lamps.h"
 #include "estimate/staging.h"
+#include "image/write.h"
 #include "merlin/merlin.h"
 
 enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
+
+/* How bright pictures become. */
+typedef enum relight_exposing {
+    RELIGHT_AS_SOURCE, /* as the photograph was exposed; as lamps of power 1 would have it at distance 1 */
+    RELIGHT_BY_LAMPS,  /* so that the brightest stays below white, were all lamps of power 1 and white */
+    RELIGHT_AUTO,      /* so that the brightest stays below white */
+} relight_exposing;
+
+typedef struct relight_dome {
+    int count;  /* pictures under a dome of lights, of the photograph's size; 0: none */
+    bool lp;    /* and a list of the lights' directions for RTI viewers */
+    float near; /* how far from (0, 0, -1) the lamps stand; 0: far away */
+} relight_dome;
 
 typedef struct relight_job {
     merlin_model *model;
     merlin_maps *maps;                     /* but for the mask they are let go when nothing needs them any more */
     const char *output;                    /* folder */
     const char *const *inputs;             /* as in staging_begin */
-    light_list lights;                     /* relit_000.png …, of the photograph's size */
+    lamp_options lamps;                    /* relit_000 …, of the photograph's size */
     const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
     merlin_relighting how;
-    int dome;  /* pictures under a dome of lights, of the photograph's size; 0: none */
-    bool lp;   /* and a list of the dome's lights for RTI viewers */
+    bool matte;
+    img_file_kind format; /* of the photograph's size */
+    relight_exposing exposing;
+    float ev; /* stops brighter than that */
+    relight_dome dome;
     int orbit; /* frames; 0: none. Under an environment that goes round, beside the first of the lights if any; else the
                 * light does */
     int frame; /* their side; 0: the crop's, at most 512 */
@@ -29,10 +47,23 @@ typedef struct relight_job {
     progress *progress; /* moves on by one for each of relight_count */
 } relight_job;
 
+/* What became of it. */
+typedef struct relight_result {
+    staged_files files;
+    float ev;         /* stops by which the pictures are brighter than RELIGHT_AS_SOURCE has them */
+    double burnt_out; /* largest share of the object's pixels, of all pictures, with a channel at white */
+    size_t pictures;  /* how many there are, */
+    size_t burnt;     /* and with RELIGHT_MUCH_BURNT_OUT or more */
+} relight_result;
+
+#define RELIGHT_MUCH_BURNT_OUT 0.05
+
 /* How many pictures of the object it takes. */
 size_t relight_count(const relight_job *job);
 
-/* All files, their paths added to *written, or none; ERROR_STOPPED if stop said so. */
-status relight_output(const relight_job *job, staged_files *written);
+/* All files, or none; ERROR_STOPPED if stop said so. */
+status relight_output(const relight_job *job, relight_result *result);
+/* The job's one picture to standard output, a file's bytes. */
+status relight_print(const relight_job *job, relight_result *result);
 
 #endif

@@ -6,11 +6,13 @@
 
 #include "base/file.h"
 #include "estimate/api.h"
-#include "eval/normal_frame.h"
 #include "model/model.h"
 #include "optics/camera.h"
+#include "optics/light.h"
 
 enum { FRAME = 256 };
+/* Radiance of a white matte surface that faces a lamp at distance 1. */
+static const float WHITE = LIGHT_POWER / BRDF_PI;
 /* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
 static const float nearest = 0.25f;
 
@@ -35,6 +37,34 @@ static bool is_object(const merlin_maps *maps, size_t i)
     return maps->mask.data[i] >= 0.5f;
 }
 
+/* The unit of a capture's albedo is that of its lights' strengths, which may be any: its bright parts are brought
+ * between a dark grey's and white's, if they are not there. */
+static const float BRIGHT_PART = 0.999f, LEAST_BRIGHT = 0.2f, MOST_BRIGHT = 1;
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static status normalize_albedo(merlin_maps *maps)
+{
+    size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0;
+    float *brightest = malloc(pixels * sizeof *brightest), *albedo = maps->albedo.data;
+    if (!brightest) return fail(ERROR_MEMORY, "no memory to look at the albedo");
+    for (size_t i = 0; i < pixels; i++) {
+        float most = fmaxf(fmaxf(albedo[3 * i], albedo[3 * i + 1]), albedo[3 * i + 2]);
+        if (is_object(maps, i) && most > 0) brightest[count++] = most;
+    }
+    qsort(brightest, count, sizeof *brightest, compare_floats);
+    float bright = count ? brightest[(size_t)(BRIGHT_PART * (float)(count - 1))] : MOST_BRIGHT;
+    free(brightest);
+    float scale = fminf(fmaxf(bright, LEAST_BRIGHT), MOST_BRIGHT) / bright;
+    for (size_t i = 0; i < 3 * pixels && scale != 1; i++)
+        albedo[i] *= scale;
+    return OK;
+}
+
 /* focal: pixels; 0: seen from afar, with depths in pixels. */
 static void place_depth(merlin_maps *maps, float focal, float pitch)
 {
@@ -51,19 +81,8 @@ static void place_depth(merlin_maps *maps, float focal, float pitch)
         maps->depth.data[i] = is_object(maps, i) ? fmaxf(1 + scale * (maps->depth.data[i] - mean), nearest) : 1;
 }
 
-static void turn_normals(merlin_maps *maps, float focal)
-{
-    pst_camera from = {.perspective = focal > 0,
-                       .focal = focal,
-                       .center_x = 0.5f * (float)maps->mask.width,
-                       .center_y = 0.5f * (float)maps->mask.height};
-    pst_camera to = pst_camera_of(maps->crop.side, maps->crop.side, MODEL_FOV);
-    to.center_x += (float)maps->crop.x;
-    to.center_y += (float)maps->crop.y;
-    img normal = img_of(&maps->normal);
-    normal_frame_change(&normal, &from, &to);
-}
-
+/* Into the camera of estimates, which sees it under 60 degrees. The shape stays what it is, and so do its normals:
+ * lights come from where they are said to. */
 static status place(merlin_maps *maps, float focal)
 {
     img mask = img_of(&maps->mask);
@@ -75,7 +94,8 @@ static status place(merlin_maps *maps, float focal)
     maps->crop.side = c.side;
     float pitch = camera_pixel_size(&(camera){c.side, c.side, MODEL_FOV});
     place_depth(maps, focal, pitch);
-    turn_normals(maps, focal);
+    s = normalize_albedo(maps);
+    if (s != OK) return s;
     for (size_t i = 0, pixels = img_value_count(&mask); i < pixels; i++)
         maps->roughness.data[i] = 1;
     maps_tidy(maps);
@@ -84,7 +104,7 @@ static status place(merlin_maps *maps, float focal)
 
 status stereo_maps_read(const char *folder, merlin_maps *out)
 {
-    *out = (merlin_maps){.size = FRAME, .gain = 1, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1};
+    *out = (merlin_maps){.size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1};
     snprintf(out->model, sizeof out->model, "merlin stereo");
     char *path = file_join(folder, "maps.exr");
     if (!path) return fail(ERROR_MEMORY, "no memory for a file name");

@@ -70,13 +70,19 @@ status stage_new(network *n, const merlin_maps *maps, int side, merlin_relightin
 void stage_free(stage *s);
 /* Another side for what follows. After a failure the stage is good for nothing but stage_free. */
 status stage_resize(stage *s, const merlin_maps *maps, int side);
+/* Takes the gloss away, but for what the relighting decoder paints. */
+status stage_make_matte(stage *s);
+/* Measures the white, a radiance, that leaves all but a thousandth of the object's values under these lamps below 1,
+ * and a white matte surface that faces one of them at the object's centre. Shadows and bounces are not looked at, so
+ * that it takes a fraction of the time of a picture. Without lamps: of the stage's environment. */
+status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white);
 /* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
 status stage_surround(stage *s, const env_map *environment);
-/* ERROR_USAGE for a way of relighting that does not exist, or that wants a point light where there is none. */
-status stage_check(merlin_relighting how, bool light);
-/* The square under a point light (NULL: none) and the stage's environment, one of them at least and as stage_check
- * wants it, bounces included: 3 channels in [0, 1] of `white`. */
-status stage_relight(network *n, const stage *s, const vec3 *light, img *out);
+/* ERROR_USAGE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
+status stage_check(merlin_relighting how, const lamp *light, bool environment);
+/* The square under a lamp (NULL: none) and the stage's environment, one of them at least and as stage_check wants it,
+ * bounces included: 3 channels in [0, 1] of `white`. */
+status stage_relight(network *n, const stage *s, const lamp *light, img *out);
 
 /* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
 typedef struct maps_output {

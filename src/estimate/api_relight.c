@@ -12,10 +12,10 @@ struct merlin_stage {
 };
 
 /* Copies the light, if there is one. */
-static status take_light(const float *light, vec3 *place)
+static status take_light(const float *light, lamp *place)
 {
     if (!light) return OK;
-    *place = vec3_of(light);
+    *place = lamp_at(vec3_of(light));
     if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
     return fail(ERROR_USAGE, "the light's position is not finite");
 }
@@ -34,11 +34,11 @@ static status put_back(const merlin_maps *maps, const img *square, const img *ma
 static status relight_maps(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
                            merlin_relighting how, merlin_image *out)
 {
-    vec3 place;
+    lamp place;
     stage st;
     img square = {0};
     status s = take_light(light, &place);
-    if (s == OK) s = stage_check(how, light);
+    if (s == OK) s = stage_check(how, light ? &place : NULL, environment);
     if (s == OK) s = stage_new(model->network, maps, 0, how, &st);
     if (s != OK) return s;
     s = stage_surround(&st, environment);
@@ -75,7 +75,8 @@ merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int
 {
     if (out) *out = NULL;
     status s = api_needs(__func__, model && maps && out);
-    if (s == OK) s = stage_check(how, true);
+    const lamp flash = lamp_at(vec3_make(0, 0, 0));
+    if (s == OK) s = stage_check(how, &flash, false);
     if (s == OK && (side < 0 || side > LARGEST_SIDE))
         s = fail(ERROR_USAGE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE, side);
     if (s != OK) return result_of(s);
@@ -97,10 +98,10 @@ merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const m
     status s = api_needs(__func__, st && out);
     if (s == OK && !light && !environment)
         s = fail(ERROR_USAGE, "neither a light nor an environment to relight the stage by");
-    vec3 place;
+    lamp place;
     img square = {0};
     if (s == OK) s = take_light(light, &place);
-    if (s == OK) s = stage_check(st->stage.how, light);
+    if (s == OK) s = stage_check(st->stage.how, light ? &place : NULL, environment);
     if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
     if (s == OK) s = stage_relight(st->network, &st->stage, light ? &place : NULL, &square);
     if (s != OK) return result_of(s);

@@ -114,8 +114,8 @@ status maps_read_layers(exr_file *f, bool photographed, merlin_maps *maps)
 
 void maps_tidy(merlin_maps *maps)
 {
-    surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness), img_of(&maps->depth),
-                   img_of(&maps->mask)};
+    surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness),
+                   img_of(&maps->depth),  img_of(&maps->mask),   .matte = false};
     surface_tidy(&all);
     img photo = img_of(&maps->photo);
     img_blacken_impossible(&photo);

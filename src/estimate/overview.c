@@ -57,8 +57,9 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
     if (s == OK) s = show_reconstruction(maps, white, &o->reconstruction);
-    if (s == OK) s = stage_relight(n, &o->stage, &from_left, &o->left);
-    if (s == OK) s = stage_relight(n, &o->stage, &from_right, &o->right);
+    const lamp left = lamp_at(from_left), right = lamp_at(from_right);
+    if (s == OK) s = stage_relight(n, &o->stage, &left, &o->left);
+    if (s == OK) s = stage_relight(n, &o->stage, &right, &o->right);
     return s;
 }
 

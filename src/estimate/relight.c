@@ -22,12 +22,13 @@ static int least(int a, int b)
 }
 
 /* From twice as many points a side as the caster has, as long as the picture shows them. */
-static status cast_shadows(const stage *s, vec3 light, img *full, img *low)
+static status cast_shadows(const stage *s, const lamp *light, img *full, img *low)
 {
-    if (vec3_dot(light, light) < 1e-12f) return OK; /* the camera sees nothing that its flash does not */
+    bool flash = !light->distant && vec3_dot(light->at, light->at) < 1e-12f;
+    if (flash) return OK; /* the camera sees nothing that its flash does not */
     int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
     img seen = {0};
-    status result = shadow_cast(&s->caster, light, side, side, &seen);
+    status result = shadow_cast_lamp(&s->caster, light, side, side, &seen);
     if (result != OK) return result;
     shadow_darken(&seen, full);
     shadow_darken(&seen, low);
@@ -36,17 +37,17 @@ static status cast_shadows(const stage *s, vec3 light, img *full, img *low)
 }
 
 /* Bounce 1 at both sizes. */
-static status light_by_brdf(const stage *s, vec3 light, img *full, img *low)
+static status light_by_brdf(const stage *s, const lamp *light, img *full, img *low)
 {
-    status result = surface_shade(&s->full, light, full);
-    if (result == OK) result = surface_shade(&s->low, light, low);
+    status result = surface_shade_lamp(&s->full, light, full);
+    if (result == OK) result = surface_shade_lamp(&s->low, light, low);
     if (result == OK && s->how == MERLIN_BY_BRDF) result = cast_shadows(s, light, full, low);
     return result;
 }
 
-static status light_by_network(network *n, const stage *s, vec3 light, img *full, img *low)
+static status light_by_network(network *n, const stage *s, const lamp *light, img *full, img *low)
 {
-    illumination both = {light, s->environment ? (const float(*)[3])s->environment->sh : NULL};
+    illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->look, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     /* enlarged or not, it goes on beside the object */
@@ -69,7 +70,7 @@ static status add_environment(const stage *s, img *low, img *full, img *ambient)
     } else {
         surface_add_ambient(&s->full, sh, full);
     }
-    surface_add_reflections(&s->full, env, NULL, full);
+    if (!s->full.matte) surface_add_reflections(&s->full, env, NULL, full);
     return OK;
 }
 
@@ -96,9 +97,24 @@ static void expose(img *radiance, float white)
         if (radiance->data[i] != 0) radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
 }
 
-static status light_by_point(network *n, const stage *s, vec3 light, img *full, img *low)
+static status light_by_lamp(network *n, const stage *s, const lamp *light, img *full, img *low)
 {
     return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
+}
+
+/* All light is in proportion to the lamp's; the network is asked of a white one of the power it was taught by. */
+static void dye(vec3 tint, img *radiance)
+{
+    if (tint.x == 1 && tint.y == 1 && tint.z == 1) return;
+    for (size_t i = 0; i < img_value_count(radiance); i += 3) {
+        float *value = radiance->data + i;
+        if (value[0] != 0 || value[1] != 0 || value[2] != 0) vec3_put(vec3_mul(vec3_of(value), tint), value);
+    }
+}
+
+static bool is_plain(const lamp *light)
+{
+    return !light->distant && light->tint.x == 1 && light->tint.y == 1 && light->tint.z == 1;
 }
 
 static status dark(const stage *s, img *full, img *low)
@@ -107,22 +123,40 @@ static status dark(const stage *s, img *full, img *low)
     return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
 }
 
-status stage_check(merlin_relighting how, bool light)
+status stage_check(merlin_relighting how, const lamp *light, bool environment)
 {
     if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
         return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
-    if (how != MERLIN_BY_NETWORK || light) return OK;
-    return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
+    if (how != MERLIN_BY_NETWORK) return OK;
+    if (!light)
+        return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
+    if (light->distant) return fail(ERROR_USAGE, "the relighting decoder knows no distant lights; relight by BRDF");
+    if (environment && !is_plain(light))
+        return fail(ERROR_USAGE, "beside an environment the relighting decoder knows white light of power 1 alone; "
+                                 "relight by BRDF");
+    return OK;
 }
 
-status stage_relight(network *n, const stage *s, const vec3 *light, img *out)
+/* By the lamp, bounces included, where these can be told from the environment's: in parts that can be dyed. */
+static status add_lamp(network *n, const stage *s, const lamp *light, bool alone, img *full, img *low)
+{
+    const img none = {0};
+    status result = light_by_lamp(n, s, light, full, low);
+    if (result == OK && alone) result = add_indirect(n, s, low, &none, full);
+    if (result != OK) return result;
+    dye(light->tint, full);
+    if (!alone) dye(light->tint, low);
+    return OK;
+}
+
+status stage_relight(network *n, const stage *s, const lamp *light, img *out)
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
-    bool shadows = s->environment && s->how == MERLIN_BY_BRDF;
-    status result = light ? light_by_point(n, s, *light, out, &low) : dark(s, out, &low);
-    if (result == OK && s->environment && !shadows) result = add_environment(s, &low, out, &ambient);
-    if (result == OK && (light || !shadows)) result = add_indirect(n, s, &low, &ambient, out);
+    bool shadows = s->environment && s->how == MERLIN_BY_BRDF, joint = s->environment && !shadows;
+    status result = light ? add_lamp(n, s, light, !joint, out, &low) : dark(s, out, &low);
+    if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
+    if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);
     /* with its shadows and a bounce nothing of an environment's light is left to the network */
     if (result == OK && shadows)
         result = surface_add_shadowed_environment(&s->full, &s->low, &s->horizon, s->environment, out);

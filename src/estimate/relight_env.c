@@ -170,7 +170,7 @@ status surface_add_shadowed_environment(const surface *s, const surface *coarse,
         surface_add_ambient(s, (const float(*)[3])env->sh, &diffuse);
         shadow_darken(&share, &diffuse);
         img_add(&diffuse, image);
-        surface_add_reflections(s, env, h, image);
+        if (!s->matte) surface_add_reflections(s, env, h, image);
     }
     img_free(&diffuse);
     img_free(&share);

@@ -112,13 +112,19 @@ static float steps_inside(float from, float step, int size)
     return ((step > 0 ? (float)size - 0.5f : -0.5f) - from) / step;
 }
 
+/* Where a ray to a distant light may end: nothing that is seen reaches further. */
+static vec3 way_to(const shadow_caster *c, vec3 p, const lamp *l)
+{
+    return l->distant ? vec3_scale(l->at, 4 * c->farthest) : vec3_sub(l->at, p);
+}
+
 /* False if nothing can be met. */
-static bool march_begin(const shadow_caster *c, float x, float y, vec3 light, march *m)
+static bool march_begin(const shadow_caster *c, float x, float y, const lamp *l, march *m)
 {
     corners around = corners_of(&c->depth, x, y);
     float depth = value_at(&c->depth, &around, 0);
     camera view = {c->depth.width, c->depth.height, c->fov};
-    vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = vec3_sub(light, p);
+    vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = way_to(c, p, l);
     float part = part_with_occluders(c, p, to_light);
     if (!(part > 0)) return false;
     vec3 end = vec3_fma(p, part, to_light);
@@ -202,7 +208,7 @@ static float hidden(const shadow_caster *c, const march *m)
 
 typedef struct cast {
     const shadow_caster *caster;
-    vec3 light;
+    const lamp *light;
     img *seen;
 } cast;
 
@@ -235,6 +241,12 @@ static void cast_row(void *context, size_t row)
 }
 
 status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen)
+{
+    lamp near = lamp_at(light);
+    return shadow_cast_lamp(caster, &near, width, height, seen);
+}
+
+status shadow_cast_lamp(const shadow_caster *caster, const lamp *light, int width, int height, img *seen)
 {
     status s = img_new(seen, width, height, 1);
     if (s != OK) return s;

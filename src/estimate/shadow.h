@@ -19,6 +19,7 @@
 
 #include "base/vec.h"
 #include "image/image.h"
+#include "optics/light.h"
 
 /* Of what is seen, in scene units, of which an object is about one wide. Found by trying on samples with path-traced
  * shadows (docs/evaluation.md). */
@@ -39,6 +40,8 @@ void shadow_caster_free(shadow_caster *caster);
  * of the same frame. Pixels off the surface, and those whose normal turns away from the light, may hold anything there.
  */
 status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen);
+/* The same of a lamp, near or distant. */
+status shadow_cast_lamp(const shadow_caster *caster, const lamp *light, int width, int height, img *seen);
 
 /* image (any size of the same frame, any channels) times seen (1 channel, or as many), interpolated. */
 void shadow_darken(const img *seen, img *image);

@@ -150,10 +150,12 @@ static status take_full(const merlin_maps *maps, const img *mask, int side, surf
 status stage_resize(stage *s, const merlin_maps *maps, int side)
 {
     img mask = {0};
+    bool matte = s->full.matte;
     surface_free(&s->full);
     status result = maps_check(maps);
     if (result == OK) result = take_mask(maps, &mask);
     if (result == OK) result = take_full(maps, &mask, side, &s->full);
+    s->full.matte = matte;
     img_free(&mask);
     return result;
 }
@@ -182,6 +184,13 @@ status stage_new(network *n, const merlin_maps *maps, int side, merlin_relightin
     img_free(&mask);
     if (s != OK) stage_free(out);
     return s;
+}
+
+status stage_make_matte(stage *s)
+{
+    s->full.matte = s->low.matte = true;
+    img_free(&s->flash);
+    return surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
 }
 
 status stage_surround(stage *s, const env_map *environment)

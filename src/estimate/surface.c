@@ -10,7 +10,6 @@
 #include "image/resize.h"
 #include "model/model.h"
 #include "optics/camera.h"
-#include "optics/light.h"
 
 static const float LEAST_ROUGHNESS = 0.03f, LEAST_DEPTH = 0.05f, LARGEST_DEPTH = 20.0f;
 /* Normals at the very silhouette are grazing, not behind it. */
@@ -232,21 +231,23 @@ typedef struct shading {
     const float *albedo, *normal, *roughness, *depth, *mask;
     vec3 light, first; /* first: of the row's first pixel, at depth 1 */
     float step;        /* from there to the next */
+    float afar;        /* 1: the light stands so from every pixel's point; 0: from the camera */
 } shading;
 
 /* GCC makes vectors of a loop only where nothing declared in it has its address taken: its body is a function. */
-ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, float *out)
+ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, bool matte, float *out)
 {
+    const vec3 ray = vec3_make(s->first.x + (float)x * s->step, s->first.y, s->first.z);
     shade_input in = {
         .albedo = vec3_of(s->albedo + 3 * i),
         .roughness = s->roughness[i],
         .normal = vec3_of(s->normal + 3 * i),
         .depth = s->depth[i],
-        .ray = vec3_make(s->first.x + (float)x * s->step, s->first.y, s->first.z),
-        .light = s->light,
+        .ray = ray,
+        .light = vec3_fma(s->light, s->afar * s->depth[i], ray),
         .power = LIGHT_POWER,
     };
-    vec3 radiance = vec3_scale(shade_point(&in), s->mask[i]);
+    vec3 radiance = vec3_scale(matte ? shade_point_matte(&in) : shade_point(&in), s->mask[i]);
     out[3 * i] += radiance.x;
     out[3 * i + 1] += radiance.y;
     out[3 * i + 2] += radiance.z;
@@ -255,6 +256,7 @@ ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, float *out)
 typedef struct lighting {
     const surface *s;
     vec3 light;
+    bool distant;
     img *out;
 } lighting;
 
@@ -269,28 +271,45 @@ static void shade_rows(void *context, size_t begin, size_t end)
                    s->depth.data,
                    s->mask.data,
                    job->light,
-                   .step = camera_pixel_size(&view)};
+                   .step = camera_pixel_size(&view),
+                   .afar = job->distant ? 1 : 0};
     float *out = job->out->data;
     for (size_t y = begin; y < end; y++) {
         const img_span span = img_row_span(&s->mask, (int)y);
         const size_t at = y * (size_t)s->mask.width;
         row.first = camera_point(&view, 0.5f, (float)y + 0.5f, 1);
         const shading of = row;
+        if (s->matte) {
+#pragma omp simd
+            for (int x = span.first; x < span.end; x++)
+                shade_pixel(&of, at + (size_t)x, x, true, out);
+            continue;
+        }
 #pragma omp simd
         for (int x = span.first; x < span.end; x++)
-            shade_pixel(&of, at + (size_t)x, x, out);
+            shade_pixel(&of, at + (size_t)x, x, false, out);
     }
+}
+
+static void add_light(lighting *job)
+{
+    parallel_blocks((size_t)job->s->mask.height, shade_rows, job);
 }
 
 void surface_add_light(const surface *s, vec3 light, img *out)
 {
-    lighting job = {s, light, out};
-    parallel_blocks((size_t)s->mask.height, shade_rows, &job);
+    add_light(&(lighting){.s = s, .light = light, .out = out});
 }
 
 status surface_shade(const surface *s, vec3 light, img *out)
 {
+    lamp near = lamp_at(light);
+    return surface_shade_lamp(s, &near, out);
+}
+
+status surface_shade_lamp(const surface *s, const lamp *l, img *out)
+{
     status result = img_new(out, s->mask.width, s->mask.height, 3);
-    if (result == OK) surface_add_light(s, light, out);
+    if (result == OK) add_light(&(lighting){s, l->at, l->distant, out});
     return result;
 }

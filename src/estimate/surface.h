@@ -11,8 +11,11 @@
 #ifndef MERLIN_ESTIMATE_SURFACE_H
 #define MERLIN_ESTIMATE_SURFACE_H
 
+#include <stdbool.h>
+
 #include "base/vec.h"
 #include "image/image.h"
+#include "optics/light.h"
 
 /* Degrees. */
 #define SURFACE_FOV 60.0f
@@ -23,6 +26,7 @@ typedef struct surface {
     img roughness; /* 1 */
     img depth;     /* 1 */
     img mask;      /* 1, coverage */
+    bool matte;    /* lamps light its diffuse part alone */
 } surface;
 
 /* Zero maps of width × height. */
@@ -53,6 +57,8 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
 
 /* Radiance under a point light of the training data's power at `light`, before clipping, times coverage; no shadows. */
 status surface_shade(const surface *s, vec3 light, img *out);
+/* Under a lamp, near or distant, as if its tint were white. */
+status surface_shade_lamp(const surface *s, const lamp *l, img *out);
 /* The same, added to what out holds already. */
 void surface_add_light(const surface *s, vec3 light, img *out);
 

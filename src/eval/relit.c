@@ -21,9 +21,9 @@ static status relight_all(merlin_model *model, const stage *st, int (*stop)(void
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
         if (stop && stop()) return fail(ERROR_STOPPED, "stopped");
         img picture = {0};
-        vec3 light = light_at(i);
+        const lamp light = lamp_at(light_at(i));
         s = stage_relight(model->network, st, &light, &picture);
-        if (s == OK) s = near_capture_add(c, &picture, light);
+        if (s == OK) s = near_capture_add(c, &picture, light.at);
         img_free(&picture);
     }
     return s;

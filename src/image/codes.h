@@ -3,6 +3,8 @@
 #define MERLIN_IMAGE_CODES_H
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "base/status.h"
 
@@ -16,5 +18,7 @@ typedef struct code_rows {
 } code_rows;
 
 status codes_write_png(const char *path, const code_rows *p);
+/* The same into memory, malloc'ed; messages call it by name. */
+status codes_encode_png(const char *name, const code_rows *p, uint8_t **data, size_t *size);
 
 #endif

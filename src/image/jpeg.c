@@ -6,6 +6,8 @@
 
 #include <jpeglib.h>
 
+#include "image/color.h"
+
 /* The library leaves by longjmp instead of ending the process. */
 typedef struct failure {
     struct jpeg_error_mgr manager; /* first: the library knows no more of it */
@@ -62,6 +64,26 @@ static bool compress(uint8_t *rgb, int width, int height, const img_jpeg *how, b
     jpeg_finish_compress(&c);
     jpeg_destroy_compress(&c);
     return true;
+}
+
+status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *size)
+{
+    const img_jpeg how = {.quality = 95};
+    if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
+        return fail(ERROR_USAGE, "cannot write %s: a JPEG is at most %ld pixels wide and high", name,
+                    (long)JPEG_MAX_DIMENSION);
+    bytes made = {0};
+    uint8_t *rgb = malloc(img_value_count(image));
+    if (rgb) srgb_codes8(image->data, img_value_count(image), rgb);
+    bool done = rgb && compress(rgb, image->width, image->height, &how, &made);
+    free(rgb);
+    if (!done) {
+        free(made.data);
+        made = (bytes){0};
+    }
+    *data = made.data;
+    *size = made.size;
+    return done ? OK : fail(ERROR_MEMORY, "no memory to write %s", name);
 }
 
 static bool decompress(const bytes *from, int width, uint8_t *rgb)

@@ -91,7 +91,7 @@ static uint8_t *filter(const code_rows *p, size_t *size)
 }
 
 /* Head, the rows compressed, end. */
-static status encode(const char *path, const code_rows *p, uint8_t **data, size_t *size)
+status codes_encode_png(const char *name, const code_rows *p, uint8_t **data, size_t *size)
 {
     size_t filtered;
     uint8_t *rows = filter(p, &filtered);
@@ -100,9 +100,9 @@ static status encode(const char *path, const code_rows *p, uint8_t **data, size_
     status s = OK;
     *data = NULL;
     if (room > INT32_MAX)
-        s = fail(ERROR_USAGE, "cannot write %s: %d x %d pixels are too many for a PNG", path, p->width, p->height);
+        s = fail(ERROR_USAGE, "cannot write %s: %d x %d pixels are too many for a PNG", name, p->width, p->height);
     else if (!rows || !packer || !(*data = malloc(HEAD + room + 2 * CHUNK)))
-        s = fail(ERROR_MEMORY, "no memory to write %s", path);
+        s = fail(ERROR_MEMORY, "no memory to write %s", name);
     if (s == OK) {
         uint8_t *to = put_head(*data, p);
         packed = libdeflate_zlib_compress(packer, rows, filtered, to + CHUNK_CONTENT, room);
@@ -118,7 +118,7 @@ status codes_write_png(const char *path, const code_rows *p)
 {
     uint8_t *data;
     size_t size = 0;
-    status s = encode(path, p, &data, &size);
+    status s = codes_encode_png(path, p, &data, &size);
     if (s == OK) s = file_write(path, data, size);
     free(data);
     return s;

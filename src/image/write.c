@@ -1,10 +1,13 @@
 #include "image/write.h"
 
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "image/codes.h"
 #include "image/color.h"
+#include "image/jpeg.h"
 
 static float unit(float x)
 {
@@ -51,18 +54,49 @@ static void encode_row(const void *context, int y, void *codes)
     }
 }
 
+static code_rows rows_of(const encoding_job *job)
+{
+    return (code_rows){job->image->width,
+                       job->image->height,
+                       job->image->channels,
+                       job->encoding == IMG_LINEAR16,
+                       job->encoding == IMG_SRGB8,
+                       encode_row,
+                       job};
+}
+
 status img_write_png_changed(const char *path, const img *image, img_encoding encoding, img_change change,
                              const void *context)
 {
     if (!image->data || (image->channels != 1 && image->channels != 3))
         return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
     encoding_job job = {image, encoding, change, context};
-    code_rows rows = {image->width, image->height, image->channels, encoding == IMG_LINEAR16, encoding == IMG_SRGB8,
-                      encode_row,   &job};
+    code_rows rows = rows_of(&job);
     return codes_write_png(path, &rows);
 }
 
 status img_write_png(const char *path, const img *image, img_encoding encoding)
 {
     return img_write_png_changed(path, image, encoding, NULL, NULL);
+}
+
+status img_encode_picture(const char *name, const img *image, img_file_kind kind, uint8_t **data, size_t *size)
+{
+    *data = NULL;
+    if (!image->data || image->channels != 3)
+        return fail(ERROR_USAGE, "cannot write %s: a picture has 3 channels, not %d", name, image->channels);
+    if (kind == IMG_JPEG) return jpeg_encode(name, image, data, size);
+    encoding_job job = {.image = image, .encoding = IMG_SRGB8};
+    code_rows rows = rows_of(&job);
+    return codes_encode_png(name, &rows, data, size);
+}
+
+status img_write_picture(const char *path, const img *image, img_file_kind kind)
+{
+    uint8_t *data;
+    size_t size = 0;
+    status s = img_encode_picture(path, image, kind, &data, &size);
+    if (s == OK) s = file_write(path, data, size);
+    free(data);
+    return s;
 }

@@ -10,12 +10,32 @@
 #ifndef MERLIN_OPTICS_LIGHT_H
 #define MERLIN_OPTICS_LIGHT_H
 
+#include <stdbool.h>
+
 #include "optics/brdf.h"
 
 /* Φ of the training data. */
 #define LIGHT_POWER ((real)5.95)
 /* Squared distances below this count as this: a light inside the surface is not infinitely bright. */
 #define LIGHT_MIN_DISTANCE2 ((real)1e-6)
+
+/* A lamp. A near one sends power Φ from a place. The light of a distant one is parallel, and arrives everywhere as a
+ * near one's does at distance 1: at the object's centre it is as bright as a near one on the frontal hemisphere. */
+typedef struct lamp {
+    vec3 at;      /* its place in camera space; of a distant one the unit direction toward it */
+    bool distant; /* from afar */
+    vec3 tint;    /* its light by channel, times Φ of the training data */
+} lamp;
+
+static inline lamp lamp_at(vec3 place)
+{
+    return (lamp){place, false, {1, 1, 1}};
+}
+
+static inline lamp lamp_toward(vec3 direction)
+{
+    return (lamp){vec3_normalize(direction), true, {1, 1, 1}};
+}
 
 /* What lights an object: a point light, and surroundings beside it. */
 typedef struct illumination {
@@ -81,6 +101,13 @@ static inline vec3 shade_point(const shade_input *in)
     real scale = in->power * t.n_l / t.distance2;
     return vec3_make((in->albedo.x / BRDF_PI + t.specular) * scale, (in->albedo.y / BRDF_PI + t.specular) * scale,
                      (in->albedo.z / BRDF_PI + t.specular) * scale);
+}
+
+/* Radiance of the diffuse part alone. */
+static inline vec3 shade_point_matte(const shade_input *in)
+{
+    shade_terms t = shade_terms_of(in);
+    return vec3_scale(in->albedo, in->power * t.n_l / (BRDF_PI * t.distance2));
 }
 
 /* 1 where x is strictly between the clamps of a cosine, else 0: the derivative of the clamp. */

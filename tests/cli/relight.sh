@@ -44,12 +44,12 @@ echo "--json lists what was written"
 lists_its_files at-once relit.png relit_000.png
 grep -q '"input":"disc.hdr"' stdout || complain "no input in $(cat stdout)"
 succeeds '"dome":3' relight disc.merlin --dome 3 --lp --orbit 2 -o all --json
-lists_its_files all dome.lp dome_00{0..2}.png frame_00{0,1}.png mask.png orbit.{gif,png,webp}
+lists_its_files all dome.lp dome_00{0..2}.png frame_00{0,1}.png mask.webp orbit.{gif,png,webp}
 succeeds '"dome":4' relight disc.merlin --dome 4 -o all --json # no list of three lights stays beside the four pictures
-lists_its_files all dome.lp dome_00{0..3}.png mask.png
+lists_its_files all dome.lp dome_00{0..3}.png mask.webp
 [ "$(head -1 all/dome.lp)" = 4 ] || complain "dome.lp was not renewed: $(cat all/dome.lp)"
 printf '1\nphoto.jpg 0 0 1\n' >all/dome.lp # of other pictures
-succeeds '"dome":3' relight disc.merlin --dome 3 -o all --json
+succeeds '"dome":4' relight disc.merlin --dome 4 -o all --json
 grep -q photo.jpg all/dome.lp || complain "a list of other pictures was replaced: $(cat all/dome.lp)"
 
 echo "what is read is not replaced"

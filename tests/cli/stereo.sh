@@ -15,7 +15,7 @@ files=(maps.exr normal.png albedo.png depth.png mask.png error.png overview.png 
 
 echo "a dome of relit pictures is read back"
 succeeds dome "$MERLIN" relight disc.merlin --dome 6 --lp -o dome
-present dome/dome_00{0..5}.png dome/dome.lp dome/mask.png
+present dome/dome_00{0..5}.png dome/dome.lp dome/mask.webp
 absent dome/dome_006.png
 [ "$(wc -l <dome/dome.lp)" -eq 7 ] || complain "dome.lp is not a count and six lines"
 succeeds '"pictures": *6' stereo dome --method ls --json
@@ -121,7 +121,7 @@ head -4 dome/dome.lp >short.lp
 refuses 1 'short.lp' stereo dome --lights short.lp -o none
 refuses 1 'missing.txt' stereo dome --lights missing.txt -o none
 refuses 1 'missing.png' stereo dome --mask missing.png -o none
-head -c 60 dome/mask.png >cut.png
+head -c 60 dome/dome_000.png >cut.png
 refuses 1 'cut.png' stereo dome --mask cut.png -o none
 cp -r dome sizes
 rm -r sizes/stereo

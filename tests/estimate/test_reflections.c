@@ -40,8 +40,8 @@ static surface ball(float least, float most, float bumps)
 /* A sky, and a lamp of three degrees as strong as all of it. */
 static vec3 lamp_and_sky(vec3 d)
 {
-    static const vec3 lamp = {0.48f, 0.6f, 0.64f};
-    float glow = vec3_dot(d, lamp) > 0.99966f ? 2500 : 0;
+    static const vec3 place = {0.48f, 0.6f, 0.64f};
+    float glow = vec3_dot(d, place) > 0.99966f ? 2500 : 0;
     return vec3_make(1 + glow + 0.5f * d.x, 0.8f + glow + 0.3f * d.y, 0.6f + glow + 0.3f * d.y * d.z);
 }
 

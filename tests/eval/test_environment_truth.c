@@ -46,7 +46,7 @@ static void relit_sphere_agrees_with_the_path_tracer(void **state)
         assert_int_equal(environment_procedural(&r, &env), OK);
         render(&env, &truth);
         assert_int_equal(env_map_new(&env.map, &map), OK);
-        surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask};
+        surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask, .matte = false};
         assert_int_equal(img_new(&image, SIZE, SIZE, 3), OK);
         surface_add_ambient(&s, (const float(*)[3])map.sh, &image);
         surface_add_reflections(&s, &map, NULL, &image);
@@ -117,7 +117,7 @@ static void judge_folded(uint64_t index, double *without, double *with)
     img plain, shadowed;
     double similarity;
     render_folded(index, &truth, &map);
-    surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask};
+    surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask, .matte = false};
     assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, SURFACE_FOV, &caster), OK);
     assert_int_equal(horizon_new(&caster, &h), OK);
     relight_folded(&s, &map, NULL, &plain);
