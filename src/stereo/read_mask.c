@@ -6,7 +6,10 @@
 status pst_find_mask(const char *folder, const char *asked, char **path)
 {
     size_t others;
-    return pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
+    status s = pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
+    bool found = s != OK || *path;
+    /* merlin relight's dome has it so, that other programs do not take it for a picture */
+    return found ? s : pst_find_file(folder, NULL, "mask.webp", ".mask.webp", path, &others);
 }
 
 static status check_mask(const char *path, pst_capture *c)

@@ -67,6 +67,59 @@ for list in lights.txt lights.lp; do
     absent "from-$list/relit_002.png"
 done
 
+echo "one light's picture is relit.png itself, which standard output takes, too"
+cmp -s again/relit.png again/relit_000.png || complain "relit.png of one light is another picture"
+cmp -s disc.merlin/relit/relit.png disc.merlin/relit/relit_000.png || complain "relit.png of one light is a sheet"
+"$MERLIN" relight disc.merlin --light 0.5,0.2,-0.4 -o - >printed 2>stderr || complain "-o - failed: $(cat stderr)"
+cmp -s printed again/relit.png || complain "standard output has another picture"
+"$MERLIN" relight disc.merlin --light 0.5,0.2,-0.4 --format jpg -o - >printed || complain "-o - of a JPEG failed"
+[ "$(head -c 3 printed | od -An -tx1)" = ' ff d8 ff' ] || complain "what is printed is no JPEG"
+refuses 2 'one picture to standard output' relight disc.merlin --light 0,0,0 --light 1,0,0 -o -
+refuses 2 'one picture to standard output' relight disc.merlin --dome 5 -o -
+refuses 2 'no room for --json' relight disc.merlin --light 0,0,0 -o - --json
+[ -e ./- ] && complain "a folder - was made"
+
+echo "lamps far away, stronger, of another colour"
+succeeds afar relight disc.merlin --direction 0.5,0.2,0.6 --direction 5,2,6 -o afar
+cmp -s afar/relit_000.png afar/relit_001.png || complain "a direction's length matters"
+cmp -s afar/relit_000.png again/relit_000.png && complain "far lamps are as near ones"
+relight disc.merlin --power 2 --light 0.5,0.2,-0.4 --light 0.5,0.2,-0.4 --power 1 -o power >stdout || complain "--power failed"
+cmp -s power/relit_001.png again/relit.png || complain "power 1 is another lamp"
+cmp -s power/relit_000.png again/relit.png && complain "power 2 is the same lamp"
+relight disc.merlin --power 2 --light 0.5,0.2,-0.4 --exposure -1 -o halved >stdout || complain "--exposure failed"
+cmp -s halved/relit.png again/relit.png || complain "twice the light at half the exposure is another picture"
+relight disc.merlin --light 0.5,0.2,-0.4 --color '#ffffff' --light 0.5,0.2,-0.4 --color 2700K --light 0.5,0.2,-0.4 \
+    --color 1,0.4,0.1 -o colors >stdout || complain "--color failed"
+cmp -s colors/relit_000.png again/relit.png || complain "white is another light"
+cmp -s colors/relit_000.png colors/relit_001.png && complain "a bulb is white"
+for color in 500K '#ff' 1,2 -1,0,0 0,0,0 red; do refuses 2 '--color' relight disc.merlin --light 0,0,0 --color "$color"; done
+refuses 2 '--power' relight disc.merlin --light 0,0,0 --power 0
+refuses 2 'no length' relight disc.merlin --direction 0,0,0
+refuses 2 'no distant lights' relight disc.merlin --direction 0,0,1 --by network -o none
+succeeds '"burnt_out":0.9.*"code":"relit_burnt_out"' relight disc.merlin --light 0,0,0 --power 1000 -o glare --json
+grep -q '^merlin relight: disc.merlin: 9[0-9] % of the object is burnt out when relit' stderr || complain "no word: $(cat stderr)"
+succeeds '"warnings":\[\]' relight disc.merlin --light 0,0,0 --power 1000 --exposure auto -o glare --json
+
+echo "a list of directions is of far lamps, unless they are to be near"
+succeeds from relight disc.merlin --lights lights.lp --near -o from-near
+cmp -s from-near/relit_000.png from-lights.lp/relit_000.png && complain "--near makes no difference to an .lp file's lamps"
+
+echo "domes beside the object, as JPEG, and what they leave alone"
+succeeds beside relight disc.merlin --dome 4 --near --radius 2 --format jpg -o beside
+present beside/dome_00{0..3}.jpg beside/lights.txt beside/mask.webp
+absent beside/dome.lp beside/dome_000.png
+[ "$(grep -vc '^#' beside/lights.txt)" = 4 ] || complain "lights.txt does not list four lamps: $(cat beside/lights.txt)"
+refuses 1 'lights.txt is of another dome' relight disc.merlin --dome 4 --format jpg -o beside
+refuses 1 'dome_003.jpg is of another dome' relight disc.merlin --dome 3 --near --format jpg -o beside
+refuses 1 'dome_000.jpg is of another dome' relight disc.merlin --dome 4 --near -o beside
+mkdir from-dome && printf '1\ndome_000.png 0 0 1\n' >from-dome/dome.lp
+refuses 1 'dome.lp is of another dome' relight disc.merlin --dome 4 --near -o from-dome
+refuses 2 '--near has none' relight disc.merlin --dome 4 --near --lp
+refuses 2 'give --near, too' relight disc.merlin --dome 4 --by network
+refuses 2 '--radius is of --near' relight disc.merlin --dome 4 --radius 2
+refuses 2 '--format' relight disc.merlin --light 0,0,0 --format tif
+refuses 2 '--matte is of --by brdf' relight disc.merlin --light 0,0,0 --by network --matte
+
 echo "an orbit becomes frames and animations"
 succeeds orbit relight disc.merlin --orbit 5 -o orbit
 present orbit/frame_00{0..4}.png orbit/orbit.webp orbit/orbit.gif orbit/orbit.png

@@ -344,12 +344,50 @@ static void fusion_takes_noise_out_of_a_slope_and_leaves_a_jump(void **state)
     scene_free(&smooth);
 }
 
+/* The share of pixels that a scene's distant lamp and a near one in the same direction do not light alike. */
+static double unlike(const scene *s, vec3 direction, real distance)
+{
+    shadow_caster caster;
+    img far_seen, near_seen;
+    const lamp afar = lamp_toward(direction);
+    const vec3 place = vec3_fma(vec3_make(0, 0, -1), distance, vec3_normalize(direction));
+    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, view.fov, &caster), OK);
+    assert_int_equal(shadow_cast_lamp(&caster, &afar, SIDE, SIDE, &far_seen), OK);
+    assert_int_equal(shadow_cast(&caster, place, SIDE, SIDE, &near_seen), OK);
+    double count = 0, shadowed = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        count += (far_seen.data[i] < 0.5f) != (near_seen.data[i] < 0.5f);
+        shadowed += far_seen.data[i] < 0.5f;
+    }
+    assert_true(shadowed > 0.01 * PIXELS);
+    shadow_caster_free(&caster);
+    img_free(&far_seen);
+    img_free(&near_seen);
+    return count / PIXELS;
+}
+
+static void a_distant_lamp_casts_the_shadows_that_near_ones_further_and_further_away_do(void **state)
+{
+    (void)state;
+    const vec3 directions[] = {{0.7f, 0.2f, 0.5f}, {-0.5f, 0.6f, 0.6f}};
+    scene s = {0};
+    scene_new(&s);
+    put_plane(&s, vec3_make(0, 0, 1), -1.2f);
+    put_ball(&s, vec3_make(0.05f, -0.02f, -0.9f), 0.12f);
+    for (size_t l = 0; l < sizeof directions / sizeof directions[0]; l++) {
+        assert_true(unlike(&s, directions[l], 100) < 0.002);
+        assert_true(unlike(&s, directions[l], 1) > 0.002);
+    }
+    scene_free(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_shadow_of_a_ball_on_a_wall_has_the_outline_of_the_ball),
         cmocka_unit_test(a_ball_alone_has_no_shadow_where_it_faces_the_light),
         cmocka_unit_test(noise_in_the_depth_alone_casts_no_shadow),
+        cmocka_unit_test(a_distant_lamp_casts_the_shadows_that_near_ones_further_and_further_away_do),
         cmocka_unit_test(a_flash_at_the_camera_sees_everything),
         cmocka_unit_test(lights_anywhere_give_shares_between_nothing_and_all),
         cmocka_unit_test(a_surface_of_no_pixels_has_no_shadow),

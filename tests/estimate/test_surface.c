@@ -229,6 +229,41 @@ static void the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance(void
     surface_free(&s);
 }
 
+/* Not only at the centre, where a near lamp at distance 1 is as bright: parallel light is everywhere the same. */
+static void a_distant_lamp_is_as_bright_everywhere_as_a_near_one_at_distance_1(void **state)
+{
+    (void)state;
+    surface s = plate(63);
+    s.matte = true;
+    const vec3 direction = {0.6f, 0, 0.8f};
+    const lamp afar = lamp_toward(vec3_scale(direction, 7)), near = lamp_at(vec3_add(direction, vec3_make(0, 0, -1)));
+    img far_lit, near_lit;
+    assert_int_equal(surface_shade_lamp(&s, &afar, &far_lit), OK);
+    assert_int_equal(surface_shade_lamp(&s, &near, &near_lit), OK);
+    /* A/π · Φ · n·l */
+    for (int i = 0; i < 63 * 63; i++)
+        assert_float_equal(far_lit.data[3 * i], 0.5 / M_PI * 5.95 * 0.8, 1e-4);
+    assert_float_equal(img_at(&near_lit, 31, 31)[0], img_at(&far_lit, 31, 31)[0], 1e-4);
+    assert_true(img_at(&near_lit, 62, 31)[0] > 1.2f * img_at(&far_lit, 62, 31)[0]);
+    img_free(&far_lit);
+    img_free(&near_lit);
+    surface_free(&s);
+}
+
+static void a_matte_surface_has_no_gloss(void **state)
+{
+    (void)state;
+    surface s = plate(63);
+    s.matte = true;
+    img out;
+    assert_int_equal(surface_shade(&s, vec3_make(0, 0, 0), &out), OK);
+    const float *centre = img_at(&out, 31, 31);
+    assert_float_equal(centre[0], 5.95 * 0.5 / M_PI, 1e-4);
+    assert_true(centre[1] == 0);
+    img_free(&out);
+    surface_free(&s);
+}
+
 static void a_light_on_the_left_brightens_the_left(void **state)
 {
     (void)state;
@@ -413,6 +448,8 @@ int main(void)
         cmocka_unit_test(half_covered_pixels_continue_the_shape),
         cmocka_unit_test(tidy_surfaces_keep_their_promises_whatever_came_in),
         cmocka_unit_test(the_centre_of_a_plate_under_the_flash_has_the_formulas_radiance),
+        cmocka_unit_test(a_distant_lamp_is_as_bright_everywhere_as_a_near_one_at_distance_1),
+        cmocka_unit_test(a_matte_surface_has_no_gloss),
         cmocka_unit_test(a_light_on_the_left_brightens_the_left),
         cmocka_unit_test(a_surface_survives_resizing),
         cmocka_unit_test(refined_albedo_follows_the_photographs_edge),
