@@ -108,7 +108,7 @@ typedef struct merlin_surface {
                              lights are: normals may be far off */
     int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance, and with too few lights, or lights too much
                              alike, to tell it: normals may be far off */
-    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where the lights are distant and the pictures or the object's
+    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where the pictures or the object's
                              outline tell them badly: normals may be far off, or bulge where the object recedes */
 } merlin_surface;
 

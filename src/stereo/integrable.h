@@ -26,8 +26,8 @@ typedef struct pst_pseudo {
 
 typedef struct pst_rotation {
     double at[9]; /* row-major, of determinant 1 or -1 */
-    bool unsure;  /* the most integrable rotation is hardly integrable or has much of the surface face away, or neither
-                   * sign is like the balloon */
+    bool unsure; /* the most integrable rotation is hardly integrable, has much of the surface face away, or is far from
+                  * the one that the balloon makes of it, or neither sign is like the balloon */
 } pst_rotation;
 
 static inline vec3 pst_transform(const double m[9], vec3 v)

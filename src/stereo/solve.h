@@ -35,7 +35,7 @@ typedef struct pst_surface {
     bool strengths_unsure; /* semi: others than what was found explain the pictures, too: the object is too flat, or
                             * there are 3 of them, which any do and equal ones were taken for */
     bool distance_unsure;  /* near, where the capture does not know how far the object is: nor do the pictures tell */
-    bool lights_unsure;    /* uncalibrated: the pictures or the outline tell badly where distant lights are */
+    bool lights_unsure;    /* uncalibrated: the pictures or the outline tell badly where the lights are */
     bool lights_near;      /* uncalibrated: light has positions, too, in the unit of the mean distance (1 if unknown) */
 } pst_surface;
 

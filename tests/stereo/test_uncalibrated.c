@@ -243,7 +243,7 @@ static void noise_between_neighbours_does_not_turn_an_object(void **state)
     double angle = bare_angle_said(&c, &unsure);
     print_message("noisy object: normals %.2f degrees\n", angle);
     assert_true(angle < 14); /* 10.2; 20.7 from differences between neighbouring pixels */
-    assert_false(unsure);
+    assert_true(unsure);     /* its outline turns what is most integrable by more than 22 degrees */
     pst_capture_free(&c);
 }
 
