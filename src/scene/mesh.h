@@ -31,6 +31,8 @@ static inline vec3 mat3_apply_transposed(const mat3 *m, vec3 v)
     return vec3_fma(vec3_fma(vec3_scale(m->row[0], v.x), v.y, m->row[1]), v.z, m->row[2]);
 }
 
+enum { MESH_PARTS = 32 }; /* parts of a mesh are below it */
+
 typedef struct scn_mesh {
     uint32_t vertex_count, vertex_capacity, triangle_count, triangle_capacity;
     vec3 *position, *reference;
@@ -89,6 +91,9 @@ double mesh_signed_volume(const scn_mesh *mesh);
 /* For meshes from files: drops vertices that no triangle uses and, where normals are not known, makes those of exactly
  * one place one, whatever else (texture coordinates, materials) told them apart in the file. */
 void mesh_weld(scn_mesh *mesh);
+/* Drops triangles that lie exactly where one before does and face its way, if half of all do or more: each ray there
+ * asks all of them. A few do no harm, and modellers leave some. */
+void mesh_drop_repeated(scn_mesh *mesh);
 
 /* Drops triangles without area and unused vertices; gives vertices normals (unless they have them), splitting those at
  * edges where faces meet at more than the angle whose cosine is given. ERROR_MEMORY; ERROR_INPUT when no triangle is

@@ -1,11 +1,16 @@
-/* What assimp passes over in a glTF file (glTF 2.0, ISO/IEC 12113). */
+/* glTF and GLB files, version 2: triangles, strips and fans of all meshes of the scene, where its nodes put them, in
+ * the pose in which they are stored. */
 #ifndef MERLIN_SCENE_MESH_GLTF_H
 #define MERLIN_SCENE_MESH_GLTF_H
 
-#include "base/status.h"
+#include <stddef.h>
 
-/* ERROR_INPUT for a .gltf or .glb that requires an extension by which its positions mean something else than they say.
- * OK for what is damaged: that is assimp's to say. */
-status mesh_check_gltf(const char *path);
+#include "scene/mesh.h"
+
+/* Into an empty mesh: a part for each material, 32 at most; normals where all of it has them. ERROR_INPUT for what is
+ * damaged, compressed, or has more triangles than mesh_most_triangles. */
+status mesh_read_gltf(const char *path, scn_mesh *mesh, int *parts);
+/* The same from bytes; folder: where its buffers lie, or NULL. */
+status mesh_parse_gltf(const void *bytes, size_t size, const char *folder, scn_mesh *mesh, int *parts);
 
 #endif

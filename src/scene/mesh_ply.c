@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "scene/mesh_file.h"
 
 enum { PROPERTIES = 32, ELEMENTS = 8, NAME = 32, POLYGON = 256, COUNT_LIMIT = 20000000 };
 
@@ -211,20 +212,26 @@ static status read_elements(ply *p)
     return OK;
 }
 
-status mesh_read_ply(const char *path, scn_mesh *mesh)
+status mesh_parse_ply(const char *data, size_t size, scn_mesh *mesh)
 {
-    char *data;
-    size_t size;
-    status s = file_read(path, (size_t)1 << 30, &data, &size);
-    if (s != OK) return s;
     ply p = {.at = data, .end = data + size, .mesh = mesh};
-    s = read_header(&p);
+    status s = read_header(&p);
     if (s == OK) s = read_elements(&p);
     if (s == OK && p.normals > 0 && p.normals == mesh->vertex_count) {
         mesh->normal = p.normal;
         p.normal = NULL;
     }
     free(p.normal);
+    return s;
+}
+
+status mesh_read_ply(const char *path, scn_mesh *mesh)
+{
+    char *data;
+    size_t size;
+    status s = file_read(path, MESH_BYTES, &data, &size);
+    if (s != OK) return s;
+    s = mesh_parse_ply(data, size, mesh);
     free(data);
     return s;
 }

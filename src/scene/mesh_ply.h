@@ -1,12 +1,15 @@
-/* PLY files, ascii and binary little endian (Turk 1994). Read here rather than by assimp, whose version in Debian 12
- * reads past the end of a damaged binary file. */
+/* PLY files, ascii and binary little endian (Turk 1994). */
 #ifndef MERLIN_SCENE_MESH_PLY_H
 #define MERLIN_SCENE_MESH_PLY_H
+
+#include <stddef.h>
 
 #include "scene/mesh.h"
 
 /* Reads vertices (with normals, if they have nx, ny, nz) and polygons, cut into fans, into an empty mesh. ERROR_INPUT
  * for what is damaged or not PLY. */
 status mesh_read_ply(const char *path, scn_mesh *mesh);
+/* The same from bytes with a zero behind them. */
+status mesh_parse_ply(const char *data, size_t size, scn_mesh *mesh);
 
 #endif

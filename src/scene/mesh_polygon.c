@@ -20,13 +20,16 @@ static vec3 area_of(const scn_mesh *mesh, const uint32_t *corner, int count)
     return sum;
 }
 
-/* Whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. */
-static bool is_ear(const scn_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n)
+/* Whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. Takes the corners it
+ * looked at from *work. */
+static bool is_ear(const scn_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n, long *work)
 {
     vec3 a = mesh->position[corner[(i + count - 1) % count]], b = mesh->position[corner[i]];
     vec3 c = mesh->position[corner[(i + 1) % count]];
+    --*work;
     if (!(turn(a, b, c, n) > 0)) return false;
     for (int k = 2; k < count - 1; k++) {
+        --*work;
         vec3 p = mesh->position[corner[(i + k) % count]];
         if (turn(a, b, p, n) > 0 && turn(b, c, p, n) > 0 && turn(c, a, p, n) > 0) return false;
     }
@@ -37,10 +40,11 @@ void mesh_add_polygon(scn_mesh *mesh, uint32_t *corner, int count, uint8_t part)
 {
     if (mesh->failed || count < 3) return;
     vec3 n = vec3_normalize(area_of(mesh, corner, count));
-    int i = 1, passed = 0; /* from the second on, a convex polygon becomes a fan about the first */
+    int i = 1, passed = 0;          /* from the second on, a convex polygon becomes a fan about the first */
+    long work = 2L * count * count; /* twice what a simple polygon takes; one made to take longer is cut anyhow */
     while (count > 3) {
         /* one that crosses itself may have no ear: it is cut somewhere all the same */
-        if (passed < count && !is_ear(mesh, corner, count, i, n)) {
+        if (passed < count && work > 0 && !is_ear(mesh, corner, count, i, n, &work)) {
             i = (i + 1) % count;
             passed++;
             continue;

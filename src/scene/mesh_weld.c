@@ -1,4 +1,4 @@
-/* Vertices as a surface needs them rather than as a file lists them. */
+/* Vertices and triangles as a surface needs them rather than as a file lists them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +22,16 @@ static uint64_t hash_of(vec3 p)
         h ^= h >> 29;
     }
     return h;
+}
+
+/* Slots for `count` things, at most half of them in use. */
+static bool places_make(places *known, size_t count)
+{
+    known->mask = 1;
+    while (known->mask < 2 * count)
+        known->mask = 2 * known->mask + 1;
+    known->slot = calloc(known->mask + 1, sizeof *known->slot);
+    return known->slot != NULL;
 }
 
 /* The new index of the vertex at p: that of an earlier one there, else `next`. */
@@ -57,12 +67,9 @@ static void renumber(scn_mesh *mesh, places *known, uint32_t *to)
 void mesh_weld(scn_mesh *mesh)
 {
     if (mesh->failed) return;
-    places known = {.mask = 1};
-    while (!mesh->normal && known.mask < 2 * (size_t)mesh->vertex_count)
-        known.mask = 2 * known.mask + 1;
+    places known = {0};
     uint32_t *to = calloc((size_t)mesh->vertex_count + 1, sizeof *to);
-    known.slot = calloc(known.mask + 1, sizeof *known.slot);
-    if (to && known.slot) {
+    if (places_make(&known, mesh->normal ? 0 : mesh->vertex_count) && to) {
         for (uint32_t i = 0; i < mesh->triangle_count; i++)
             for (int k = 0; k < 3; k++)
                 to[mesh->triangle[i][k]] = USED;
@@ -75,4 +82,67 @@ void mesh_weld(scn_mesh *mesh)
     }
     free(known.slot);
     free(to);
+}
+
+/* A triangle's corners, from the one on that comes first by its numbers. */
+static void places_of(const scn_mesh *mesh, const uint32_t t[3], vec3 out[3])
+{
+    int first = 0;
+    vec3 p[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = vec3_add(mesh->position[t[k]], (vec3){0, 0, 0}); /* -0 is 0 */
+        const vec3 a = p[k], b = p[first];
+        if (a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)))) first = k;
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = p[(first + k) % 3];
+}
+
+static bool is_same(const vec3 a[3], const vec3 b[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (a[k].x != b[k].x || a[k].y != b[k].y || a[k].z != b[k].z) return false;
+    return true;
+}
+
+/* Whether no triangle before lies there, which from now on one does. */
+static bool is_new(places *known, const scn_mesh *mesh, const uint32_t t[3], uint32_t index)
+{
+    vec3 here[3], there[3];
+    places_of(mesh, t, here);
+    uint64_t hash = hash_of(here[0]) ^ 3 * hash_of(here[1]) ^ 5 * hash_of(here[2]);
+    for (size_t i = hash & known->mask;; i = (i + 1) & known->mask) {
+        if (known->slot[i] == 0) {
+            known->slot[i] = index + 1;
+            return true;
+        }
+        places_of(mesh, mesh->triangle[known->slot[i] - 1], there);
+        if (is_same(here, there)) return false;
+    }
+}
+
+/* The number of triangles that are left when those that repeat one are dropped; it is done where `drop`. */
+static uint32_t without_repeated(scn_mesh *mesh, places *known, bool drop)
+{
+    uint32_t kept = 0;
+    memset(known->slot, 0, (known->mask + 1) * sizeof *known->slot);
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+        if (!is_new(known, mesh, mesh->triangle[i], drop ? kept : i)) continue;
+        if (drop) {
+            memmove(mesh->triangle[kept], mesh->triangle[i], sizeof *mesh->triangle);
+            mesh->part[kept] = mesh->part[i];
+        }
+        kept++;
+    }
+    return kept;
+}
+
+void mesh_drop_repeated(scn_mesh *mesh)
+{
+    if (mesh->failed) return;
+    places known = {0};
+    mesh->failed = !places_make(&known, mesh->triangle_count);
+    if (!mesh->failed && without_repeated(mesh, &known, false) <= mesh->triangle_count / 2)
+        mesh->triangle_count = without_repeated(mesh, &known, true);
+    free(known.slot);
 }
