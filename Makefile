@@ -55,7 +55,7 @@ check: setup-check
 format:
 	git ls-files '*.c' '*.h' | xargs clang-format-14 -i
 
-# Every fuzz target for FUZZ_SECONDS.
+# Every fuzz target for FUZZ_SECONDS, two at a time.
 FUZZ_SECONDS = 60
 fuzz: setup-check
 	cmake --preset fuzz

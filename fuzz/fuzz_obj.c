@@ -1,0 +1,15 @@
+/* OBJ files from arbitrary bytes. */
+#include "scene/mesh_obj.h"
+
+#include "fuzz_mesh.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    scn_mesh mesh = {0};
+    int parts = 0;
+    char *text = fuzz_text(data, size);
+    status s = mesh_parse_obj(text, size, 100000, &mesh, &parts);
+    fuzz_check_mesh(&mesh, s, parts);
+    free(text);
+    return 0;
+}

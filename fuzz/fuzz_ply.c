@@ -1,0 +1,14 @@
+/* PLY files from arbitrary bytes. */
+#include "scene/mesh_ply.h"
+
+#include "fuzz_mesh.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    scn_mesh mesh = {0};
+    char *text = fuzz_text(data, size);
+    status s = mesh_parse_ply(text, size, &mesh);
+    fuzz_check_mesh(&mesh, s, 1);
+    free(text);
+    return 0;
+}
