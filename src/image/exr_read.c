@@ -2,6 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/half.h"
@@ -270,8 +271,24 @@ static exr_result_t read_tiles(reader *r)
     return code;
 }
 
+/* Refuses what a small file unfolds to that no memory should be given: pixels that are all but empty. */
+static status check_density(const exr_file *f, size_t channels)
+{
+    const double harmless = 512 * 0x1p20, densest = 256; /* bytes of memory, and how many of them for one of the file */
+    size_t with_colour = channels < 3 ? channels + 3 : channels; /* grey may be wanted as colour */
+    double bytes = (double)(with_colour * sizeof(float)) * exr_width(f) * exr_height(f);
+    struct stat about;
+    if (bytes <= harmless || stat(f->path, &about) != 0 || bytes <= densest * (double)about.st_size) return OK;
+    return fail(ERROR_INPUT,
+                "cannot read %s: its %d x %d pixels would take %.0f MB of memory, and the file has %.1f MB of content; "
+                "crop it to what it shows",
+                f->path, exr_width(f), exr_height(f), bytes / 0x1p20, (double)about.st_size / 0x1p20);
+}
+
 status exr_read(exr_file *f, const exr_target *targets, size_t count)
 {
+    status s = check_density(f, count);
+    if (s != OK) return s;
     exr_forget_complaint();
     source *sources = calloc(count + 1, sizeof *sources);
     if (!sources) return fail(ERROR_MEMORY, "no memory to read %s", f->path);

@@ -5,6 +5,7 @@
 
 #include "base/rng.h"
 #include "image/exr.h"
+#include "image/read.h"
 
 #include "writes.h"
 
@@ -205,6 +206,32 @@ static void every_truncation_is_refused(void **state)
     free(data);
 }
 
+/* A head that claims 256 million pixels, and sixteen behind it. */
+static void a_small_file_is_not_given_memory_for_very_many_pixels(void **state)
+{
+    (void)state;
+    static const char *const WINDOWS[] = {"dataWindow\0box2i", "displayWindow\0box2i"};
+    static const size_t LENGTHS[] = {sizeof "dataWindow\0box2i", sizeof "displayWindow\0box2i"};
+    const int32_t vast[4] = {0, 0, 16383, 16383};
+    const float grey[16] = {0};
+    const exr_channel y = {"Y", grey, 1, false};
+    const char *path = scratch_path("vast.exr");
+    char *data;
+    size_t size;
+    assert_int_equal(exr_write(path, 4, 4, &y, 1, NULL, 0), OK);
+    assert_int_equal(file_read(path, 1 << 20, &data, &size), OK);
+    for (int i = 0; i < 2; i++) {
+        char *at = memmem(data, size, WINDOWS[i], LENGTHS[i]);
+        assert_non_null(at);
+        memcpy(at + LENGTHS[i] + 4, vast, sizeof vast);
+    }
+    assert_int_equal(file_write(path, data, size), OK);
+    free(data);
+    img color;
+    assert_int_equal(img_read(path, &color, NULL), ERROR_INPUT);
+    if (!strstr(status_message(), "16384 x 16384 pixels would take 4096 MB")) fail_msg("%s", status_message());
+}
+
 static void missing_and_foreign_files_are_refused(void **state)
 {
     (void)state;
@@ -311,6 +338,7 @@ int main(void)
         cmocka_unit_test(compression_that_is_not_known_is_refused_with_what_to_do),
         cmocka_unit_test(missing_channel_is_named),
         cmocka_unit_test(every_truncation_is_refused),
+        cmocka_unit_test(a_small_file_is_not_given_memory_for_very_many_pixels),
         cmocka_unit_test(missing_and_foreign_files_are_refused),
         cmocka_unit_test(failed_write_leaves_nothing),
         cmocka_unit_test(tiles_of_float_and_uint_are_read),
