@@ -110,6 +110,9 @@ static void memory_is_taken_for_the_object_alone(void **state)
     assert_int_equal(img_new(&mask, 4000, 3000, 1), OK);
     box(&low_mask, 16, 16, 6, 5);
     box(&mask, 1000, 1000, 400, 300);
+    /* some kernels count pages of zeros that were read alone, and the mask is read whole */
+    for (int y = 0; y < mask.height; y++)
+        assert_true(img_row_span(&mask, y).end <= mask.width);
     size_t before = resident_bytes();
     assert_true(before > 0);
     assert_int_equal(surface_resize_image(&low, &low_mask, &mask, &large), OK);
