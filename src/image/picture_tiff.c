@@ -27,6 +27,9 @@ static uint64_t number_at(const tiff *t, uint64_t at, int bytes)
     return number;
 }
 
+/* More entries than any program writes; a hostile count would be seconds of seeking beyond the file's end. */
+enum { MOST_ENTRIES = 4096 };
+
 /* The value of an entry that holds one number of 16 or 32 bits; 0 where there is none such. */
 static unsigned value_of(tiff *t, unsigned tag)
 {
@@ -34,7 +37,7 @@ static unsigned value_of(tiff *t, unsigned tag)
     bool wide = number_at(t, 2, 2) == BIG_TIFF;
     int offset = wide ? 8 : 4, entry = wide ? 20 : 12, counter = wide ? 8 : 2;
     uint64_t folder = number_at(t, (uint64_t)offset, offset), entries = number_at(t, folder, counter);
-    for (uint64_t i = 0; i < entries && i <= UINT16_MAX; i++) {
+    for (uint64_t i = 0; i < entries && i < MOST_ENTRIES; i++) {
         uint64_t at = folder + (uint64_t)counter + i * (uint64_t)entry;
         if (number_at(t, at, 2) != tag) continue;
         if (number_at(t, at + 4, offset) != 1) return 0;
