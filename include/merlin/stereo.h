@@ -53,7 +53,8 @@ typedef struct merlin_capture_files {
 } merlin_capture_files;
 
 /* PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones
- * are linear unless a colour profile says otherwise, raw ones always. files NULL: the usual case. */
+ * are linear unless they say otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. files NULL: the usual
+ * case. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 
 /* What holds for all pictures that are added from memory. */

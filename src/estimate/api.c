@@ -23,16 +23,6 @@ const char *merlin_error(void)
     return status_message();
 }
 
-/* Before decoding, which may take gigabytes. */
-static status check_size(const char *path)
-{
-    int width, height;
-    status s = img_read_size(path, &width, &height);
-    if (s != OK || (size_t)width * (size_t)height <= PHOTO_MOST_PIXELS) return s;
-    return fail(ERROR_INPUT, "cannot read %s: it is %d x %d pixels, more than 64 million; make it smaller first", path,
-                width, height);
-}
-
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
 {
     if (color) *color = (merlin_image){0};
@@ -40,8 +30,7 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
     status s = api_needs(__func__, path && color);
     if (s != OK) return result_of(s);
     img c = {0}, a = {0};
-    s = check_size(path);
-    if (s == OK) s = img_read(path, &c, alpha ? &a : NULL);
+    s = img_read(path, &c, alpha ? &a : NULL);
     if (s == OK && a.data && mask_is_transparent(&a))
         s = fail(ERROR_INPUT,
                  "%s is transparent everywhere, so its alpha shows no object; give a mask, or save it "

@@ -13,8 +13,6 @@
 #include "image/exr.h"
 #include "image/public.h"
 
-enum { PHOTO_MOST_PIXELS = 64 * 1000 * 1000 };
-
 struct merlin_model {
     network *network;
 };

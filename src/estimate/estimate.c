@@ -10,6 +10,7 @@
 #include "estimate/exposure.h"
 #include "estimate/input.h"
 #include "estimate/relight_env.h"
+#include "image/read.h"
 
 enum { LEAST_SIDE = 16 };
 
@@ -54,7 +55,7 @@ static status check_photo(const img *photo)
     if (photo->width < LEAST_SIDE || photo->height < LEAST_SIDE)
         return fail(ERROR_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
                     photo->height, LEAST_SIDE, LEAST_SIDE);
-    if ((size_t)photo->width * (size_t)photo->height > PHOTO_MOST_PIXELS)
+    if ((size_t)photo->width * (size_t)photo->height > IMAGE_MOST_PIXELS)
         return fail(ERROR_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
                     photo->width, photo->height);
     size_t count = 3 * (size_t)photo->width * (size_t)photo->height;

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "image/image.h"
+#include "image/picture_light.h"
 
 /* How colour samples become linear light; alpha is linear always. */
 typedef enum picture_colour {
@@ -32,6 +33,7 @@ typedef struct picture_head {
     int width, height, bits; /* as stored: an orientation may exchange width and height */
     bool plain;              /* of PNG: without colour profile */
     bool profile;            /* a colour profile says what the samples mean */
+    picture_light light;     /* whole numbers' meaning without one */
 } picture_head;
 
 /* A PNG as most are, head->plain; any other is left to picture_decode. color, alpha as below: either may be NULL. */
@@ -43,20 +45,28 @@ status picture_decode(const char *path, picture_kind kind, picture_colour how, i
 status picture_look(const char *path, picture_kind kind, picture_head *head);
 /* Refuses Radiance pictures that would come out in wrong colours or turned. */
 status picture_check_hdr(const char *path);
-/* Refuses TIFFs whose YCbCr would be taken for RGB. */
-status picture_check_tiff(const char *path);
-/* Whether a TIFF's colours are multiplied by its alpha, the only band beside them. */
-bool picture_tiff_is_premultiplied(const char *path);
-/* Whether a TIFF is the frame of a raw picture: its first one is a mosaic, or a small copy of another. */
+/* The page of a TIFF that is the picture. */
+typedef struct picture_tiff_page {
+    int number, pages;  /* from 0, and how many there are */
+    bool premultiplied; /* its colours are multiplied by its alpha, the only band beside them */
+    bool is_srgb;       /* its EXIF says so */
+} picture_tiff_page;
+/* Finds it; refuses TIFFs of several that it might be, those whose YCbCr would be taken for RGB, and what would take
+ * too much memory. */
+status picture_check_tiff(const char *path, picture_tiff_page *out);
+/* Whether a TIFF is the frame of a raw picture: a page is a mosaic, or all are small copies of something else. */
 bool picture_tiff_is_raw(const char *path);
+/* Whether the JPEGs that a raw picture of that frame is made of claim to be far larger than it. */
+bool picture_tiff_is_overfull(const char *path);
 /* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */
 int picture_exif_orientation(void *exif, size_t size);
-/* Turns a picture that lies so upright. */
-status picture_turn(img *image, int orientation);
+/* Refuses what takes too long to read, however little of it is kept. */
 status picture_check_size(const char *path, long long width, long long height);
-/* Bands first .. first + channels - 1 of interleaved codes of 8 or 16 (wide) bits, as many as out has pixels: by what
- * they mean as sRGB, or else scaled to [0, 1]. */
-void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out);
+/* Refuses, too, sides above IMAGE_MAX_SIDE, of kinds that are decoded as a whole and reduced then. */
+status picture_check_sides(const char *path, long long width, long long height);
+/* Refuses what would take too much memory where a decoder has to hold all of it, so many bytes a pixel; advice:
+ * how it is to be saved instead. */
+status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice);
 status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
 /* Upright and linear, in sRGB's primaries, white where the sensor saturates; 3 channels, 1 if it has no mosaic. White

@@ -118,7 +118,7 @@ static status check_frame(const exr_file *f, const char *path)
 {
     exr_frame d = exr_display(f);
     if (d.width < 1 || d.height < 1) return fail(ERROR_INPUT, "cannot read %s: its display window is empty", path);
-    return picture_check_size(path, d.width, d.height);
+    return picture_check_sides(path, d.width, d.height);
 }
 
 /* Opens the first part that has a picture. */

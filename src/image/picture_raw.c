@@ -52,13 +52,14 @@ static status refusal(const char *path, int error)
 /* A handle to close, with the file open in it. */
 static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
 {
+    if (picture_tiff_is_overfull(path)) return refusal(path, LIBRAW_DATA_ERROR);
     status s = library_need(&libraw);
     if (s != OK) return s;
     libraw_data_t *file = raw.init(WITHOUT_CALLBACKS);
     if (!file) return fail(ERROR_MEMORY, "no memory to read %s", path);
     raw.set_dataerror_handler(file, note_damage, damaged);
     int error = raw.open_file(file, path);
-    s = error ? refusal(path, error) : picture_check_size(path, file->sizes.iwidth, file->sizes.iheight);
+    s = error ? refusal(path, error) : picture_check_sides(path, file->sizes.iwidth, file->sizes.iheight);
     if (s == OK)
         *out = file;
     else

@@ -1,89 +1,173 @@
-/* What stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form, and libvips keeps to
- * itself or does not find. */
+/* What a TIFF says of itself and libvips keeps to itself or does not find: which page is the picture, whether it is a
+ * camera's raw one, and how much memory it would take. */
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "image/picture.h"
+#include "image/tiff_head.h"
 
-enum { COMPRESSION = 259, JPEG = 7, PHOTOMETRIC = 262, YCBCR = 6 };
-enum { LONG = 4, BIG_TIFF = 43, ORIENTATION = 274, EXTRA_SAMPLES = 338, ASSOCIATED = 1 };
-enum { KIND = 254, REDUCED = 1, MOSAIC = 32803, LINEAR_RAW = 34892 };
+enum { JPEG = 7, YCBCR = 6, CMYK = 5, MOSAIC = 32803, LINEAR_RAW = 34892, ASSOCIATED = 1, REDUCED = 1, MASK = 4 };
+enum { MOST_BELOW = 8 }; /* pages below another */
 
-typedef struct tiff {
-    FILE *file;
-    bool big_endian;
-} tiff;
-
-/* The number in so many bytes at a place of the file; 0 where there is none. */
-static uint64_t number_at(const tiff *t, uint64_t at, int bytes)
+static bool is_raw_page(const tiff_head *t, uint64_t page)
 {
-    unsigned char b[8];
-    uint64_t number = 0;
-    if (at > INT64_MAX) return 0;
-    if (fseeko(t->file, (off_t)at, SEEK_SET) != 0 || fread(b, 1, (size_t)bytes, t->file) != (size_t)bytes) return 0;
-    for (int i = 0; i < bytes; i++)
-        number = number << 8 | b[t->big_endian ? i : bytes - 1 - i];
-    return number;
+    uint32_t meaning = tiff_value(t, page, TIFF_PHOTOMETRIC);
+    return meaning == MOSAIC || meaning == LINEAR_RAW;
 }
 
-/* More entries than any program writes; a hostile count would be seconds of seeking beyond the file's end. */
-enum { MOST_ENTRIES = 4096 };
-
-/* The value of an entry that holds one number of 16 or 32 bits; 0 where there is none such. */
-static unsigned value_of(tiff *t, unsigned tag)
+/* Behind the head, "CR" and its version, where TIFFs may have pixels. */
+static bool is_canon(FILE *file)
 {
-    t->big_endian = number_at(t, 0, 1) == 'M';
-    bool wide = number_at(t, 2, 2) == BIG_TIFF;
-    int offset = wide ? 8 : 4, entry = wide ? 20 : 12, counter = wide ? 8 : 2;
-    uint64_t folder = number_at(t, (uint64_t)offset, offset), entries = number_at(t, folder, counter);
-    for (uint64_t i = 0; i < entries && i < MOST_ENTRIES; i++) {
-        uint64_t at = folder + (uint64_t)counter + i * (uint64_t)entry;
-        if (number_at(t, at, 2) != tag) continue;
-        if (number_at(t, at + 4, offset) != 1) return 0;
-        return (unsigned)number_at(t, at + 4 + (uint64_t)offset, number_at(t, at + 2, 2) == LONG ? 4 : 2);
+    char head[11] = {0};
+    rewind(file);
+    return fread(head, 1, sizeof head, file) == sizeof head && head[4] == 16 && memcmp(head + 8, "CR\2", 3) == 0;
+}
+
+static bool has_raw_page(const tiff_head *t)
+{
+    for (int i = 0; i < t->pages; i++) {
+        if (is_raw_page(t, t->page[i]) || tiff_count(t, t->page[i], TIFF_DNG_VERSION)) return true;
+        for (uint64_t k = 0; k < MOST_BELOW && k < tiff_count(t, t->page[i], TIFF_BELOW); k++)
+            if (is_raw_page(t, tiff_value_at(t, t->page[i], TIFF_BELOW, k))) return true;
     }
+    return false;
+}
+
+static uint64_t pixels_of(const tiff_head *t, uint64_t page)
+{
+    return (uint64_t)tiff_value(t, page, TIFF_WIDTH) * tiff_value(t, page, TIFF_HEIGHT);
+}
+
+/* The largest page that is no copy and no mask of another, -1 if none; others: how many are more than half as large. */
+static int find_page(const tiff_head *t, int *others)
+{
+    int best = -1;
+    *others = 0;
+    for (int i = 0; i < t->pages; i++) {
+        if (tiff_value(t, t->page[i], TIFF_KIND) & (REDUCED | MASK)) continue;
+        if (best < 0 || pixels_of(t, t->page[i]) > pixels_of(t, t->page[best])) best = i;
+    }
+    for (int i = 0; best >= 0 && i < t->pages; i++)
+        *others += i != best && !(tiff_value(t, t->page[i], TIFF_KIND) & (REDUCED | MASK)) &&
+                   pixels_of(t, t->page[i]) > pixels_of(t, t->page[best]) / 2;
+    return best;
+}
+
+static unsigned big16(const unsigned char *p)
+{
+    return (unsigned)p[0] << 8 | p[1];
+}
+
+/* Samples that the JPEG at a place of a file claims in its frame's head; 0 if none is found. */
+static uint64_t jpeg_samples(FILE *file, uint64_t at)
+{
+    unsigned char head[1024];
+    if (at > INT64_MAX || fseeko(file, (off_t)at, SEEK_SET) != 0) return 0;
+    size_t size = fread(head, 1, sizeof head, file);
+    if (size < 4 || head[0] != 0xff || head[1] != 0xd8) return 0;
+    for (size_t i = 2; i + 10 <= size && head[i] == 0xff; i += 2 + big16(head + i + 2))
+        if (head[i + 1] >= 0xc0 && head[i + 1] <= 0xc3)
+            return (uint64_t)big16(head + i + 5) * big16(head + i + 7) * head[i + 9];
     return 0;
 }
 
-bool picture_tiff_is_premultiplied(const char *path)
+/* Whether what a raw page is made of claims to be far more than the page: a decoder would make all of it. */
+static bool is_overfull(const tiff_head *t, uint64_t page)
 {
-    tiff t = {.file = file_open(path)};
-    if (!t.file) return false;
-    unsigned extra = value_of(&t, EXTRA_SAMPLES);
-    fclose(t.file);
-    return extra == ASSOCIATED;
+    enum { MOST_PARTS = 4096, SPARE = 4 };
+    if (!is_raw_page(t, page) || tiff_value(t, page, TIFF_COMPRESSION) != JPEG) return false;
+    unsigned tag = tiff_count(t, page, TIFF_TILES) ? TIFF_TILES : TIFF_STRIPS;
+    uint64_t parts = tiff_count(t, page, tag), sum = 0, samples = tiff_value(t, page, TIFF_SAMPLES);
+    for (uint64_t i = 0; i < parts && i < MOST_PARTS; i++)
+        sum += jpeg_samples(t->file, tiff_value_at(t, page, tag, i));
+    const uint64_t border = 1 << 20; /* of tiles that reach beyond the page */
+    return sum > SPARE * pixels_of(t, page) * (samples ? samples : 1) + border;
 }
 
-status picture_check_tiff(const char *path)
+bool picture_tiff_is_overfull(const char *path)
 {
-    tiff t = {.file = file_open(path)};
-    if (!t.file) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
-    /* those of JPEG its decoder makes RGB */
-    bool ycbcr = value_of(&t, PHOTOMETRIC) == YCBCR && value_of(&t, COMPRESSION) != JPEG;
-    fclose(t.file);
-    return ycbcr ? fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path) : OK;
+    tiff_head t;
+    FILE *file = file_open(path);
+    if (!file) return false;
+    bool found = false;
+    bool known = tiff_open(&t, file);
+    for (int i = 0; known && i < t.pages; i++) {
+        found |= is_overfull(&t, t.page[i]);
+        for (uint64_t k = 0; k < MOST_BELOW && k < tiff_count(&t, t.page[i], TIFF_BELOW); k++)
+            found |= is_overfull(&t, tiff_value_at(&t, t.page[i], TIFF_BELOW, k));
+    }
+    fclose(file);
+    return found;
 }
 
 bool picture_tiff_is_raw(const char *path)
 {
-    tiff t = {.file = file_open(path)};
-    if (!t.file) return false;
-    unsigned meaning = value_of(&t, PHOTOMETRIC);
-    bool mosaic = meaning == MOSAIC || meaning == LINEAR_RAW;
-    bool first_is_small = value_of(&t, KIND) & REDUCED;
-    /* behind the head, "CR" and its version, where TIFFs may have pixels */
-    bool canon = number_at(&t, 4, 4) == 16 && number_at(&t, 8, 1) == 'C' && number_at(&t, 9, 1) == 'R' &&
-                 number_at(&t, 10, 1) == 2;
-    fclose(t.file);
-    return mosaic || first_is_small || canon;
+    tiff_head t;
+    FILE *file = file_open(path);
+    if (!file) return false;
+    int others;
+    bool raw = tiff_open(&t, file) &&
+               (is_canon(file) || has_raw_page(&t) || (t.pages < TIFF_MOST_PAGES && find_page(&t, &others) < 0));
+    fclose(file);
+    return raw;
+}
+
+/* What libvips would hold of it: a strip or a row of tiles, or all of what is in planes. */
+static status check_samples(const tiff_head *t, uint64_t page, const char *path)
+{
+    uint32_t samples = tiff_value(t, page, TIFF_SAMPLES), bits = tiff_value(t, page, TIFF_BITS);
+    uint32_t width = tiff_value(t, page, TIFF_WIDTH), height = tiff_value(t, page, TIFF_HEIGHT);
+    uint32_t most = tiff_value(t, page, TIFF_PHOTOMETRIC) == CMYK ? 5 : 4;
+    if (samples > most)
+        return fail(
+            ERROR_INPUT,
+            "cannot read %s: it has %u samples a pixel, not the %u at most of grey or colour with alpha; save it "
+            "as RGB",
+            path, samples, most);
+    status s = picture_check_size(path, width, height);
+    uint32_t strip = tiff_value(t, page, TIFF_STRIP_HEIGHT);
+    if (s != OK || !strip) return s;
+    int bytes = (int)((samples ? samples : 1) * (bits > 8 ? bits / 8 : 1));
+    return picture_check_whole(path, width, strip < height ? strip : height, bytes < 64 ? bytes : 64, "in more strips");
+}
+
+static status check_open(const tiff_head *t, const char *path, picture_tiff_page *out)
+{
+    int others, found = find_page(t, &others);
+    if (found < 0) found = 0;
+    uint64_t page = t->page[found];
+    *out = (picture_tiff_page){.number = found, .pages = t->pages};
+    if (others)
+        return fail(ERROR_INPUT, "cannot read %s: it has %d pages of about the same size; save the one that is meant",
+                    path, others + 1);
+    /* those of JPEG its decoder makes RGB */
+    if (tiff_value(t, page, TIFF_PHOTOMETRIC) == YCBCR && tiff_value(t, page, TIFF_COMPRESSION) != JPEG)
+        return fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path);
+    out->premultiplied =
+        tiff_count(t, page, TIFF_EXTRA_SAMPLES) == 1 && tiff_value(t, page, TIFF_EXTRA_SAMPLES) == ASSOCIATED;
+    out->is_srgb = tiff_value(t, tiff_value(t, page, TIFF_EXIF), TIFF_EXIF_COLOUR_SPACE) == 1;
+    return check_samples(t, page, path);
+}
+
+status picture_check_tiff(const char *path, picture_tiff_page *out)
+{
+    tiff_head t;
+    FILE *file = file_open(path);
+    if (!file) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    status s = tiff_open(&t, file) ? check_open(&t, path, out)
+                                   : fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+    fclose(file);
+    return s;
 }
 
 int picture_exif_orientation(void *exif, size_t size)
 {
-    tiff t = {.file = fmemopen(exif, size, "rb")};
-    if (!t.file) return 1;
-    unsigned orientation = value_of(&t, ORIENTATION);
-    fclose(t.file);
+    tiff_head t;
+    FILE *file = fmemopen(exif, size, "rb");
+    if (!file) return 1;
+    uint32_t orientation = tiff_open(&t, file) ? tiff_value(&t, t.page[0], TIFF_ORIENTATION) : 0;
+    fclose(file);
     return orientation >= 1 && orientation <= 8 ? (int)orientation : 1;
 }

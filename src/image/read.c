@@ -9,10 +9,12 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
-#include "image/color.h"
-#include "image/picture.h"
+#include "image/picture_rows.h"
 
 enum { HEAD_BYTES = 12 };
+
+/* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */
+enum { MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
 
 /* An ISO base media file of one of the still picture's brands; HEIC and AVIF share a decoder. */
 static bool is_heic(const unsigned char *head)
@@ -59,22 +61,24 @@ static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
     return is_heic(head) ? PICTURE_HEIC : is_raw(head) ? PICTURE_RAW : PICTURE_UNKNOWN;
 }
 
+static status check_plain(const char *path)
+{
+    struct stat about;
+    if (stat(path, &about) != 0) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (S_ISDIR(about.st_mode)) return fail(ERROR_INPUT, "cannot read %s: it is a folder, not a picture", path);
+    return S_ISREG(about.st_mode) ? OK : fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
+}
+
 /* Says what is wrong with a path before any decoder sees it, and which of them is to. */
 static status look_at(const char *path, picture_kind *kind)
 {
-    struct stat about;
+    status s = check_plain(path); /* before it is opened: a device may already do something then */
+    if (s != OK) return s;
     FILE *f = file_open(path);
-    if (!f || fstat(fileno(f), &about) != 0) {
-        status s = fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
-        if (f) fclose(f);
-        return s;
-    }
+    if (!f) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
     unsigned char head[HEAD_BYTES] = {0};
-    bool regular = S_ISREG(about.st_mode);
-    size_t got = regular ? fread(head, 1, sizeof head, f) : 0;
+    size_t got = fread(head, 1, sizeof head, f);
     fclose(f);
-    if (S_ISDIR(about.st_mode)) return fail(ERROR_INPUT, "cannot read %s: it is a folder, not a picture", path);
-    if (!regular) return fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
     if (got == 0) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
     *kind = kind_of(head);
     if (*kind == PICTURE_TIFF && picture_tiff_is_raw(path)) *kind = PICTURE_RAW;
@@ -86,25 +90,27 @@ static status look_at(const char *path, picture_kind *kind)
 
 status picture_check_size(const char *path, long long width, long long height)
 {
-    if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return OK;
+    if (width < 1 || height < 1) return fail(ERROR_INPUT, "cannot read %s: it has no pixels", path);
+    if (width <= MOST_PIXELS / height) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d million; make it smaller first",
+                path, width, height, MOST_PIXELS / 1000000);
+}
+
+status picture_check_sides(const char *path, long long width, long long height)
+{
+    if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return picture_check_size(path, width, height);
     return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
                 path, width, height, IMAGE_MAX_SIDE);
 }
 
-void picture_take_codes(const void *codes, bool wide, int bands, int first, bool is_srgb, img *out)
+status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice)
 {
-    ptrdiff_t pixels = (ptrdiff_t)out->width * out->height;
-    int channels = out->channels;
-    const uint8_t *codes8 = codes;
-    const uint16_t *codes16 = codes;
-    const float *table = wide ? srgb_decode_table16() : srgb_decode_table8();
-#pragma omp parallel for schedule(static) if (pixels > 1 << 18)
-    for (ptrdiff_t i = 0; i < pixels; i++)
-        for (int c = 0; c < channels; c++) {
-            ptrdiff_t at = i * bands + first + c;
-            unsigned code = wide ? codes16[at] : codes8[at];
-            out->data[i * channels + c] = is_srgb ? table[code] : (float)code / (wide ? 65535.0f : 255.0f);
-        }
+    status s = picture_check_size(path, width, height);
+    if (s != OK || width * height <= MOST_BYTES / bytes) return s;
+    return fail(
+        ERROR_INPUT,
+        "cannot read %s: its %lld x %lld pixels would have to be held as a whole; save it %s or make it smaller", path,
+        width, height, advice);
 }
 
 static status look_into(const char *path, picture_kind kind, picture_head *head)
@@ -123,8 +129,9 @@ status img_read_size(const char *path, int *width, int *height)
     picture_head head = {.width = 0};
     status s = look_at(path, &kind);
     if (s == OK) s = look_into(path, kind, &head);
-    *width = head.width;
-    *height = head.height;
+    int by = s == OK ? picture_reduction(head.width, head.height) : 1;
+    *width = (head.width + by - 1) / by;
+    *height = (head.height + by - 1) / by;
     return s;
 }
 
@@ -141,8 +148,12 @@ static status check_finite(const char *path, const img *image)
 static status read_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
 {
     picture_head head = {.plain = false};
-    if (kind == PICTURE_EXR) return picture_read_exr(path, how, color, alpha);
-    if (kind == PICTURE_RAW) return picture_read_raw(path, how, color);
+    if (kind == PICTURE_EXR || kind == PICTURE_RAW) {
+        status whole =
+            kind == PICTURE_EXR ? picture_read_exr(path, how, color, alpha) : picture_read_raw(path, how, color);
+        if (whole == OK) whole = picture_reduce(color);
+        return whole == OK && alpha ? picture_reduce(alpha) : whole;
+    }
     status s = kind == PICTURE_PNG ? picture_read_png(path, how, color, alpha, &head) : OK;
     return s == OK && !head.plain ? picture_decode(path, kind, how, color, alpha) : s;
 }
@@ -191,10 +202,12 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
-/* Without a profile 16 bits are a measurement's; with one they were developed by a program that makes photographs. */
+/* Where nothing is said 16 bits are a measurement's; with a profile or a stated curve they were developed by a program
+ * that makes photographs. */
 static picture_colour colour_of_samples(picture_kind kind, const picture_head *head, bool decode)
 {
-    return kind != PICTURE_EXR && decode && (head->bits == 8 || head->profile) ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
+    bool coded = head->bits == 8 || head->profile || head->light.said;
+    return kind != PICTURE_EXR && decode && coded ? PICTURE_LINEARIZE : PICTURE_AS_IT_IS;
 }
 
 static status read_samples(const char *path, bool decode, img *color, int *bits)
@@ -204,7 +217,7 @@ static status read_samples(const char *path, bool decode, img *color, int *bits)
     status s = look_at(path, &kind);
     if (s == OK) s = look_into(path, kind, &head);
     if (s != OK) return s;
-    *bits = head.bits;
+    *bits = decode && picture_light_is_bright(&head.light) ? 32 : head.bits;
     return read_pixels(path, kind, colour_of_samples(kind, &head, decode), color, NULL);
 }
 

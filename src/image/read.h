@@ -9,7 +9,8 @@
 
 #include "image/image.h"
 
-enum { IMAGE_MAX_SIDE = 16384 };
+/* Larger pictures are read at a reduced size: the mean of so many of their pixels that they have no more. */
+enum { IMAGE_MAX_SIDE = 16384, IMAGE_MOST_PIXELS = 64 * 1000 * 1000 };
 
 /* How raw pictures' names end; for lists of endings (file_ends_in_any). */
 #define IMAGE_RAW_ENDINGS ".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".pef", ".srw", ".3fr", ".iiq"
@@ -20,18 +21,19 @@ enum { IMAGE_MAX_SIDE = 16384 };
 
 /* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1]
  * where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is not times
- * alpha, whatever the file's kind. Refuses non-images, truncated files, sides above IMAGE_MAX_SIDE and values that are
- * NaN or infinite, in one clear line. */
+ * alpha, whatever the file's kind. Refuses non-images, truncated files, more than 512 million pixels and values
+ * that are NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
-/* Its size from the file's head alone, the longer side perhaps as height: before an orientation is applied. */
+/* The size that it is read at, from the file's head alone, the longer side perhaps as height: before an orientation is
+ * applied. */
 status img_read_size(const char *path, int *width, int *height);
 /* img_read of an environment, a latitude-longitude picture: twice as wide as high and 8×4 pixels at least. Mirror
  * balls' and cubes' pictures, which would be bent around the object, are refused. */
 status img_read_latlong(const char *path, img *color);
 /* A measurement rather than a photograph: 1 or 3 channels as the file has them. Decoded to linear only if asked are
- * samples that were encoded: 8-bit ones, from sRGB, and what has a colour profile; others are as they are. Raw ones are
- * white balanced for daylight, not as the camera was set, which may have changed from one to the next. *bits: 8, 16 or
- * 32 (floats). */
+ * samples that were encoded: 8-bit ones, from sRGB, and what has a colour profile or states its curve; others are as
+ * they are. Raw ones are white balanced for daylight, not as the camera was set, which may have changed from one to the
+ * next. *bits: 8, 16 or 32 (floats). */
 status img_read_samples(const char *path, bool decode, img *color, int *bits);
 /* One channel in [0, 1] without colour decoding: a mask. */
 status img_read_mask(const char *path, img *mask);
