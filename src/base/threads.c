@@ -58,14 +58,13 @@ static int try_threads(int count)
  * wait is for a thread that has no processor, and takes another's meanwhile: five estimates one after the other take
  * 1.9 s, and two such rows at once 7.9 s on two cores, or 3.4 with short waits. The environment can say so as well, but
  * is read before main. So there are more of them: a team that never has anything to do, and sleeps. */
-static void *sleep_for_good(void *context)
+static void *sleep_for_good(void *team)
 {
-    int team = *(int *)context;
-    free(context);
-#pragma omp parallel num_threads(team)
+#pragma omp parallel num_threads(*(int *)team)
     {
         __asm__ volatile("" ::: "memory"); /* an empty team would not be started */
     }
+    free(team);
     while (pause() < 0) /* always */
         ;
     return NULL;

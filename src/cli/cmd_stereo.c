@@ -217,6 +217,7 @@ static status work(request *r, const char *output, cJSON *report)
     r->folder.watch = r->folder.read.watch = &shown;
     json_line_text(report, "input", r->input);
     status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    r->folder.watch = r->folder.read.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
     float scale = 1;
     if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);

@@ -124,6 +124,7 @@ static status run(request *r)
     watch shown = {stage_bar_tell, &bar};
     r->options.watch = &shown;
     status s = pst_calibrate_sphere(r->input, &r->options, &c);
+    r->options.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
     if (s != OK) return s;
     cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */

@@ -19,7 +19,8 @@ static inline double blackbody_lobe(double x, double middle, double left, double
 static inline vec3 blackbody_color(double kelvin)
 {
     double x = 0, y = 0, z = 0;
-    for (double nm = 380; nm <= 780; nm += 5) {
+    for (int i = 0; i <= 80; i++) {
+        double nm = 380 + 5 * i;
         double power = pow(nm / 560, -5) / expm1(1.438776877e7 / (nm * kelvin));
         x += power * (1.056 * blackbody_lobe(nm, 599.8, 37.9, 31.0) + 0.362 * blackbody_lobe(nm, 442.0, 16.0, 26.7) -
                       0.065 * blackbody_lobe(nm, 501.1, 20.4, 26.2));

@@ -94,7 +94,7 @@ static status read_sparse(gltf *g, const cJSON *about, gltf_accessor *a)
 {
     const cJSON *indices = cJSON_GetObjectItemCaseSensitive(about, "indices");
     const cJSON *values = cJSON_GetObjectItemCaseSensitive(about, "values");
-    size_t type, stride, size = bytes_of((size_t)a->type) * (size_t)a->components;
+    size_t type, stride = 0, size = bytes_of((size_t)a->type) * (size_t)a->components;
     if (!gltf_whole(about, "count", 0, &a->sparse_count) || !gltf_whole(indices, "componentType", 0, &type) ||
         (type != U8 && type != U16 && type != U32))
         return gltf_damaged("a sparse accessor that is not whole");

@@ -99,10 +99,16 @@ static status list_items(const cJSON *root, const char *key, gltf_list *out)
     const cJSON *array = cJSON_GetObjectItemCaseSensitive(root, key), *item;
     if (!array) return OK;
     size_t count = 0;
-    cJSON_ArrayForEach(item, array) count++;
+    cJSON_ArrayForEach(item, array)
+    {
+        count++;
+    }
     out->at = malloc((count + 1) * sizeof *out->at);
     if (!out->at) return fail(ERROR_MEMORY, "no memory for the mesh");
-    cJSON_ArrayForEach(item, array) out->at[out->count++] = item;
+    cJSON_ArrayForEach(item, array)
+    {
+        out->at[out->count++] = item;
+    }
     return OK;
 }
 

@@ -86,8 +86,10 @@ static size_t count_primitives(const reader *r)
     size_t count = 0;
     const cJSON *item;
     for (size_t i = 0; i < r->g->meshes.count; i++)
-        if (r->shown[i])
-            cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->g->meshes.at[i], "primitives")) count++;
+        if (r->shown[i]) cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->g->meshes.at[i], "primitives"))
+            {
+                count++;
+            }
     return count;
 }
 

@@ -74,8 +74,9 @@ static float search(const img *p, const pst_circle *inner, float across, pst_cir
 {
     float most = 0, reach = ASIDE * inner->radius;
     for (int place = 0; place < PLACES * PLACES; place++) {
-        float dx = reach * (2 * (float)(place % PLACES) / (PLACES - 1) - 1);
-        float dy = reach * (2 * (float)(place / PLACES) / (PLACES - 1) - 1);
+        int column = place % PLACES, row = place / PLACES;
+        float dx = reach * (2 * (float)column / (PLACES - 1) - 1);
+        float dy = reach * (2 * (float)row / (PLACES - 1) - 1);
         float least = inner->radius + hypotf(dx, dy) + 2 * across, largest = LARGEST * inner->radius;
         for (int i = 0; i <= RADII && least < largest; i++) {
             pst_circle trial = {inner->x + dx, inner->y + dy, least + (largest - least) * (float)i / RADII};
@@ -91,8 +92,9 @@ static void polish(const img *p, const pst_circle *inner, float across, float mo
     float move = 2 * ASIDE * inner->radius / (PLACES - 1);
     for (int round = 0; round < POLISH; round++, move /= 2)
         for (int k = 0; k < 27; k++) {
-            pst_circle trial = {best->x + move * (float)(k % 3 - 1), best->y + move * (float)(k / 3 % 3 - 1),
-                                best->radius + move * (float)(k / 9 - 1)};
+            int right = k % 3 - 1, down = k / 3 % 3 - 1, larger = k / 9 - 1;
+            pst_circle trial = {best->x + move * (float)right, best->y + move * (float)down,
+                                best->radius + move * (float)larger};
             float apart = hypotf(trial.x - inner->x, trial.y - inner->y);
             if (trial.radius < inner->radius + apart + 2 * across) continue;
             try_circle(p, &trial, across, &most, best);
@@ -116,8 +118,11 @@ bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer)
     float most = search(picture, inner, across, outer);
     if (!(most > 0)) return false;
     polish(picture, inner, across, most, outer);
-    for (float finer = across / 2; finer >= 1.5f; finer /= 2)
+    float finer = across / 2;
+    while (finer >= 1.5f) {
         polish(picture, inner, finer, 0, outer);
+        finer /= 2;
+    }
     return is_outline(picture, outer, across);
 }
 
@@ -129,8 +134,9 @@ bool ball_has_horizon(const img *picture, const pst_circle *circle)
     pst_circle best = *circle;
     for (int place = 0; place < 9; place++)
         for (int i = 0; i <= STEPS; i++) {
-            pst_circle trial = {circle->x + BESIDE * circle->radius * (float)(place % 3 - 1),
-                                circle->y + BESIDE * circle->radius * (float)(place / 3 - 1),
+            int right = place % 3 - 1, down = place / 3 - 1;
+            pst_circle trial = {circle->x + BESIDE * circle->radius * (float)right,
+                                circle->y + BESIDE * circle->radius * (float)down,
                                 circle->radius * (LEAST + (MOST - LEAST) * (float)i / STEPS)};
             try_circle(picture, &trial, across, &most, &best);
         }

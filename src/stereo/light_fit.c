@@ -209,7 +209,8 @@ double pst_light_fit_least(const pst_light_fit *f, int without)
 void pst_light_fit_surface(const pst_light_fit *f, const vec3 *light, vec3 *b)
 {
     enum { ROOM = PST_CHECKED_PICTURES + PST_LANES };
-    float x[ROOM] = {0}, y[ROOM] = {0}, z[ROOM] = {0}, value[ROOM] = {0}, usable[ROOM] = {0}, weight[ROOM], power[ROOM];
+    float x[ROOM] = {0}, y[ROOM] = {0}, z[ROOM] = {0}, value[ROOM] = {0}, usable[ROOM] = {0}, weight[ROOM],
+          power[ROOM] = {0};
     pst_observations o = {.padded = pst_padded(f->count), .x = x, .y = y, .z = z, .value = value, .usable = usable};
     for (int k = 0; k < f->count; k++) {
         vec3 l = light[f->picture[k]];
