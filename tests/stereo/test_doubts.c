@@ -163,7 +163,7 @@ static void exchanged_axes_are_named(void **state)
 static void another_order_is_named(void **state)
 {
     (void)state;
-    static char names[LIGHTS][16];
+    static char names[LIGHTS][24];
     static const int alphabet[LIGHTS] = {0, 9, 10, 11, 1, 2, 3, 4, 5, 6, 7, 8};
     char *name[LIGHTS];
     pst_capture c;
