@@ -27,3 +27,9 @@ normals_within() {
     awk -v d="${degrees:-180}" -v most="$1" 'BEGIN { exit !(d <= most) }' ||
         complain "normals of $2 and $3 differ by $degrees degrees, more than $1"
 }
+
+# bounded COMMAND...: with at most 10 s and, but under sanitizers, which map terabytes, 1.5 GB of addresses.
+bounded() (
+    ldd "$MERLIN" 2>/dev/null | grep -q 'lib[at]san' || ulimit -v 1500000
+    timeout 10 "$@"
+)
