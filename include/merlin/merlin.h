@@ -78,6 +78,17 @@ const char *merlin_model_name(const merlin_model *model); /* as long as the mode
 
 /* ---- from a photograph to maps ---- */
 
+/* Facts of how a photograph was taken, as far as they are known. */
+typedef enum merlin_flash { MERLIN_FLASH_UNKNOWN, MERLIN_FLASH_NONE, MERLIN_FLASH_FIRED } merlin_flash;
+
+typedef struct merlin_shot {
+    merlin_flash flash;
+    float focal_35mm; /* the focal length in mm whose picture on 36 x 24 mm has as wide a diagonal; 0: unknown */
+} merlin_shot;
+
+/* By the EXIF of a JPEG, PNG, WebP, HEIC, TIFF or raw picture; unknown without. */
+merlin_status merlin_shot_read(const char *path, merlin_shot *out);
+
 typedef struct merlin_params {
     int size;  /* side of the square the network sees: a multiple of 32, from 64 to 512. It was trained at 256; of
                 * more it takes fine normals alone, if the photograph shows the object so large */
@@ -86,6 +97,7 @@ typedef struct merlin_params {
                         * any unit), to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_shot shot;  /* of the photograph, for the doubts in its maps alone */
 } merlin_params;
 
 merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never stopped */
@@ -95,6 +107,24 @@ typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_
 typedef struct merlin_timing {
     double mask, prepare, compile, network, upsample; /* seconds */
 } merlin_timing;
+
+/* Why maps may be wrong, the gravest first: each a bit of merlin_maps' doubts. The model knows one light, a flash at
+ * the lens, one object and one lens; of anything else it makes maps, too. */
+typedef enum merlin_doubt {
+    MERLIN_DOUBT_NO_OBJECT = 1 << 0,       /* the object found, or the mask given, fills the photograph */
+    MERLIN_DOUBT_BURNT_OUT = 1 << 1,       /* burnt_out is a tenth or more */
+    MERLIN_DOUBT_OBJECT_UNSURE = 1 << 2,   /* mask_confidence is below 0.6 */
+    MERLIN_DOUBT_LIGHT_ELSEWHERE = 1 << 3, /* light_elsewhere says that it was not lit by a flash at the lens */
+    MERLIN_DOUBT_NO_FLASH = 1 << 4,        /* params.shot says that no flash fired */
+    MERLIN_DOUBT_HOLLOW = 1 << 5,          /* along the outline the normals turn inward, as of a bowl */
+    MERLIN_DOUBT_DRAWING = 1 << 6,         /* most of it are areas of one colour: a drawing or a screenshot */
+    MERLIN_DOUBT_LENS_NARROW = 1 << 7,     /* lens_degrees is below 30: normals are some 6 degrees farther off */
+    MERLIN_DOUBT_LENS_WIDE = 1 << 8,       /* lens_degrees is above 95 */
+    MERLIN_DOUBT_DARK = 1 << 9,            /* too few shades: nearly black */
+    MERLIN_DOUBT_OBJECT_CUT = 1 << 10,     /* a quarter of the photograph's edge or more cuts through the object */
+    MERLIN_DOUBT_OBJECT_SMALL = 1 << 11,   /* the object has fewer than 2500 pixels */
+    MERLIN_DOUBT_GREY = 1 << 12,           /* a black-and-white picture: albedo's colour is not to be known */
+} merlin_doubt;
 
 /* All of the photograph's size, zero where mask is zero, finite everywhere. */
 typedef struct merlin_maps {
@@ -118,6 +148,9 @@ typedef struct merlin_maps {
     float mask_confidence;   /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
     char model[64];
     merlin_timing timing;
+    unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */
+    float light_elsewhere; /* how likely the photograph was lit from elsewhere than the lens, in [0, 1] */
+    float lens_degrees;    /* how wide the crop is by params.shot, which the maps take for 60 degrees; 0: unknown */
 } merlin_maps;
 
 /* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size,
@@ -126,6 +159,10 @@ typedef struct merlin_maps {
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps);
 void merlin_maps_free(merlin_maps *maps);
+/* A doubt's name, "light_elsewhere", as in report.json; "" for what is none. */
+const char *merlin_doubt_code(merlin_doubt doubt);
+/* One doubt in words for a person: a sentence about these maps, without a full stop, into text as snprintf does it. */
+int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text, int size);
 
 /* maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or, after a
  * failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. */

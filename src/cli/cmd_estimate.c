@@ -8,10 +8,10 @@
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
-#include "cli/photo_doubts.h"
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
 #include "estimate/api.h"
+#include "estimate/doubts.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -92,12 +92,15 @@ static status print_json(const photo_job *job, const merlin_maps *maps, const st
 static status announce(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
                        const lap_times *laps)
 {
+    enum { TOLD = 3 };
     status s = OK;
     if (r->json)
         s = print_json(job, maps, written, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
-    if (!r->quiet) photo_doubts_print("estimate", job->photo, maps, job->output);
+    warnings doubts = {0};
+    doubts_list(maps, &doubts);
+    if (!r->quiet) warnings_print(&doubts, "estimate", job->photo, TOLD);
     return s;
 }
 

@@ -7,6 +7,7 @@
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
+#include "estimate/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
 
@@ -118,7 +119,7 @@ static void add_tensors(cJSON *o, const st_file *file)
 
 static status print_json(const weights_info *info, bool tensors)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = report_begin(&(warnings){0});
     cJSON_AddStringToObject(o, "model", info->config.name);
     cJSON_AddNumberToObject(o, "parameters", (double)info->parameters);
     cJSON_AddNumberToObject(o, "statistics", (double)info->statistics);

@@ -12,11 +12,12 @@
 #include "cli/lamps.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
-#include "cli/photo_doubts.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 #include "cli/stereo_maps.h"
 #include "estimate/api.h"
+#include "estimate/doubts.h"
+#include "estimate/report.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -268,15 +269,15 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
-    status s = photo_maps(model, r->input, r->mask, &r->params, maps);
-    if (s == OK && !r->quiet) photo_doubts_print("relight", r->input, maps, NULL);
-    return s;
+    return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
 
 /* ---- what is said of it ---- */
 
+/* Lists the doubts of the photograph first, if the maps are made of one now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
+    doubts_list(job->maps, doubts);
     if (result->burnt == 0) return;
     char of_several[96] = "";
     if (result->pictures > 1)
@@ -290,8 +291,8 @@ static void find_doubts(const relight_job *job, const relight_result *result, wa
 static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
     warnings doubts = {0};
-    cJSON *report = cJSON_CreateObject();
     find_doubts(job, result, &doubts);
+    cJSON *report = report_begin(&doubts);
     json_line_text(report, "input", r->input);
     json_line_files(report, job->output, result->files.at, result->files.count);
     cJSON_AddNumberToObject(report, "lights", (double)job->lamps.count);
@@ -302,7 +303,6 @@ static status print_json(const request *r, const relight_job *job, const relight
     cJSON_AddNumberToObject(report, "exposure", round(100 * (double)result->ev) / 100);
     cJSON_AddNumberToObject(report, "burnt_out", round(1e4 * result->burnt_out) / 1e4);
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
-    cJSON_AddItemToObject(report, "warnings", warnings_json(&doubts));
     status s = json_line_print(report);
     cJSON_Delete(report);
     return s;

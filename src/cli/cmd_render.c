@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
+#include "estimate/report.h"
 #include "render/generate.h"
 
 static const char help[] =
@@ -93,7 +94,7 @@ static status parse(int argc, char **argv, request *r)
 
 static status print_json(const request *r, const render_stats *stats, double samples, double rays)
 {
-    cJSON *report = cJSON_CreateObject();
+    cJSON *report = report_begin(&(warnings){0});
     json_line_text(report, "output", r->options.folder);
     cJSON_AddNumberToObject(report, "rendered", (double)stats->rendered);
     cJSON_AddNumberToObject(report, "kept", (double)stats->kept);

@@ -14,6 +14,7 @@
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
 #include "cli/stereo_photo.h"
+#include "estimate/report.h"
 #include "stereo/albedo_scale.h"
 #include "stereo/mesh_write.h"
 
@@ -186,8 +187,7 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
                       .params = r->params,
                       .method = r->folder.method,
                       .preserve_edges = r->folder.preserve_edges,
-                      .watch = r->folder.watch,
-                      .quiet = r->quiet};
+                      .watch = r->folder.watch};
     s = stereo_from_photo(&p, out, report);
     free(weights);
     return s;
@@ -250,7 +250,7 @@ static status run(request *r)
                     "time; without it they go to stereo inside it",
                     r->output);
     char *output = photo_output_inside(r->input, "stereo", r->output);
-    cJSON *report = cJSON_CreateObject();
+    cJSON *report = report_begin(NULL);
     status s = output && report ? work(r, output, report) : fail(ERROR_MEMORY, "no memory for a report");
     cJSON_Delete(report);
     free(output);

@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/stage_bar.h"
 #include "cli/stereo_commands.h"
+#include "estimate/report.h"
 #include "estimate/staging.h"
 #include "stereo/calibrate.h"
 
@@ -72,7 +73,7 @@ static status parse(int *argc, char ***argv, request *r)
 
 static status print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
 {
-    cJSON *report = cJSON_CreateObject();
+    cJSON *report = report_begin(&c->doubts);
     json_line_text(report, "input", r->input);
     json_line_files(report, r->output, written->at, written->count);
     cJSON_AddNumberToObject(report, "lights", c->count);
@@ -86,7 +87,6 @@ static status print_json(const request *r, const pst_calibration *c, const stage
         cJSON_AddItemToArray(directions,
                              cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
     }
-    cJSON_AddItemToObject(report, "warnings", warnings_json(&c->doubts));
     cJSON_AddNumberToObject(report, "seconds_total", seconds);
     status s = json_line_print(report);
     cJSON_Delete(report);

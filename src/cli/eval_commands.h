@@ -14,4 +14,7 @@ int eval_solvers(int argc, char **argv);
 /* merlin eval detail; argv[0] is "detail". Returns the exit status. */
 int eval_detail(int argc, char **argv);
 
+/* merlin eval doubts; argv[0] is "doubts". Returns the exit status. */
+int eval_doubts(int argc, char **argv);
+
 #endif

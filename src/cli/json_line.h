@@ -1,6 +1,6 @@
 /* What commands print with --json: one line of valid JSON, whatever bytes a file's name has.
  *
- *     cJSON *report = cJSON_CreateObject();
+ *     cJSON *report = report_begin(&doubts);
  *     json_line_text(report, "input", path);
  *     json_line_files(report, folder, files, count);
  *     json_line_print(report);

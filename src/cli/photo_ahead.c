@@ -23,6 +23,7 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
     *read_seconds = clock_seconds() - began;
     if (s == OK) {
         s = photo_object_choose(photo, &mask, object);
+        (void)merlin_shot_read(job->photo, &object->shot);
         if (s != OK) s = fail_in(s, "%s", job->photo);
     }
     merlin_image_free(&mask);

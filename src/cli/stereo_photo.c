@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "cli/photo_ahead.h"
-#include "cli/photo_doubts.h"
+#include "estimate/doubts.h"
 #include "eval/draws.h"
 #include "eval/relit.h"
 #include "eval/surface_error.h"
@@ -24,13 +24,6 @@ typedef struct work {
     int draws;
 } work;
 
-static status take_photo(const stereo_photo *p, merlin_model *model, merlin_maps *maps)
-{
-    status s = photo_maps(model, p->photo, p->mask, &p->params, maps);
-    if (s == OK && !p->quiet) photo_doubts_print("stereo", p->photo, maps, NULL);
-    return s;
-}
-
 static status open_photo(work *w)
 {
     const stereo_photo *p = w->photo;
@@ -38,7 +31,7 @@ static status open_photo(work *w)
     if (s == OK && file_is_folder(p->photo))
         s = (status)merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
-        s = take_photo(p, w->model, &w->maps);
+        s = photo_maps(w->model, p->photo, p->mask, &p->params, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);
@@ -151,6 +144,7 @@ status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *repor
     watch_tell(p->watch, "solving", 0); /* the photograph and its relit pictures take as long as a draw */
     status s = open_photo(&w);
     if (s == OK) s = result_new(&w, out);
+    if (s == OK) doubts_list(&w.maps, &out->doubts);
     if (s == OK) s = solve_all(&w);
     if (s == OK) {
         average_all(&w, out, report);

@@ -11,9 +11,9 @@
 typedef struct stereo_photo {
     const char *photo, *mask, *weights; /* photo: or a folder of merlin estimate's, whose maps are taken */
     merlin_params params;
-    pst_method method;          /* PST_AUTO: near */
-    const watch *watch;         /* told of the stages; may be NULL */
-    bool preserve_edges, quiet; /* quiet: without a word to standard error on a doubtful photograph */
+    pst_method method;  /* PST_AUTO: near */
+    const watch *watch; /* told of the stages; may be NULL */
+    bool preserve_edges;
 } stereo_photo;
 
 /* 50 lights of the frontal hemisphere, five draws of 32 of them, all by a fixed seed. The result is the square around

@@ -5,6 +5,7 @@
 #include "estimate/crop.h"
 #include "estimate/env_map.h"
 #include "estimate/horizon.h"
+#include "estimate/light_cues.h"
 #include "estimate/mask.h"
 #include "estimate/network.h"
 #include "estimate/shadow.h"
@@ -39,7 +40,9 @@ typedef struct photo_object {
     img mask;
     mask_choice choice;
     crop_square crop;
-    double seconds; /* that finding it took */
+    merlin_shot shot; /* unknown, unless it is told */
+    light_cues cues;  /* what estimate_object found of the light */
+    double seconds;   /* that finding it took */
 } photo_object;
 
 /* merlin_estimate in two steps, so that the object can be searched for while the model is still being read. given may

@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "estimate/api.h"
 #include "estimate/detail.h"
+#include "estimate/doubts.h"
 #include "estimate/exposure.h"
 #include "estimate/input.h"
 #include "estimate/relight_env.h"
@@ -26,6 +27,8 @@ typedef struct work {
     network_estimation low;
     surface full;
     img reconstruction;
+    light_cues cues;
+    merlin_shot shot;
     double clock; /* when the current stage began */
 } work;
 
@@ -97,6 +100,7 @@ static void take_object(work *w, photo_object *object, merlin_maps *maps)
 {
     w->mask = object->mask;
     w->crop = object->crop;
+    w->shot = object->shot;
     object->mask = (img){0};
     maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = object->choice.confidence;
@@ -250,6 +254,19 @@ static status place_all(work *w, merlin_maps *maps)
     return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
 }
 
+/* By the maps of the network's size, before normals of a larger one replace theirs. photo: its size in pixels. */
+static status judge_light(work *w, const merlin_image *photo, float gain)
+{
+    const crop_square c = w->crop;
+    float scale = (float)w->low_photo.width / (float)c.side;
+    light_frame frame = {.left = scale * (float)-c.x,
+                         .top = scale * (float)-c.y,
+                         .right = scale * (float)(photo->width - c.x),
+                         .bottom = scale * (float)(photo->height - c.y),
+                         .white = gain};
+    return light_cues_find(&w->low.maps, &w->low_photo, &frame, &w->cues);
+}
+
 static status estimate(merlin_model *model, work *w, merlin_maps *maps)
 {
     network *n = model->network;
@@ -266,6 +283,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
+    if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
     if (s == OK) s = add_detail(n, w, finer, maps->gain);
     if (s == OK) s = lap(w, &t->network);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
@@ -273,6 +291,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
     if (s == OK) s = refine(w, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
     if (s == OK) s = place_all(w, maps);
+    if (s == OK) doubts_find(&w->cues, &w->shot, maps);
     if (s == OK) s = lap(w, &t->upsample);
     return s;
 }
@@ -289,6 +308,7 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
     take_object(&w, object, maps);
     status s = check_params(w.params);
     if (s == OK) s = estimate(model, &w, maps);
+    object->cues = w.cues;
     work_free(&w);
     if (owned) merlin_image_free(owned);
     if (s != OK) merlin_maps_free(maps);
@@ -309,6 +329,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     if (s != OK) return result_of(s);
     photo_object object;
     s = photo_object_choose(photo, mask, &object);
+    if (params) object.shot = params->shot;
     if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
     if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
     photo_object_free(&object);

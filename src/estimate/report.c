@@ -3,7 +3,9 @@
 #include <math.h>
 
 #include "estimate/api.h"
+#include "estimate/doubts.h"
 #include "estimate/exposure.h"
+#include "estimate/report.h"
 
 typedef struct range {
     double low, high, sum;
@@ -93,9 +95,20 @@ static void put_environment(cJSON *root, const merlin_maps *maps)
     }
 }
 
-char *maps_report(const merlin_maps *maps)
+cJSON *report_begin(const warnings *doubts)
 {
     cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "version", merlin_version());
+    cJSON_AddNumberToObject(root, "schema", REPORT_SCHEMA);
+    if (doubts) cJSON_AddItemToObject(root, "warnings", warnings_json(doubts));
+    return root;
+}
+
+char *maps_report(const merlin_maps *maps)
+{
+    warnings doubts = {0};
+    doubts_list(maps, &doubts);
+    cJSON *root = report_begin(&doubts);
     cJSON_AddStringToObject(root, "model", maps->model);
     cJSON_AddNumberToObject(root, "width", maps->albedo.width);
     cJSON_AddNumberToObject(root, "height", maps->albedo.height);
@@ -108,6 +121,8 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddNumberToObject(root, "burnt_out", maps->burnt_out);
     cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
     cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
+    cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
+    if (maps->lens_degrees > 0) cJSON_AddNumberToObject(root, "lens_degrees", maps->lens_degrees);
     put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);

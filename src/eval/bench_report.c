@@ -1,5 +1,6 @@
 #include <cjson/cJSON.h>
 
+#include "estimate/report.h"
 #include "eval/bench.h"
 
 static const char *const type_names[BENCH_TYPES] = {[NN_FLOAT32] = "float32", [NN_BFLOAT16] = "bfloat16"};
@@ -118,7 +119,7 @@ static void add_relight(cJSON *parent, const bench_relighting *b)
 
 char *bench_report_json(const bench_report *r)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = report_begin(&(warnings){0});
     cJSON_AddStringToObject(o, "model", r->model);
     cJSON_AddNumberToObject(o, "threads", r->threads);
     cJSON_AddNumberToObject(o, "training_batch", r->batch);

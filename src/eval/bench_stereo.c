@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "estimate/report.h"
 #include "eval/bench_estimate.h"
 #include "eval/bench_time.h"
 #include "stereo/solve.h"
@@ -129,7 +130,7 @@ void bench_stereo_print(const bench_stereo_report *r, FILE *stream)
 
 char *bench_stereo_json(const bench_stereo_report *r)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = report_begin(&(warnings){0});
     cJSON_AddNumberToObject(o, "threads", r->threads);
     cJSON_AddNumberToObject(o, "copy_bytes_per_second", r->copy_rate);
     cJSON_AddNumberToObject(o, "width", r->width);

@@ -2,6 +2,7 @@
 #include <cjson/cJSON.h>
 
 #include "estimate/network.h"
+#include "estimate/report.h"
 #include "eval/detail_table.h"
 
 typedef struct figure_words {
@@ -40,7 +41,7 @@ void detail_table_print(const detail_table *t, FILE *stream)
 
 char *detail_table_json(const detail_table *t)
 {
-    cJSON *root = cJSON_CreateObject();
+    cJSON *root = report_begin(&(warnings){0});
     cJSON_AddStringToObject(root, "model", t->model);
     cJSON_AddNumberToObject(root, "samples", (double)t->samples);
     cJSON_AddNumberToObject(root, "size", t->size);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "estimate/report.h"
 #include "eval/maps.h"
 
 typedef struct row_text {
@@ -273,7 +274,7 @@ static void add_regions(cJSON *o, const eval_scores *scores)
 
 char *eval_report_json(const eval_report *report)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = report_begin(&(warnings){0});
     cJSON_AddStringToObject(o, "model", report->model);
     cJSON_AddNumberToObject(o, "size", report->size);
     cJSON_AddNumberToObject(o, "views", report->views);

@@ -1,6 +1,7 @@
 /* solver_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
+#include "estimate/report.h"
 #include "eval/solver_table.h"
 
 typedef struct figure_words {
@@ -84,7 +85,7 @@ void solver_table_print(const solver_table *t, FILE *stream)
 
 char *solver_table_json(const solver_table *t)
 {
-    cJSON *o = cJSON_CreateObject(), *mean = cJSON_AddObjectToObject(o, "mean");
+    cJSON *o = report_begin(&(warnings){0}), *mean = cJSON_AddObjectToObject(o, "mean");
     cJSON *goal = cJSON_AddObjectToObject(o, "goal"), *list = cJSON_AddArrayToObject(o, "objects");
     cJSON_AddNumberToObject(o, "lights", SOLVER_LIGHTS);
     for (int f = 0; f < SOLVER_FIGURES; f++) {

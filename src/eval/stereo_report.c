@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/utf8.h"
+#include "estimate/report.h"
 #include "eval/draws.h"
 #include "eval/stereo_table.h"
 
@@ -122,7 +123,7 @@ static cJSON *object_json(const stereo_column *column)
 
 char *stereo_table_json(const stereo_table *t)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = report_begin(&(warnings){0});
     cJSON_AddStringToObject(o, "model", t->model);
     cJSON_AddNumberToObject(o, "draws", DRAW_MOST);
     cJSON_AddNumberToObject(o, "pictures_a_draw", DRAW_PICTURES);

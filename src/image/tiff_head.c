@@ -1,6 +1,6 @@
 #include "image/tiff_head.h"
 
-enum { BYTE = 1, SHORT = 3, LONG = 4, UNDEFINED = 7, FOLDER = 13, BIG_TIFF = 43 };
+enum { BYTE = 1, SHORT = 3, LONG = 4, RATIONAL = 5, UNDEFINED = 7, FOLDER = 13, BIG_TIFF = 43 };
 
 /* The number in so many bytes at a place of the file; 0 where there is none. */
 static uint64_t number_at(const tiff_head *t, uint64_t at, int bytes)
@@ -83,4 +83,14 @@ bool tiff_open(tiff_head *t, FILE *file)
         page = number_at(t, behind, offset_bytes(t));
     }
     return (order == 'M' || order == 'I') && t->pages > 0;
+}
+
+double tiff_real(const tiff_head *t, uint64_t page, unsigned tag)
+{
+    uint64_t at = find_entry(t, page, tag), type = at ? number_at(t, at + 2, 2) : 0;
+    if (type != RATIONAL) return tiff_value(t, page, tag);
+    uint64_t value = at + 4 + (uint64_t)offset_bytes(t);
+    if (!t->wide) value = number_at(t, value, offset_bytes(t));
+    double over = (double)number_at(t, value, 4), under = (double)number_at(t, value + 4, 4);
+    return under > 0 ? over / under : 0;
 }

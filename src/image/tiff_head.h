@@ -47,5 +47,7 @@ uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
 /* How many numbers an entry has, and one of them by its place. */
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag);
 uint32_t tiff_value_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
+/* Returns the first number of an entry, whole or a fraction; 0 where there is none. */
+double tiff_real(const tiff_head *t, uint64_t page, unsigned tag);
 
 #endif

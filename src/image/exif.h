@@ -1,0 +1,36 @@
+/* Reads from its EXIF how a photograph was taken: of JPEG, PNG, WebP, HEIC, TIFF and cameras' raw files.
+ *
+ *     exif_facts facts;
+ *     exif_read("cup.jpg", &facts);
+ *     if (facts.flash == EXIF_FLASH_NONE) ...
+ *
+ * Strangers' bytes: what is missing, damaged or absurd is unknown, and nothing fails. */
+#ifndef MERLIN_IMAGE_EXIF_H
+#define MERLIN_IMAGE_EXIF_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef enum exif_flash { EXIF_FLASH_UNKNOWN, EXIF_FLASH_NONE, EXIF_FLASH_FIRED } exif_flash;
+
+typedef struct exif_facts {
+    int orientation; /* by the EXIF standard, from 1 (upright) to 8 */
+    exif_flash flash;
+    float focal_35mm; /* the focal length in mm whose picture on 36 × 24 mm has as wide a diagonal; 0: unknown */
+} exif_facts;
+
+/* Takes the facts from a picture's EXIF: a TIFF's head, perhaps behind "Exif" and two zeros. */
+void exif_parse(const void *exif, size_t size, exif_facts *out);
+/* Takes them from a picture's file, of whatever kind. */
+void exif_read(const char *path, exif_facts *out);
+
+/* Place in a file of its EXIF. */
+typedef struct exif_place {
+    uint64_t at;
+    size_t size; /* 0: all of the file is a TIFF */
+} exif_place;
+bool exif_find(FILE *file, exif_place *out);
+
+#endif

@@ -1,0 +1,125 @@
+/* What merlin_maps' doubts say of photographs, by maps that are made here. */
+#include "estimate/doubts.h"
+#include "image/public.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 120, HEIGHT = 90 };
+
+/* A photograph of many shades and colours, of which a rectangle is the object. */
+static void make(merlin_maps *maps, int left, int top, int right, int bottom)
+{
+    img photo, mask;
+    *maps = (merlin_maps){.mask_source = MERLIN_MASK_FOUND, .mask_confidence = 1, .crop = {.side = WIDTH}};
+    assert_int_equal(img_new(&photo, WIDTH, HEIGHT, 3), OK);
+    assert_int_equal(img_new(&mask, WIDTH, HEIGHT, 1), OK);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            for (int c = 0; c < 3; c++)
+                img_at(&photo, x, y)[c] = 0.1f + 0.003f * (float)((7 * x + 13 * y + 29 * c) % 200);
+            *img_at(&mask, x, y) = x >= left && x < right && y >= top && y < bottom;
+        }
+    maps->photo = image_of(&photo);
+    maps->mask = image_of(&mask);
+}
+
+static unsigned doubts_of(merlin_maps *maps, const merlin_shot *shot)
+{
+    const light_cues unknown = {.known = false};
+    doubts_find(&unknown, shot, maps);
+    return maps->doubts;
+}
+
+static void a_good_photograph_has_no_doubt(void **state)
+{
+    (void)state;
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 26}), 0);
+    merlin_maps_free(&maps);
+}
+
+static void what_the_mask_shows_is_told(void **state)
+{
+    (void)state;
+    const merlin_shot unknown = {0};
+    merlin_maps maps;
+    make(&maps, 0, 0, WIDTH, HEIGHT);
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_NO_OBJECT);
+    merlin_maps_free(&maps);
+    make(&maps, 0, 0, WIDTH / 2, HEIGHT); /* half of the upper and the lower edge, and one side */
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_CUT);
+    merlin_maps_free(&maps);
+    make(&maps, 40, 30, 80, 60); /* 1200 pixels */
+    maps.mask_confidence = 0.5f;
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_SMALL | MERLIN_DOUBT_OBJECT_UNSURE);
+    merlin_maps_free(&maps);
+}
+
+static void what_the_pixels_show_is_told(void **state)
+{
+    (void)state;
+    const merlin_shot unknown = {0};
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        maps.photo.data[3 * i + 1] = maps.photo.data[3 * i + 2] = maps.photo.data[3 * i];
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_GREY);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        maps.photo.data[i] = i % 3 ? 0.2f : 0.6f;
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_DRAWING);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        maps.photo.data[i] = 0.0004f * (float)(i % 7 + i / WIDTH % 3);
+    assert_int_equal(doubts_of(&maps, &unknown) & MERLIN_DOUBT_DARK, MERLIN_DOUBT_DARK);
+    merlin_maps_free(&maps);
+}
+
+/* 26 mm show 79.5 degrees of a diagonal, and 67.4 of the longer side of 120 x 90; 135 mm show 14.6 of it. */
+static void what_exif_says_is_told(void **state)
+{
+    (void)state;
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_NONE, 26}), MERLIN_DOUBT_NO_FLASH);
+    assert_float_equal(maps.lens_degrees, 67.3, 0.2);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 135}), MERLIN_DOUBT_LENS_NARROW);
+    assert_float_equal(maps.lens_degrees, 14.6, 0.1);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 12}), MERLIN_DOUBT_LENS_WIDE);
+    merlin_maps_free(&maps);
+}
+
+static void every_doubt_has_a_code_and_words(void **state)
+{
+    (void)state;
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    for (unsigned bit = 1; bit <= MERLIN_DOUBT_GREY; bit <<= 1) {
+        char words[WARNING_WORDS];
+        assert_true(strlen(merlin_doubt_code((merlin_doubt)bit)) > 3);
+        int length = merlin_doubt_message(&maps, (merlin_doubt)bit, words, sizeof words);
+        assert_true(length > 20 && length < (int)sizeof words);
+    }
+    assert_string_equal(merlin_doubt_code((merlin_doubt)0), "");
+    maps.doubts = MERLIN_DOUBT_GREY | MERLIN_DOUBT_LIGHT_ELSEWHERE;
+    warnings list = {0};
+    doubts_list(&maps, &list);
+    assert_int_equal(list.count, 2);
+    assert_string_equal(list.at[0].code, "light_elsewhere"); /* the graver first */
+    merlin_maps_free(&maps);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_good_photograph_has_no_doubt),   cmocka_unit_test(what_the_mask_shows_is_told),
+        cmocka_unit_test(what_the_pixels_show_is_told),     cmocka_unit_test(what_exif_says_is_told),
+        cmocka_unit_test(every_doubt_has_a_code_and_words),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
