@@ -74,6 +74,11 @@ static void note_shade(pixels *p, float value)
     p->shade[p->shades++] = value;
 }
 
+static bool is_color(const float *a, const float *b)
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* Tells whether the eight pixels around have a pixel's very colour. */
 static bool is_flat(const img *photo, const img *mask, int x, int y)
 {
@@ -81,9 +86,7 @@ static bool is_flat(const img *photo, const img *mask, int x, int y)
     if (x < 1 || y < 1 || x + 1 >= photo->width || y + 1 >= photo->height) return false;
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++)
-            if (*img_at(mask, x + dx, y + dy) < 0.999f ||
-                memcmp(img_at(photo, x + dx, y + dy), color, 3 * sizeof *color))
-                return false;
+            if (*img_at(mask, x + dx, y + dy) < 0.999f || !is_color(img_at(photo, x + dx, y + dy), color)) return false;
     return true;
 }
 

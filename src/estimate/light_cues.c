@@ -264,8 +264,9 @@ static status judge_shape(const surface *maps, const planes *p, light_cues *out)
 {
     size_t room = img_value_count(&p->inside), rim = 0, core = 0, inward = 0;
     double outward = 0;
-    float *depths = malloc(2 * room * sizeof *depths), *core_depths = depths + room;
+    float *depths = malloc(2 * room * sizeof *depths);
     if (!depths) return fail(ERROR_MEMORY, "no memory to judge the shape");
+    float *core_depths = depths + room;
     float deepest = 0, reach = fmaxf(5, 0.12f * p->radius);
     for (size_t i = 0; i < room; i++)
         if (p->inside.data[i] > 0 && p->away.data[i] > deepest) deepest = p->away.data[i];
