@@ -61,8 +61,8 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
     return OK;
 }
 
-/* What is no file or folder gets a descriptor that tells what it is (fstat) and opens nothing: a pipe would be waited
- * for, and a device set to work. One that takes the file's place meanwhile is not waited for either. */
+/* Something that is no file or folder gets a descriptor that tells what it is (fstat) and opens nothing: a pipe would
+ * be waited for, and a device set to work. One that takes the file's place meanwhile is not waited for either. */
 static int open_descriptor(const char *path)
 {
     struct stat s;

@@ -15,7 +15,7 @@ static bool sleepers_started;
 static atomic_int wanted; /* by threads_use; 0: OpenMP's own choice */
 static atomic_uint changes;
 
-/* What the calling thread's loops have, and of which change it has heard. */
+/* The calling thread's number of threads for its loops, and the change that it has last heard of. */
 static _Thread_local struct {
     int threads;
     unsigned change;
@@ -94,7 +94,7 @@ static bool waiting_is_chosen(void)
 
 /* ---- both ---- */
 
-/* How large the sleepers' team is that makes OpenMP's threads more than processors beside a loop of so many. */
+/* Returns the size of the sleepers' team that makes OpenMP's threads more than processors beside a loop of so many. */
 static int team_beside(int threads)
 {
     int processors = omp_get_num_procs();

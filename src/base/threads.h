@@ -1,4 +1,4 @@
-/* How many threads parallel loops have, and how these wait for each other.
+/* The number of threads that parallel loops have, and the way in which these wait for each other.
  *
  *     threads_use(4);       // every thread's loops, from its next threads_begin on
  *     threads_begin();      // before the first loop of a piece of work

@@ -1,5 +1,5 @@
-/* What a person should know of a result before they trust it: each warning has a code for programs, in snake_case, and
- * one sentence for people. They are gathered while the work is done and told once, at its end:
+/* Warnings tell a person what to know of a result before they trust it: each has a code for programs, in snake_case,
+ * and one sentence for people. They are gathered while the work is done and told once, at its end:
  *
  *     warnings doubts = {0};
  *     if (burnt_out >= 0.1) warnings_add(&doubts, "burnt_out", "%.0f %% of the object is burnt out", 100 * burnt_out);

@@ -1,4 +1,4 @@
-/* How far long work is, told to whoever waits for it. Libraries take one and never print:
+/* A watch tells how far long work is to whoever waits for it. Libraries take one and never print:
  *
  *     watch_tell(w, "solving", 0.4);          w may be NULL */
 #ifndef MERLIN_BASE_WATCH_H

@@ -245,7 +245,7 @@ static status parse(int *argc, char ***argv, request *r)
     return check(r);
 }
 
-/* Those of a list, too. */
+/* Checks the lamps of options and of a list alike. */
 static status check_lamps(const request *r)
 {
     status s = OK;

@@ -85,7 +85,7 @@ static size_t count_lights(const relight_job *job)
     return job->lamps.count > 0 ? job->lamps.count : job->environment != NULL;
 }
 
-/* Of one light relit.png is the picture itself, of several a sheet with all of them. */
+/* Writes relit.png: one light's picture itself, or a sheet of several lights' pictures. */
 static status write_lights(relight_work *w)
 {
     const relight_job *job = w->job;

@@ -14,7 +14,7 @@
 
 enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 
-/* How bright pictures become. */
+/* The brightness that pictures get. */
 typedef enum relight_exposing {
     RELIGHT_AS_SOURCE, /* as the photograph was exposed; as lamps of power 1 would have it at distance 1 */
     RELIGHT_BY_LAMPS,  /* so that the brightest stays below white, were all lamps of power 1 and white */
@@ -47,7 +47,7 @@ typedef struct relight_job {
     progress *progress; /* moves on by one for each of relight_count */
 } relight_job;
 
-/* What became of it. */
+/* The outcome of it. */
 typedef struct relight_result {
     staged_files files;
     float ev;         /* stops by which the pictures are brighter than RELIGHT_AS_SOURCE has them */

@@ -1,4 +1,4 @@
-/* What the parts of relight_output.h share. */
+/* State that the parts of relight_output.h share. */
 #ifndef MERLIN_CLI_RELIGHT_WORK_H
 #define MERLIN_CLI_RELIGHT_WORK_H
 

@@ -112,7 +112,7 @@ static float steps_inside(float from, float step, int size)
     return ((step > 0 ? (float)size - 0.5f : -0.5f) - from) / step;
 }
 
-/* Where a ray to a distant light may end: nothing that is seen reaches further. */
+/* Returns the way to a light; to a distant one, as far as anything that is seen reaches. */
 static vec3 way_to(const shadow_caster *c, vec3 p, const lamp *l)
 {
     return l->distant ? vec3_scale(l->at, 4 * c->farthest) : vec3_sub(l->at, p);

@@ -1,4 +1,4 @@
-/* How bright a stage's pictures become, before they are made. */
+/* Meters how bright a stage's pictures become, before they are made. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 
 /* Stops above and below 1 that are told apart, by 32 bins each. */
 enum { STOPS = 24, BINS_BY_STOP = 32, BINS = 2 * STOPS * BINS_BY_STOP };
-/* Of a large dome so many lamps are looked at, evenly. */
+/* A large dome's lamps are looked at up to so many, evenly. */
 enum { MOST_LAMPS = 100 };
 static const double BRIGHTEST_SHARE = 0.001;
 

@@ -54,9 +54,9 @@ typedef struct picture_tiff_page {
 /* Finds it; refuses TIFFs of several that it might be, those whose YCbCr would be taken for RGB, and what would take
  * too much memory. */
 status picture_check_tiff(const char *path, picture_tiff_page *out);
-/* Whether a TIFF is the frame of a raw picture: a page is a mosaic, or all are small copies of something else. */
+/* Tells whether a TIFF is the frame of a raw picture: a page is a mosaic, or all are small copies of something else. */
 bool picture_tiff_is_raw(const char *path);
-/* Whether the JPEGs that a raw picture of that frame is made of claim to be far larger than it. */
+/* Tells whether the JPEGs that a raw picture of that frame is made of claim to be far larger than it. */
 bool picture_tiff_is_overfull(const char *path);
 /* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */
 int picture_exif_orientation(void *exif, size_t size);

@@ -1,4 +1,4 @@
-/* How a picture's codes become linear light in sRGB's primaries: by the curve and the primaries that the file states,
+/* Makes a picture's codes linear light in sRGB's primaries: by the curve and the primaries that the file states,
  * by sRGB's where it states none.
  *
  *     picture_light light = {.said = false};                                  sRGB, because nothing says otherwise
@@ -46,7 +46,7 @@ bool picture_light_of_cicp(int primaries, int transfer, picture_light *light);
 /* Adobe RGB (1998). */
 picture_light picture_light_of_adobe_rgb(void);
 
-/* Whether light goes beyond 1, so that it has a unit of its own as floats have. */
+/* Tells whether light goes beyond 1, so that it has a unit of its own as floats have. */
 static inline bool picture_light_is_bright(const picture_light *light)
 {
     return light->curve == PICTURE_CURVE_PQ || light->curve == PICTURE_CURVE_HLG;

@@ -11,7 +11,7 @@
 #include "image/picture.h"
 #include "image/picture_rows.h"
 
-/* What stands in chunks wherever they are: some write the orientation behind the pixels (ImageMagick). */
+/* Chunks are searched wherever they are: some programs write the orientation behind the pixels (ImageMagick). */
 typedef struct chunks {
     bool has_cicp;
     unsigned char cicp[4]; /* primaries, transfer, matrix, full range */
@@ -63,7 +63,7 @@ static bool reader_open(reader *r, const char *path)
     return r->file && r->info;
 }
 
-/* What is damaged in it does no harm. */
+/* Damage in it does no harm. */
 static int orientation_in(int file, off_t at, uint32_t size)
 {
     enum { LARGEST = 1 << 16 }; /* as JPEG has it */

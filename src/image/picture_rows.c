@@ -158,7 +158,7 @@ static void mix_line(picture_rows *r)
     }
 }
 
-/* Where the file's pixel is seen, by the EXIF standard's table, in a picture of this size. */
+/* Tells where the file's pixel is seen, by the EXIF standard's table, in a picture of this size. */
 static size_t place_of(const picture_rows *r, const img *image, int x, int y)
 {
     int o = r->layout.orientation, right = image->width - 1, below = image->height - 1, to_x = x, to_y = y;
@@ -186,7 +186,7 @@ static void place_line(picture_rows *r, int y)
             r->alpha->data[place_of(r, r->alpha, x, y)] = r->cover[x];
 }
 
-/* What shows more counts more, and what shows nothing hardly. */
+/* Pixels that show more count more, and those that show nothing hardly. */
 static void add_line(picture_rows *r, int y)
 {
     const float least = 1e-4f;
@@ -216,7 +216,7 @@ void picture_rows_put(picture_rows *r, int y, const void *samples)
         place_line(r, y);
 }
 
-/* How many of the file's pixels along a side lie in one of the reduced picture's. */
+/* Returns how many of the file's pixels along a side lie in one of the reduced picture's. */
 static int share(int size, int by, int at)
 {
     return size - at * by < by ? size - at * by : by;

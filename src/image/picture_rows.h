@@ -20,7 +20,7 @@ typedef enum picture_sample {
     PICTURE_FLOAT,
 } picture_sample;
 
-/* How samples lie in a row. Bands are grey, or RGB, perhaps with alpha behind; further ones are passed over. */
+/* The layout of samples in a row. Bands are grey, or RGB, perhaps with alpha behind; further ones are passed over. */
 typedef struct picture_layout {
     int width, height; /* in the file */
     int bands;
@@ -41,7 +41,7 @@ void picture_rows_put(picture_rows *rows, int y, const void *samples);
 /* Finishes what has been put; NULL is fine. */
 void picture_rows_free(picture_rows *rows);
 
-/* How many pixels a side of a picture of this size become one, so that it has at most IMAGE_MOST_PIXELS and
+/* Returns how many pixels a side of a picture of this size become one, so that it has at most IMAGE_MOST_PIXELS and
  * IMAGE_MAX_SIDE a side: 1 for most. Its size is then divided by that, rounded up. */
 int picture_reduction(long long width, long long height);
 /* Reduces a picture that its decoder gave as a whole; empty ones, and most, stay as they are. */

@@ -1,5 +1,5 @@
-/* What a TIFF says of itself and libvips keeps to itself or does not find: which page is the picture, whether it is a
- * camera's raw one, and how much memory it would take. */
+/* Reads what a TIFF says of itself and libvips keeps to itself or does not find: which page is the picture, whether it
+ * is a camera's raw one, and how much memory it would take. */
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -73,7 +73,7 @@ static uint64_t jpeg_samples(FILE *file, uint64_t at)
     return 0;
 }
 
-/* Whether what a raw page is made of claims to be far more than the page: a decoder would make all of it. */
+/* Tells whether what a raw page is made of claims to be far more than the page: a decoder would make all of it. */
 static bool is_overfull(const tiff_head *t, uint64_t page)
 {
     enum { MOST_PARTS = 4096, SPARE = 4 };
@@ -114,7 +114,7 @@ bool picture_tiff_is_raw(const char *path)
     return raw;
 }
 
-/* What libvips would hold of it: a strip or a row of tiles, or all of what is in planes. */
+/* Returns the bytes that libvips would hold of it: a strip or a row of tiles, or all of what is in planes. */
 static status check_samples(const tiff_head *t, uint64_t page, const char *path)
 {
     uint32_t samples = tiff_value(t, page, TIFF_SAMPLES), bits = tiff_value(t, page, TIFF_BITS);

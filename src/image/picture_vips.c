@@ -97,7 +97,7 @@ static bool is_plain(VipsInterpretation i)
            i == VIPS_INTERPRETATION_scRGB || i == VIPS_INTERPRETATION_HISTOGRAM;
 }
 
-/* What is asked of a picture: its pixels, or its head alone. */
+/* The part of a picture that is asked for: its pixels, or its head alone. */
 typedef struct request {
     const char *path;
     picture_kind kind;

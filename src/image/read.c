@@ -202,8 +202,8 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
-/* Where nothing is said 16 bits are a measurement's; with a profile or a stated curve they were developed by a program
- * that makes photographs. */
+/* Unless something is said 16 bits are a measurement's; with a profile or a stated curve they were developed by a
+ * program that makes photographs. */
 static picture_colour colour_of_samples(picture_kind kind, const picture_head *head, bool decode)
 {
     bool coded = head->bits == 8 || head->profile || head->light.said;

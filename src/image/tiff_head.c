@@ -24,7 +24,7 @@ static int offset_bytes(const tiff_head *t)
     return t->wide ? 8 : 4;
 }
 
-/* Of a page; damaged ones claim more than any has. */
+/* Returns a page's number of entries; damaged ones claim more than any has. */
 static uint64_t entries_of(const tiff_head *t, uint64_t page)
 {
     enum { MOST = 4096 };
@@ -32,7 +32,7 @@ static uint64_t entries_of(const tiff_head *t, uint64_t page)
     return entries < MOST ? entries : MOST;
 }
 
-/* Where an entry lies; 0 if the page has none such. */
+/* Returns where an entry lies; 0 if the page has none such. */
 static uint64_t find_entry(const tiff_head *t, uint64_t page, unsigned tag)
 {
     uint64_t first = page + (t->wide ? 8 : 2), entries = page ? entries_of(t, page) : 0;

@@ -1,5 +1,5 @@
-/* What stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form: its pages, one behind
- * the other and each perhaps with more below it, and the numbers in them.
+/* Reads what stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form: its pages, one
+ * behind the other and each perhaps with more below it, and the numbers in them.
  *
  *     tiff_head t;
  *     if (tiff_open(&t, file)) width = tiff_value(&t, t.page[0], TIFF_WIDTH);
@@ -44,7 +44,7 @@ typedef struct tiff_head {
 bool tiff_open(tiff_head *t, FILE *file);
 /* The first number of an entry of a page, of 8, 16 or 32 bits; 0 where there is none. */
 uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
-/* How many numbers an entry has, and one of them by its place. */
+/* Returns how many numbers an entry has, or one of them by its place. */
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag);
 uint32_t tiff_value_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
 /* Returns the first number of an entry, whole or a fraction; 0 where there is none. */

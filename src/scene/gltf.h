@@ -77,7 +77,7 @@ status gltf_find_accessor(gltf *g, size_t index, gltf_accessor *out);
 /* Its i-th element as up to four numbers, integers as fractions where they are normalized; as a place, if it is one. */
 void gltf_numbers(const gltf_accessor *a, size_t i, double *out);
 size_t gltf_place(const gltf_accessor *a, size_t i);
-/* Whether its elements can be places: whole and above 0. */
+/* Tells whether its elements can be places: whole and above 0. */
 bool gltf_holds_places(const gltf_accessor *a);
 
 /* A mesh where a node puts it: x' = m[0] x + m[1] y + m[2] z + m[3], and so on for y and z. */

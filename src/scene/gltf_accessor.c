@@ -141,7 +141,7 @@ status gltf_find_accessor(gltf *g, size_t index, gltf_accessor *out)
     return s;
 }
 
-/* Where the i-th element is; NULL of a zero. */
+/* Returns where the i-th element is; NULL for a zero. */
 static const uint8_t *element_at(const gltf_accessor *a, size_t i)
 {
     size_t low = 0, high = a->sparse_count, place_bytes = bytes_of((size_t)a->sparse_type);

@@ -104,7 +104,7 @@ static status meet_all(walk *w, const cJSON *numbers, const double *parent)
     return s;
 }
 
-/* Of a document without scenes: the nodes that are nobody's children. */
+/* Takes, in a document without scenes, the nodes that are nobody's children. */
 static status meet_roots(walk *w)
 {
     size_t count = w->g->nodes.count;

@@ -14,8 +14,8 @@ enum { MESH_BYTES = 1 << 30 }; /* of a file, or of all that make one mesh */
  * triangles. Only plain files are opened. */
 status mesh_read(const char *path, scn_mesh *mesh, int *parts);
 
-/* How many triangles a mesh of so many bytes may have: five million, and of a small file, which can only repeat itself,
- * one and what it has bytes for. */
+/* Returns how many triangles a mesh of so many bytes may have: five million, and of a small file, which can only repeat
+ * itself, one and what it has bytes for. */
 size_t mesh_most_triangles(size_t bytes);
 
 #endif

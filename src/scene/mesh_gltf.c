@@ -93,7 +93,7 @@ static size_t count_primitives(const reader *r)
     return count;
 }
 
-/* Those of meshes that are shown; r->smooth is whether all have normals. */
+/* Reads the primitives of meshes that are shown; r->smooth tells whether all have normals. */
 static status read_primitives(reader *r)
 {
     status s = OK;

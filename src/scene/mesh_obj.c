@@ -86,7 +86,7 @@ static void next_line(obj *o)
     o->line++;
 }
 
-/* Whether the line begins with this word, which is passed then. */
+/* Tells whether the line begins with this word, which is passed then. */
 static bool takes_word(obj *o, const char *word)
 {
     size_t length = strlen(word);

@@ -20,8 +20,8 @@ static vec3 area_of(const scn_mesh *mesh, const uint32_t *corner, int count)
     return sum;
 }
 
-/* Whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. Takes the corners it
- * looked at from *work. */
+/* Tells whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. Takes the
+ * corners it looked at from *work. */
 static bool is_ear(const scn_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n, long *work)
 {
     vec3 a = mesh->position[corner[(i + count - 1) % count]], b = mesh->position[corner[i]];

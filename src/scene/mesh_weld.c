@@ -105,7 +105,7 @@ static bool is_same(const vec3 a[3], const vec3 b[3])
     return true;
 }
 
-/* Whether no triangle before lies there, which from now on one does. */
+/* Tells whether no triangle before lies there, which from now on one does. */
 static bool is_new(places *known, const scn_mesh *mesh, const uint32_t t[3], uint32_t index)
 {
     vec3 here[3], there[3];

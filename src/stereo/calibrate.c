@@ -294,7 +294,7 @@ static bool is_horizon(float ratio)
     return ratio > 0.67f && ratio < 0.74f;
 }
 
-/* Of two circles one within the other. */
+/* Tells whether it is decided which of two circles, one within the other, the ball is. */
 static bool is_decided(const ball_outlines *outlines, pst_ball ball, int chosen)
 {
     static const float CLEARLY = 0.6f;

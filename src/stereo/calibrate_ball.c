@@ -195,7 +195,7 @@ status ball_find(const img *picture, const pst_circle *beside, pst_circle *circl
     return OK;
 }
 
-/* Of those near the circle alone, so that stronger ones elsewhere take no room. */
+/* Keeps those near the circle alone, so that stronger ones elsewhere take no room. */
 static void keep_near(edges *e, const pst_circle *c)
 {
     size_t kept = 0;

@@ -8,14 +8,15 @@
 
 enum { ANGLES = 96, RADII = 40, PLACES = 9, POLISH = 5 };
 
-/* Of the inner radius: how far out is searched, and how far aside the middle may be (the camera looks askance). */
+/* Shares of the inner radius: how far out is searched, and how far aside the middle may be (the camera looks askance).
+ */
 static const float LARGEST = 1.62f, ASIDE = 0.2f;
-/* Of the root mean square of steps, their mean: 1 where all are alike, 0.1 to 0.3 on a table's grain. */
+/* The mean of steps over their root mean square: 1 where all are alike, 0.1 to 0.3 on a table's grain. */
 static const float LEAST_ALIKE = 0.6f;
-/* Of a logarithm, the mean step; and how much more it must be than that a little further in or out: else it is a halo.
+/* The mean step of a logarithm; and how much more it must be than that a little further in or out: else it is a halo.
  */
 static const float LEAST_STEP = 0.03f, SHARPER = 1.6f;
-/* Of the circle, that must be in the picture. */
+/* The share of the circle that must be in the picture. */
 static const float LEAST_WITHIN = 0.45f;
 
 /* Steps across a circle from inside to outside. */

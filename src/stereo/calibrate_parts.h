@@ -11,7 +11,7 @@ status ball_find(const img *picture, const pst_circle *beside, pst_circle *circl
 /* A circle around one that was found, all along which the picture, of logarithms, steps sharply up or down
  * (calibrate_outline.c); false if there is none. */
 bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer);
-/* Whether a circle within it is where a mirror ball of this outline has the horizon of what it lies on. */
+/* Tells whether a circle within it is where a mirror ball of this outline has the horizon of what it lies on. */
 bool ball_has_horizon(const img *picture, const pst_circle *circle);
 /* To the edges that lie nearest, however strong others are. */
 status ball_refine(const img *picture, pst_circle *circle);

@@ -9,7 +9,7 @@
 
 /* Pixels and values that are looked at. */
 enum { SOME = 1 << 16 };
-/* Of unit directions' spreads the least against the largest: a ring of lights 6 degrees from its axis has 0.08, and
+/* The least of unit directions' spreads against the largest: a ring of lights 6 degrees from its axis has 0.08, and
  * errors ten times those of lights from all round. */
 static const double alike = 0.08;
 /* Cosine between the directions of lights that may have the same picture. */
@@ -20,7 +20,7 @@ static const float behind = -0.05f;
 static const float behind_camera = 0.1f;
 /* Between the lights' distance from the object and the object's from the camera. */
 static const float another_unit = 30;
-/* Of the object's pixels, saturated in half of the pictures. */
+/* The share of the object's pixels that are saturated in half of the pictures. */
 static const double much_burnt_out = 0.05;
 
 /* ---- lights ---- */

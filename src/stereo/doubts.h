@@ -1,4 +1,4 @@
-/* What a person should know of a capture and of the surface found from it before they trust that.
+/* Doubts tell a person what to know of a capture and of the surface found from it before they trust that.
  *
  *     warnings doubts = {0};
  *     status s = pst_doubts(&capture, &surface, &doubts); */

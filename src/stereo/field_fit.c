@@ -224,7 +224,7 @@ static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *
     return pst_fall_off_of(d, &deeper, kind, &f->shading[i]);
 }
 
-/* Of a fit from nothing, in others. */
+/* The effort of a fit from nothing, counted in fits that begin from a neighbour's. */
 enum { FIT_EFFORT = 4 };
 
 /* Whether the task has anything to do there. */

@@ -11,17 +11,17 @@
 
 enum { WORDS = 256, FEWEST = 4, PAIRED = 64 };
 
-/* How much less of the pictures another arrangement of the same lights leaves unexplained, and how many times less
- * beyond what any three lights leave. Of 70 rendered and five real captures no other order comes near; in another order
- * those leave 2.3 times as much and more. */
+/* Bounds beyond which the list is in doubt: how much less of the pictures another arrangement of the same lights leaves
+ * unexplained, and how many times less beyond what any three lights leave. Of 70 rendered and five real captures no
+ * other order comes near; in another order those leave 2.3 times as much and more. */
 static const double plainly_less = 0.02, times_less = 2;
-/* What a list that fits may leave beyond what any three lights leave, unless that is much itself. Measured: 0.003 to
- * 0.12, at most 0.087 where it is more than twice that; in a random order 0.11 to 0.55. */
+/* The rest that a list that fits may leave beyond what any three lights leave, unless that is much itself. Measured:
+ * 0.003 to 0.12, at most 0.087 where it is more than twice that; in a random order 0.11 to 0.55. */
 static const double most_beyond = 0.1;
 /* The same where lights are so near that what the object's middle has of them is not the whole's: 0.16 at most. */
 static const double most_beyond_near = 0.25;
-/* Of pst_light_turn: right axes are better than others by 0.3 and more, wrong ones worse by as much, in all but one of
- * 70 rendered captures. */
+/* The least gain of pst_light_turn: right axes are better than others by 0.3 and more, wrong ones worse by as much, in
+ * all but one of 70 rendered captures. */
 static const double turned = 0.35;
 /* Share of the outline where normals point steeply inward, of what is no hollow. */
 static const double inward = 0.4;

@@ -1,5 +1,5 @@
-/* Whether a list of lights can be that of the pictures. The residual alone does not tell: with y listed downward it is
- * the same, and of gloss and shadows it is large.
+/* Tells whether a list of lights can be that of the pictures. The residual alone does not tell: with y listed downward
+ * it is the same, and of gloss and shadows it is large.
  *
  *     warnings doubts = {0};
  *     status s = pst_check_lights(&capture, &surface, &doubts);      adds lights_do_not_fit, and what would fit */
@@ -9,7 +9,7 @@
 #include "base/warnings.h"
 #include "stereo/solve.h"
 
-/* Of a solved capture whose lights are known. */
+/* Checks a solved capture whose lights are known. */
 status pst_check_lights(const pst_capture *c, const pst_surface *s, warnings *out);
 
 #endif

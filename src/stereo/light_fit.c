@@ -10,7 +10,7 @@
 
 /* Pixels that tell of the lights, up to four times as many. */
 enum { SMALL = 3000 };
-/* Of full scale: below, a pixel's values are noise. */
+/* The share of full scale below which a pixel's values are noise. */
 static const double dark = 0.003;
 
 void pst_light_fit_free(pst_light_fit *f)
@@ -159,7 +159,7 @@ static double energy_of(const pst_light_fit *f, int without)
     return f->energy - (without >= 0 ? f->gram[k * n + k] : 0);
 }
 
-/* What unit weights of the pictures explain. */
+/* Returns what unit weights of the pictures explain. */
 static double explained_by(const pst_light_fit *f, const double *along)
 {
     size_t n = (size_t)f->count;

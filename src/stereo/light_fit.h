@@ -1,4 +1,4 @@
-/* How a small version of a capture goes with a list of lights: the ground for telling whether the list is right.
+/* Tells how a small version of a capture goes with a list of lights: the ground for telling whether the list is right.
  *
  *     pst_light_fit f;
  *     status s = pst_light_fit_new(capture, surface, &f);

@@ -11,10 +11,10 @@ enum { STEP = 15, TURNS = 360 / STEP, AXES = 48, LEAST_BORDER = 30, LEAST_INSIDE
 static const double steep = 0.8;
 /* Small pixels from the outline in which normals still point outward. */
 enum { RIM = 2 };
-/* What the outline counts beside the logarithm of how integrable normals are. Of 25 rendered and five real captures the
- * right axes are better than any other ones by 0.3 at least. */
+/* The weight of the outline beside the logarithm of how integrable normals are. Of 25 rendered and five real captures
+ * the right axes are better than any other ones by 0.3 at least. */
 static const double outline_weight = 1.5;
-/* Of the surface, that faces the camera under axes that can be right: rendered objects have 0.78 and more. */
+/* The share of the surface that faces the camera under axes that can be right: rendered objects have 0.78 and more. */
 static const double least_facing = 0.65, most_facing = 0.9;
 
 /* A pixel of the surface, and which way is outward there; (0, 0) inside. */
@@ -145,7 +145,7 @@ static void try_turn(const places *all, const judgement *now, const pst_light_tu
     best->better = gain;
 }
 
-/* Whether x reversed is as good as y reversed: without an outline they differ in what is hollow alone. */
+/* Tells whether x reversed is as good as y reversed: without an outline they differ in what is hollow alone. */
 static bool is_either(const places *all, const judgement *now)
 {
     double of_x[9], of_y[9];

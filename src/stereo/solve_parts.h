@@ -11,7 +11,7 @@
 
 #include "stereo/solve.h"
 
-/* What a solver has done of its fits, by all threads. */
+/* Counts the fits that a solver has done, by all threads. */
 typedef struct pst_effort {
     const watch *watch;
     pthread_t owner; /* the thread that began */

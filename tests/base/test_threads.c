@@ -1,4 +1,4 @@
-/* How many threads loops have, and that waiting ones sleep soon. */
+/* Tests how many threads loops have, and that waiting ones sleep soon. */
 #include "base/threads.h"
 
 #include <pthread.h>

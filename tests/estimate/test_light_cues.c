@@ -1,4 +1,5 @@
-/* Whether the light of a photograph is told to be at the lens or not: a sphere whose maps are true, under both. */
+/* Tests whether the light of a photograph is told to be at the lens or not: a sphere whose maps are true, under both.
+ */
 #include "estimate/light_cues.h"
 #include "optics/camera.h"
 

@@ -1,4 +1,4 @@
-/* What merlin_maps' doubts say of photographs, by maps that are made here. */
+/* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
 #include "estimate/doubts.h"
 #include "image/public.h"
 

@@ -1,4 +1,4 @@
-/* What pictures say about themselves: their curve, the page that is meant, a size beyond what is held. */
+/* Tests what pictures say about themselves: their curve, the page that is meant, a size beyond what is held. */
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
@@ -165,7 +165,7 @@ typedef struct page {
     bool exif_srgb;
 } page;
 
-/* Where each page's entries begin is known beforehand: pixels first, all of one page behind the other. */
+/* Each page's entries begin at a place known beforehand: pixels first, all of one page behind the other. */
 static void write_pages(const char *path, const page *pages, int count)
 {
     FILE *f = fopen(path, "wb");

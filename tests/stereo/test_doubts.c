@@ -1,4 +1,5 @@
-/* What is said of captures whose lights, pictures or places are not what they are taken for, and not of those that are.
+/* Tests what is said of captures whose lights, pictures or places are not what they are taken for, and not of those
+ * that are.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -79,7 +79,7 @@ status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);
 
-/* What differs between versions 2 and 3. Every init needs its free. */
+/* Hides the differences between versions 2 and 3. Every init needs its free. */
 status dnn_memory_init(dnnl_memory_desc_t *memory, const dnn_shape *shape);
 dnn_layout dnn_layout_of(const dnnl_memory_desc_t *memory);
 void dnn_memory_free(dnnl_memory_desc_t *memory);
