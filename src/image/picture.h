@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "image/image.h"
+#include "image/kind.h"
 #include "image/picture_light.h"
 
 /* How colour samples become linear light; alpha is linear always. */
@@ -14,19 +15,6 @@ typedef enum picture_colour {
     PICTURE_LINEARIZE, /* integers are sRGB (or by their profile or gamma), floats are linear */
     PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and nothing else */
 } picture_colour;
-
-/* By a file's first bytes, never by its name. */
-typedef enum picture_kind {
-    PICTURE_UNKNOWN,
-    PICTURE_EXR,
-    PICTURE_PNG,
-    PICTURE_JPEG,
-    PICTURE_TIFF,
-    PICTURE_WEBP,
-    PICTURE_HEIC,
-    PICTURE_HDR,
-    PICTURE_RAW,
-} picture_kind;
 
 /* What a file's head alone says; bits of a sample: 8, 16 or 32. */
 typedef struct picture_head {

@@ -32,10 +32,16 @@ static loader *loader_of(picture_kind kind)
         return vips()->webpload;
     case PICTURE_HDR:
         return vips()->radload;
+    case PICTURE_GIF:
+        return vips()->gifload;
     case PICTURE_HEIC:
         return vips_load_heif() ? vips()->heifload : NULL;
     case PICTURE_EXR:
     case PICTURE_RAW:
+    case PICTURE_BMP:
+    case PICTURE_PNM:
+    case PICTURE_TGA:
+    case PICTURE_OTHER:
     case PICTURE_UNKNOWN:
         break;
     }

@@ -11,55 +11,8 @@
 #include "base/file.h"
 #include "image/picture_rows.h"
 
-enum { HEAD_BYTES = 12 };
-
 /* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */
 enum { MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
-
-/* An ISO base media file of one of the still picture's brands; HEIC and AVIF share a decoder. */
-static bool is_heic(const unsigned char *head)
-{
-    static const char *const brands[] = {"heic", "heix", "hevc", "heim", "heis",
-                                         "hevm", "hevs", "mif1", "msf1", "avif"};
-    if (memcmp(head + 4, "ftyp", 4) != 0) return false;
-    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++)
-        if (memcmp(head + 8, brands[i], 4) == 0) return true;
-    return false;
-}
-
-/* Raw pictures that are no TIFFs: of Olympus, Panasonic, Fujifilm, Canon (two kinds), Minolta and Sigma. */
-static bool is_raw(const unsigned char *head)
-{
-    static const struct {
-        size_t at, count;
-        char bytes[HEAD_BYTES];
-    } known[] = {
-        {0, 4, "IIRO"},     {0, 4, "IIRS"}, {0, 4, "MMOR"},  {0, 4, "IIU\0"}, {0, 8, "FUJIFILM"},
-        {4, 8, "ftypcrx "}, {6, 4, "HEAP"}, {0, 4, "\0MRM"}, {0, 4, "FOVb"},
-    };
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (memcmp(head + known[i].at, known[i].bytes, known[i].count) == 0) return true;
-    return false;
-}
-
-static picture_kind kind_of(const unsigned char head[HEAD_BYTES])
-{
-    static const struct {
-        picture_kind kind;
-        size_t count;
-        char bytes[HEAD_BYTES];
-    } known[] = {
-        {PICTURE_EXR, 4, "\x76\x2f\x31\x01"}, {PICTURE_PNG, 8, "\x89PNG\r\n\x1a\n"},
-        {PICTURE_JPEG, 3, "\xff\xd8\xff"},    {PICTURE_TIFF, 4, "II*\0"},
-        {PICTURE_TIFF, 4, "MM\0*"},           {PICTURE_TIFF, 4, "II+\0"},
-        {PICTURE_TIFF, 4, "MM\0+"},           {PICTURE_HDR, 10, "#?RADIANCE"},
-        {PICTURE_HDR, 6, "#?RGBE"},
-    };
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (memcmp(head, known[i].bytes, known[i].count) == 0) return known[i].kind;
-    if (memcmp(head, "RIFF", 4) == 0 && memcmp(head + 8, "WEBP", 4) == 0) return PICTURE_WEBP;
-    return is_heic(head) ? PICTURE_HEIC : is_raw(head) ? PICTURE_RAW : PICTURE_UNKNOWN;
-}
 
 static status check_plain(const char *path)
 {
@@ -76,13 +29,15 @@ static status look_at(const char *path, picture_kind *kind)
     if (s != OK) return s;
     FILE *f = file_open(path);
     if (!f) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
-    unsigned char head[HEAD_BYTES] = {0};
-    size_t got = fread(head, 1, sizeof head, f);
+    bool empty = getc(f) == EOF;
     fclose(f);
-    if (got == 0) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
-    *kind = kind_of(head);
-    if (*kind == PICTURE_TIFF && picture_tiff_is_raw(path)) *kind = PICTURE_RAW;
-    if (*kind != PICTURE_UNKNOWN) return OK;
+    if (empty) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
+    img_format format = img_format_of(path);
+    *kind = format.kind;
+    if (format.is_read) return OK;
+    if (format.name)
+        return fail(ERROR_INPUT, "cannot read %s: its format, %s, is not read here; save it as PNG or TIFF", path,
+                    format.name);
     return fail(ERROR_INPUT,
                 "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw)",
                 path);

@@ -24,6 +24,7 @@
     USE(error_buffer)                                                                                                  \
     USE(error_clear)                                                                                                   \
     USE(extract_band)                                                                                                  \
+    USE(gifload)                                                                                                       \
     USE(gifsave_buffer)                                                                                                \
     USE(heifload)                                                                                                      \
     USE(icc_transform)                                                                                                 \
