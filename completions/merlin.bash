@@ -16,12 +16,13 @@ _merlin() {
         ["eval stereo"]="--data --model --count --figure --json --quiet --help"
         ["eval detail"]="--data --model --count --views --json --quiet --help"
         ["eval doubts"]="--right --wrong --data --count --model --json --quiet --help"
+        ["eval masks"]="--data --mask --count --seed --json --quiet --help"
         ["eval solvers"]="--count --seed --size --json --quiet --help"
         ["eval photos"]="--model --output --mask --quiet --help"
         [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
         [info]="--tensors --json --quiet --help"
     )
-    local -A below=([eval]="stereo solvers detail photos doubts" [stereo]="calibrate")
+    local -A below=([eval]="stereo solvers detail photos doubts masks" [stereo]="calibrate")
     local commands="estimate relight stereo render train eval bench info"
     if [[ $current == = ]]; then # --by=, in words of its own
         current=

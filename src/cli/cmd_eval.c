@@ -18,6 +18,7 @@ static const char help[] =
     "       merlin eval --means DIR -o FILE.exr\n"
     "       merlin eval stereo --data DIR [options]\n"
     "       merlin eval doubts [--right P] [--wrong P] [--data DIR] [options]\n"
+    "       merlin eval masks [PHOTO|FOLDER...] [--data DIR] [options]\n"
     "       merlin eval solvers [options]\n"
     "       merlin eval detail --data DIR [options]\n"
     "       merlin eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
@@ -161,6 +162,7 @@ int cmd_eval(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "detail") == 0) return eval_detail(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "doubts") == 0) return eval_doubts(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "masks") == 0) return eval_masks(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());

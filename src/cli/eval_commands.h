@@ -17,4 +17,7 @@ int eval_detail(int argc, char **argv);
 /* merlin eval doubts; argv[0] is "doubts". Returns the exit status. */
 int eval_doubts(int argc, char **argv);
 
+/* merlin eval masks; argv[0] is "masks". Returns the exit status. */
+int eval_masks(int argc, char **argv);
+
 #endif

@@ -6,12 +6,13 @@
 
 #include "base/status.h"
 #include "estimate/exposure.h"
+#include "estimate/mask.h"
 #include "image/color.h"
 #include "image/exif.h"
 #include "image/public.h"
 
 /* merlin.h says what they mean; docs/evaluation.md how they were found. */
-static const float LITTLE_CONFIDENCE = 0.6f, MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
+static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
 static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 30, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;
 static const double DIAGONAL_35MM = 43.2666, DEGREES = 180 / 3.14159265358979;
@@ -51,7 +52,7 @@ static unsigned doubts_of_mask(const merlin_maps *maps)
     float share = (float)c.object / (float)c.all;
     unsigned doubts = 0;
     if (share >= (maps->mask_source == MERLIN_MASK_FOUND ? FULL_IF_FOUND : FULL)) doubts |= MERLIN_DOUBT_NO_OBJECT;
-    if (maps->mask_confidence < LITTLE_CONFIDENCE) doubts |= MERLIN_DOUBT_OBJECT_UNSURE;
+    if (maps->mask_confidence < MASK_LITTLE_CONFIDENCE) doubts |= MERLIN_DOUBT_OBJECT_UNSURE;
     if (c.cut >= MUCH_CUT && !(doubts & MERLIN_DOUBT_NO_OBJECT)) doubts |= MERLIN_DOUBT_OBJECT_CUT;
     if (c.object < SMALL) doubts |= MERLIN_DOUBT_OBJECT_SMALL;
     return doubts;

@@ -6,6 +6,9 @@
 
 #include "image/image.h"
 
+/* A found mask's confidence from which it is taken without a word. */
+#define MASK_LITTLE_CONFIDENCE 0.6f
+
 typedef struct mask_choice {
     bool found;       /* by find_object, because none was given */
     float confidence; /* 1 if given */
