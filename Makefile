@@ -1,9 +1,9 @@
-# merlin: make demo and make test do everything from a bare Debian 12 clone; CMake (CMakePresets.json) works underneath.
+# merlin: make demo and make test do everything from a clone on a bare Debian 12 or 13; CMake (CMakePresets.json) works underneath.
 
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install test asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install test test-debian asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -36,6 +36,12 @@ test: setup-test
 	cmake --preset release -DBUILD_TESTING=ON
 	cmake --build --preset release
 	ctest --preset release
+
+# make demo and make test of the last commit in a Debian (bookworm, trixie) or Ubuntu (noble) of its own in FOLDER, as root.
+SUITE = trixie
+FOLDER = /var/tmp/merlin-$(SUITE)
+test-debian:
+	@tools/test-in-debian $(SUITE) "$(FOLDER)"
 
 debug: setup-test
 	cmake --preset debug
