@@ -57,10 +57,10 @@ typedef struct merlin_image {
     float *data; /* height × width × channels; NULL: no image */
 } merlin_image;
 
-/* PNG, JPEG, TIFF, WebP, HEIC, EXR, Radiance HDR or raw into 3 linear channels. More than 64 million pixels, or 16384 a
- * side, are read at a reduced size, which merlin_mask_read gives a mask of the same size, too. alpha (may be NULL) gets
- * 1 channel in [0, 1] where the file has one that is not opaque everywhere, else no image. An alpha that nowhere
- * reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
+/* PNG, JPEG, TIFF, WebP, HEIC, GIF, BMP, TGA, netpbm, EXR, Radiance HDR or raw, by content, into 3 linear channels.
+ * More than 64 million pixels, or 16384 a side, are read at a reduced size, which merlin_mask_read gives a mask of the
+ * same size, too. alpha (may be NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere,
+ * else no image. An alpha that nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
 /* 1 channel in [0, 1]. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);

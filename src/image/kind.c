@@ -74,7 +74,7 @@ static const mark marks[] = {
 
 static bool is_read(picture_kind kind)
 {
-    return kind != PICTURE_UNKNOWN && kind < PICTURE_BMP;
+    return kind != PICTURE_UNKNOWN && kind != PICTURE_OTHER;
 }
 
 static bool has_mark(const unsigned char *head, size_t size, const mark *m)

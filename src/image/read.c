@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "image/picture_plain.h"
 #include "image/picture_rows.h"
 
 /* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */
@@ -39,7 +40,8 @@ static status look_at(const char *path, picture_kind *kind)
         return fail(ERROR_INPUT, "cannot read %s: its format, %s, is not read here; save it as PNG or TIFF", path,
                     format.name);
     return fail(ERROR_INPUT,
-                "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw)",
+                "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, GIF, BMP, TGA, "
+                "PNM, EXR, HDR, raw)",
                 path);
 }
 
@@ -68,11 +70,17 @@ status picture_check_whole(const char *path, long long width, long long height, 
         width, height, advice);
 }
 
+static bool is_plain(picture_kind kind)
+{
+    return kind == PICTURE_PNM || kind == PICTURE_BMP || kind == PICTURE_TGA;
+}
+
 static status look_into(const char *path, picture_kind kind, picture_head *head)
 {
     if (kind == PICTURE_EXR) return picture_look_exr(path, head);
     if (kind == PICTURE_RAW) return picture_look_raw(path, head);
     *head = (picture_head){.plain = false};
+    if (is_plain(kind)) return picture_read_plain(path, kind, PICTURE_AS_IT_IS, NULL, NULL, head);
     if (kind != PICTURE_PNG) return picture_look(path, kind, head);
     status s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, head);
     return s == OK && !head->plain ? picture_look(path, kind, head) : s;
@@ -109,7 +117,9 @@ static status read_pixels(const char *path, picture_kind kind, picture_colour ho
         if (whole == OK) whole = picture_reduce(color);
         return whole == OK && alpha ? picture_reduce(alpha) : whole;
     }
-    status s = kind == PICTURE_PNG ? picture_read_png(path, how, color, alpha, &head) : OK;
+    status s = is_plain(kind)        ? picture_read_plain(path, kind, how, color, alpha, &head)
+               : kind == PICTURE_PNG ? picture_read_png(path, how, color, alpha, &head)
+                                     : OK;
     return s == OK && !head.plain ? picture_decode(path, kind, how, color, alpha) : s;
 }
 

@@ -1,4 +1,5 @@
-/* Photographs and maps from disk into linear float (libpng, OpenEXR Core, LibRaw, libvips for all others).
+/* Photographs and maps from disk into linear float (libpng, OpenEXR Core, LibRaw, own readers of BMP, TGA and netpbm's
+ * formats, libvips for all others).
  *
  * 8- and 16-bit files are decoded from sRGB (or by their ICC profile, honoured) to linear; EXR, Radiance HDR and
  * cameras' raw pictures are linear already. EXIF orientation is applied. Grey becomes three equal channels. */
@@ -19,10 +20,10 @@ enum { IMAGE_MAX_SIDE = 16384, IMAGE_MOST_PIXELS = 64 * 1000 * 1000 };
 /* All that are read. */
 #define IMAGE_ENDINGS ".png", ".tif", ".tiff", ".webp", ".avif", ".exr", ".hdr", IMAGE_CAMERA_ENDINGS, IMAGE_RAW_ENDINGS
 
-/* PNG, JPEG, TIFF, WebP, HEIC, EXR, HDR, raw. color gets 3 channels. If alpha is not NULL it gets 1 channel in [0, 1]
- * where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is not times
- * alpha, whatever the file's kind. Refuses non-images, truncated files, more than 512 million pixels and values
- * that are NaN or infinite, in one clear line. */
+/* Every format that img_is_picture (image/kind.h) knows. color gets 3 channels. If alpha is not NULL it gets 1 channel
+ * in [0, 1] where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour then is
+ * not times alpha, whatever the file's kind. Refuses non-images, truncated files, more than 512 million pixels and
+ * values that are NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
 /* The size that it is read at, from the file's head alone, the longer side perhaps as height: before an orientation is
  * applied. */
