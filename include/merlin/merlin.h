@@ -62,7 +62,8 @@ typedef struct merlin_image {
  * same size, too. alpha (may be NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere,
  * else no image. An alpha that nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
-/* 1 channel in [0, 1]. */
+/* Coverage, 1 channel in [0, 1]: by the file's alpha unless that is even, else of two values, whatever they are, the
+ * greater one, else white on black. Areas of more than two values are MERLIN_BAD_INPUT. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
 /* 8-bit sRGB PNG, values clamped to [0, 1]; path ends in .png. */
 merlin_status merlin_image_write(const char *path, const merlin_image *image);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "image/mask_values.h"
 #include "image/picture_plain.h"
 #include "image/picture_rows.h"
 
@@ -195,14 +196,6 @@ status img_read_samples(const char *path, bool decode, img *color, int *bits)
     return s;
 }
 
-static bool is_opaque(const img *alpha)
-{
-    size_t pixels = (size_t)alpha->width * (size_t)alpha->height;
-    for (size_t i = 0; i < pixels; i++)
-        if (alpha->data[i] < 1) return false;
-    return true;
-}
-
 /* The mean of the channels. */
 static status color_to_grey(const img *color, img *grey)
 {
@@ -218,21 +211,33 @@ static status color_to_grey(const img *color, img *grey)
     return OK;
 }
 
+status img_read_grey(const char *path, img *grey)
+{
+    *grey = (img){0};
+    img color = {0};
+    status s = read_any(path, PICTURE_AS_IT_IS, &color, NULL);
+    if (s == OK) s = color_to_grey(&color, grey);
+    if (s == OK) clamp_unit(grey);
+    img_free(&color);
+    return s;
+}
+
+static bool is_lossy(const char *path)
+{
+    picture_kind kind = img_format_of(path).kind;
+    return kind == PICTURE_JPEG || kind == PICTURE_WEBP || kind == PICTURE_HEIC;
+}
+
 /* A cut-out's shape is in its alpha; a black and white drawing's is in its colour. */
 status img_read_mask(const char *path, img *mask)
 {
     *mask = (img){0};
     img color = {0}, alpha = {0};
     status s = read_any(path, PICTURE_AS_IT_IS, &color, &alpha);
-    if (s == OK) {
-        if (alpha.data && !is_opaque(&alpha)) {
-            *mask = alpha;
-            alpha = (img){0};
-        } else {
-            s = color_to_grey(&color, mask);
-        }
-        if (s == OK) clamp_unit(mask);
-    }
+    if (s == OK && alpha.data && !mask_is_even(&alpha))
+        s = mask_from_alpha(&alpha, mask);
+    else if (s == OK)
+        s = mask_from_values(path, &color, is_lossy(path), mask);
     img_free(&color);
     img_free(&alpha);
     return s;

@@ -36,7 +36,10 @@ status img_read_latlong(const char *path, img *color);
  * they are. Raw ones are white balanced for daylight, not as the camera was set, which may have changed from one to the
  * next. *bits: 8, 16 or 32 (floats). */
 status img_read_samples(const char *path, bool decode, img *color, int *bits);
-/* One channel in [0, 1] without colour decoding: a mask. */
+/* One channel in [0, 1], the mean of colours without decoding: a map of numbers. */
+status img_read_grey(const char *path, img *grey);
+/* Coverage in [0, 1], one channel: the alpha, else of two values the greater one, whatever they are, else what is white
+ * on black (mask_values.h). */
 status img_read_mask(const char *path, img *mask);
 
 #endif

@@ -104,7 +104,7 @@ static status read_tile(const source *s, img *out)
     img full = {0};
     int bits;
     status st = s->kind == MAP_ALBEDO      ? img_read(s->path, &full, NULL)
-                : s->kind == MAP_ROUGHNESS ? img_read_mask(s->path, &full)
+                : s->kind == MAP_ROUGHNESS ? img_read_grey(s->path, &full)
                                            : img_read_samples(s->path, false, &full, &bits);
     if (st != OK) return st;
     int side = full.width > full.height ? full.width : full.height;

@@ -1,0 +1,251 @@
+#include <vips/vips.h>
+
+#include "image/exr.h"
+#include "image/read.h"
+
+#include "writes.h"
+
+enum { SIDE = 48, PIXELS = SIDE * SIDE, LEFT = 12, RIGHT = 28, TOP = 20, BOTTOM = 40 };
+
+static bool is_object(int i)
+{
+    int x = i % SIDE, y = i / SIDE;
+    return x >= LEFT && x < RIGHT && y >= TOP && y < BOTTOM;
+}
+
+/* A picture of samples of 8 or 16 bits in a file. */
+static const char *save(const void *samples, int bands, VipsBandFormat format, const char *name)
+{
+    const char *path = scratch_path(name);
+    size_t size = (size_t)PIXELS * (size_t)bands * (format == VIPS_FORMAT_USHORT ? 2 : 1);
+    VipsImage *image = vips_image_new_from_memory_copy(samples, size, SIDE, SIDE, bands, format);
+    VipsInterpretation space = format == VIPS_FORMAT_USHORT ? VIPS_INTERPRETATION_GREY16
+                               : bands > 2                  ? VIPS_INTERPRETATION_sRGB
+                                                            : VIPS_INTERPRETATION_B_W;
+    VipsImage *meant = NULL;
+    assert_non_null(image);
+    assert_int_equal(vips_copy(image, &meant, "interpretation", space, NULL), 0);
+    assert_int_equal(vips_image_write_to_file(meant, path, NULL), 0);
+    g_object_unref(meant);
+    g_object_unref(image);
+    return path;
+}
+
+static const char *save_grey(const uint8_t codes[PIXELS], const char *name)
+{
+    return save(codes, 1, VIPS_FORMAT_UCHAR, name);
+}
+
+static void fill(uint8_t outside, uint8_t inside, uint8_t codes[PIXELS])
+{
+    for (int i = 0; i < PIXELS; i++)
+        codes[i] = is_object(i) ? inside : outside;
+}
+
+/* The object is selected by half, and nothing else is; sharply: by all. */
+static void assert_selects_object(const char *path, bool sharply)
+{
+    img mask;
+    status s = img_read_mask(path, &mask);
+    if (s != OK) print_error("%s\n", status_message());
+    assert_int_equal(s, OK);
+    assert_true(mask.width == SIDE && mask.height == SIDE && mask.channels == 1);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_int_equal(mask.data[i] >= 0.5f, is_object(i));
+        if (sharply) assert_true(mask.data[i] == (is_object(i) ? 1.0f : 0.0f));
+    }
+    img_free(&mask);
+}
+
+static void assert_refused(const char *path, const char *words)
+{
+    img mask;
+    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    if (!strstr(status_message(), words)) print_error("%s\n", status_message());
+    assert_non_null(strstr(status_message(), words));
+    assert_non_null(strstr(status_message(), path));
+    assert_null(mask.data);
+}
+
+static void two_values_are_a_mask_whatever_they_are(void **state)
+{
+    (void)state;
+    static const uint8_t pairs[][2] = {{0, 255}, {0, 1}, {0, 15}, {1, 2}, {254, 255}, {200, 250}, {0, 127}, {100, 128}};
+    uint8_t codes[PIXELS];
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        fill(pairs[k][0], pairs[k][1], codes);
+        assert_selects_object(save_grey(codes, "two.png"), true);
+        assert_selects_object(save_grey(codes, "two.tif"), true);
+    }
+    uint16_t wide[PIXELS];
+    for (int i = 0; i < PIXELS; i++)
+        wide[i] = is_object(i) ? 1 : 0;
+    assert_selects_object(save(wide, 1, VIPS_FORMAT_USHORT, "wide.png"), true);
+}
+
+static void the_greater_value_is_the_object_of_inverted_masks_too(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS];
+    img mask;
+    fill(7, 3, codes);
+    assert_int_equal(img_read_mask(save_grey(codes, "inverted.png"), &mask), OK);
+    for (int i = 0; i < PIXELS; i++)
+        assert_true(mask.data[i] == (is_object(i) ? 0.0f : 1.0f));
+    img_free(&mask);
+}
+
+static void the_brighter_of_two_colours_is_the_object(void **state)
+{
+    (void)state;
+    static const uint8_t dark[3] = {128, 0, 0};
+    uint8_t codes[PIXELS][3] = {{0}};
+    for (int i = 0; i < PIXELS; i++)
+        if (is_object(i)) memcpy(codes[i], dark, 3);
+    assert_selects_object(save(codes, 3, VIPS_FORMAT_UCHAR, "red.png"), true);
+    for (int i = 0; i < PIXELS; i++)
+        if (!is_object(i)) codes[i][1] = 128;
+    assert_refused(save(codes, 3, VIPS_FORMAT_UCHAR, "equal.png"), "two colours that are equally bright");
+}
+
+static void a_selection_in_alpha_is_taken(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS][4];
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 4; c++)
+            codes[i][c] = c < 3 ? (uint8_t)(i % 251) : is_object(i) ? 1 : 0;
+    assert_selects_object(save(codes, 4, VIPS_FORMAT_UCHAR, "alpha.png"), true);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 4; c++)
+            codes[i][c] = c == 3 ? 254 : is_object(i) ? 9 : 0;
+    assert_selects_object(save(codes, 4, VIPS_FORMAT_UCHAR, "even.png"), true);
+}
+
+static void soft_edges_keep_their_coverage(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS];
+    img mask;
+    fill(0, 255, codes);
+    for (int y = TOP; y < BOTTOM; y++) {
+        codes[y * SIDE + LEFT - 1] = (uint8_t)(20 + y);
+        codes[y * SIDE + LEFT] = (uint8_t)(200 + y);
+    }
+    assert_int_equal(img_read_mask(save_grey(codes, "soft.png"), &mask), OK);
+    for (int i = 0; i < PIXELS; i++)
+        assert_true(mask.data[i] == (float)codes[i] / 255);
+    img_free(&mask);
+    for (int i = 0; i < PIXELS; i++)
+        codes[i] = (uint8_t)(codes[i] / 17); /* 0 to 15 */
+    assert_selects_object(save_grey(codes, "dim.png"), false);
+}
+
+static void noise_of_jpeg_about_two_values_is_no_more_values(void **state)
+{
+    (void)state;
+    static const uint8_t pairs[][2] = {{0, 255}, {0, 60}, {15, 100}, {180, 250}};
+    uint8_t codes[PIXELS], seen[256] = {0};
+    img mask;
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        int wrong = 0, values = 0;
+        fill(pairs[k][0], pairs[k][1], codes);
+        assert_int_equal(img_read_mask(save_grey(codes, "noisy.jpg"), &mask), OK);
+        for (int i = 0; i < PIXELS; i++) {
+            wrong += (mask.data[i] >= 0.5f) != is_object(i);
+            values += !seen[(int)(mask.data[i] * 255)]++;
+        }
+        assert_int_equal(wrong, 0);
+        assert_true(k > 0 || values > 2); /* there is noise */
+        img_free(&mask);
+    }
+}
+
+static void more_areas_than_two_are_refused_by_their_values(void **state)
+{
+    (void)state;
+    static const uint8_t labels[5] = {0, 1, 2, 7, 9}, trimap[3] = {0, 128, 255};
+    uint8_t codes[PIXELS], colours[PIXELS][3] = {{0}};
+    for (int i = 0; i < PIXELS; i++)
+        codes[i] = labels[i / SIDE / 10];
+    assert_refused(save_grey(codes, "labels.png"), "5 values (0, 1, 2, 7, 9 of 255): which is the object?");
+    for (int i = 0; i < PIXELS; i++)
+        codes[i] = trimap[i / SIDE / 16];
+    assert_refused(save_grey(codes, "trimap.png"), "3 values (0, 128, 255 of 255)");
+    for (int i = 0; i < PIXELS; i++)
+        if (i % SIDE > 10) colours[i][i / SIDE / 16] = 255; /* equally bright */
+    assert_refused(save(colours, 3, VIPS_FORMAT_UCHAR, "colours.png"), "4 colours (#000000, #");
+    uint16_t wide[PIXELS];
+    for (int i = 0; i < PIXELS; i++)
+        wide[i] = (uint16_t)(i / SIDE / 16);
+    assert_refused(save(wide, 1, VIPS_FORMAT_USHORT, "wide.png"), "3 values (0, 1, 2 of 65535)");
+}
+
+static void values_that_are_neither_two_nor_half_white_are_refused(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS];
+    for (int i = 0; i < PIXELS; i++)
+        codes[i] = (uint8_t)(i % SIDE * 2);
+    assert_refused(save_grey(codes, "ramp.png"), "from 0 to 94 of 255");
+}
+
+static void floats_beyond_white_have_a_unit_of_their_own(void **state)
+{
+    (void)state;
+    float values[PIXELS];
+    for (int i = 0; i < PIXELS; i++)
+        values[i] = is_object(i) ? 7 : 1;
+    const exr_channel channel = {"Y", values, 1, true};
+    assert_int_equal(exr_write(scratch_path("labels.exr"), SIDE, SIDE, &channel, 1, NULL, 0), OK);
+    assert_selects_object(scratch_path("labels.exr"), true);
+}
+
+static void one_value_stays_what_it_is(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS];
+    img mask;
+    for (int white = 0; white < 2; white++) {
+        memset(codes, white ? 255 : 0, sizeof codes);
+        assert_int_equal(img_read_mask(save_grey(codes, "even.png"), &mask), OK);
+        for (int i = 0; i < PIXELS; i++)
+            assert_true(mask.data[i] == (float)white);
+        img_free(&mask);
+    }
+}
+
+static void a_map_of_numbers_is_no_mask(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS];
+    img grey;
+    fill(51, 102, codes);
+    assert_int_equal(img_read_grey(save_grey(codes, "roughness.png"), &grey), OK);
+    for (int i = 0; i < PIXELS; i++)
+        assert_float_equal(grey.data[i], is_object(i) ? 0.4 : 0.2, 1e-6);
+    img_free(&grey);
+}
+
+static int start(void **state)
+{
+    return VIPS_INIT("test") || scratch_open(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_values_are_a_mask_whatever_they_are),
+        cmocka_unit_test(the_greater_value_is_the_object_of_inverted_masks_too),
+        cmocka_unit_test(the_brighter_of_two_colours_is_the_object),
+        cmocka_unit_test(a_selection_in_alpha_is_taken),
+        cmocka_unit_test(soft_edges_keep_their_coverage),
+        cmocka_unit_test(noise_of_jpeg_about_two_values_is_no_more_values),
+        cmocka_unit_test(more_areas_than_two_are_refused_by_their_values),
+        cmocka_unit_test(values_that_are_neither_two_nor_half_white_are_refused),
+        cmocka_unit_test(floats_beyond_white_have_a_unit_of_their_own),
+        cmocka_unit_test(one_value_stays_what_it_is),
+        cmocka_unit_test(a_map_of_numbers_is_no_mask),
+    };
+    return cmocka_run_group_tests(tests, start, scratch_close);
+}
