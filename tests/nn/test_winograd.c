@@ -1,5 +1,5 @@
-/* Winograd's filtering against convolutions by their definition in double precision; steps that a program computes by
- * it, where the processor has registers of eight floats, against differences. */
+/* Tests Winograd's filtering against convolutions by their definition in double precision, and steps that a program
+ * computes by it against differences. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/half.h"
 #include "base/rng.h"
 #include "nn/cpu/winograd.h"
 #include "nn/nn.h"
@@ -25,10 +26,33 @@ static float *new_floats(size_t count, uint64_t stream)
     return x;
 }
 
+/* The room of `count` floats with the numbers of a type in it, to which the floats are rounded. */
+static void *new_numbers(float *x, size_t count, nn_type type)
+{
+    float *room = malloc(count * sizeof *room);
+    assert_non_null(room);
+    uint16_t *narrow = (uint16_t *)room;
+    for (size_t i = 0; i < count; i++) {
+        if (type == NN_FLOAT32)
+            room[i] = x[i];
+        else
+            x[i] = bf16_to_float(narrow[i] = float_to_bf16(x[i]));
+    }
+    return room;
+}
+
+static void numbers_to_floats(const void *numbers, size_t count, nn_type type, float *to)
+{
+    for (size_t i = 0; i < count; i++)
+        to[i] = type == NN_FLOAT32 ? ((const float *)numbers)[i] : bf16_to_float(((const uint16_t *)numbers)[i]);
+}
+
+/* x_in, y_in and dy_in are in the convolution's types, with x, y and dy for values. */
 typedef struct fixture {
     winograd g;
     size_t inputs, outputs, taps;
     float *x, *y, *dy, *weight, *bias, *u, *room;
+    void *x_in, *y_in, *dy_in;
 } fixture;
 
 static fixture open_fixture(winograd g)
@@ -46,12 +70,15 @@ static fixture open_fixture(winograd g)
     f.bias = new_floats(out, 5);
     f.u = new_floats(winograd_weights(g.in, g.out), 6);
     f.room = new_floats(most, 7);
+    f.x_in = new_numbers(f.x, f.inputs, g.from);
+    f.y_in = new_numbers(f.y, f.outputs, g.to);
+    f.dy_in = new_numbers(f.dy, f.outputs, g.to);
     return f;
 }
 
 static void close_fixture(fixture *f)
 {
-    float *all[] = {f->x, f->y, f->dy, f->weight, f->bias, f->u, f->room};
+    void *all[] = {f->x, f->y, f->dy, f->weight, f->bias, f->u, f->room, f->x_in, f->y_in, f->dy_in};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
 }
@@ -107,15 +134,19 @@ static void add_weight_gradient(const fixture *f, size_t from, size_t to, int ta
 }
 
 /* Root mean square error beside the root mean square. Sums of thousands of products of 24 bits, which the filtering
- * makes some ten times less exact: 1e-5. */
-static void assert_close(const float *found, const double *expected, size_t count)
+ * makes some ten times less exact: 1e-5; rounded to the 8 bits of bfloat16, 2^-9 at most. */
+static void assert_close(const void *numbers, const double *expected, size_t count, nn_type type)
 {
-    double error = 0, square = 0;
+    double error = 0, square = 0, bound = type == NN_FLOAT32 ? 1e-5 : 0.002;
+    float *found = malloc(count * sizeof *found);
+    assert_non_null(found);
+    numbers_to_floats(numbers, count, type, found);
     for (size_t i = 0; i < count; i++) {
         error += pow((double)found[i] - expected[i], 2);
         square += expected[i] * expected[i];
     }
-    if (!(sqrt(error / square) < 1e-5)) fail_msg("relative error %g", sqrt(error / square));
+    free(found);
+    if (!(sqrt(error / square) < bound)) fail_msg("relative error %g", sqrt(error / square));
 }
 
 static double *new_sums(size_t count)
@@ -126,9 +157,12 @@ static double *new_sums(size_t count)
 }
 
 /* Whole tiles and not, fewer than a thread's share, more channels in than out and the other way round. */
-static const winograd shapes[] = {{2, 16, 24, 16, 32, 2}, {3, 7, 10, 48, 16, 3}, {1, 1, 1, 16, 16, 2},
-                                  {1, 13, 5, 160, 16, 2}, {1, 4, 9, 16, 176, 1}, {2, 3, 2, 32, 32, 4},
-                                  {2, 40, 37, 16, 16, 2}};
+static const winograd shapes[] = {
+    {2, 16, 24, 16, 32, 2, NN_FLOAT32, NN_FLOAT32}, {3, 7, 10, 48, 16, 3, NN_FLOAT32, NN_FLOAT32},
+    {1, 1, 1, 16, 16, 2, NN_FLOAT32, NN_FLOAT32},   {1, 13, 5, 160, 16, 2, NN_FLOAT32, NN_FLOAT32},
+    {1, 4, 9, 16, 176, 1, NN_FLOAT32, NN_FLOAT32},  {2, 3, 2, 32, 32, 4, NN_FLOAT32, NN_FLOAT32},
+    {2, 40, 37, 16, 16, 2, NN_FLOAT32, NN_FLOAT32}, {2, 17, 22, 48, 80, 2, NN_BFLOAT16, NN_BFLOAT16},
+    {1, 30, 7, 32, 16, 2, NN_BFLOAT16, NN_FLOAT32}};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 static void convolution_matches_the_definition(void **state)
@@ -139,25 +173,53 @@ static void convolution_matches_the_definition(void **state)
         double *sums = new_sums(f.outputs);
         for_all_pairs(&f, add_output, sums);
         winograd_transform(f.weight, f.g.in, f.g.out, f.u);
-        winograd_convolve(&f.g, f.x, f.u, &(winograd_after){0}, f.y, f.room);
-        assert_close(f.y, sums, f.outputs);
+        winograd_convolve(&f.g, f.x_in, f.u, &(winograd_after){0}, f.y_in, f.room);
+        assert_close(f.y_in, sums, f.outputs, f.g.to);
         free(sums);
         close_fixture(&f);
     }
 }
 
-static void bias_old_values_and_relu_come_after_the_sums(void **state)
+/* The picture beside has the input's type, which need not be the output's. */
+static void bias_a_picture_old_values_and_relu_come_after_the_sums(void **state)
 {
     (void)state;
-    fixture f = open_fixture(shapes[1]);
-    double *sums = new_sums(f.outputs);
-    for_all_pairs(&f, add_output, sums);
-    for (size_t i = 0; i < f.outputs; i++)
-        sums[i] = fmax(sums[i] + (double)f.bias[i % (size_t)f.g.out] + (double)f.y[i], 0);
-    winograd_transform(f.weight, f.g.in, f.g.out, f.u);
-    winograd_convolve(&f.g, f.x, f.u, &(winograd_after){.bias = f.bias, .relu = true, .accumulate = true}, f.y, f.room);
-    assert_close(f.y, sums, f.outputs);
-    free(sums);
+    for (int k = 0; k < SHAPES; k++) {
+        fixture f = open_fixture(shapes[k]);
+        double *sums = new_sums(f.outputs);
+        float *beside = new_floats(f.outputs, 8);
+        void *beside_in = new_numbers(beside, f.outputs, f.g.from);
+        for_all_pairs(&f, add_output, sums);
+        for (size_t i = 0; i < f.outputs; i++)
+            sums[i] = fmax(sums[i] + (double)f.bias[i % (size_t)f.g.out] + (double)beside[i] + (double)f.y[i], 0);
+        winograd_transform(f.weight, f.g.in, f.g.out, f.u);
+        winograd_after after = {.bias = f.bias, .beside = beside_in, .relu = true, .accumulate = true};
+        winograd_convolve(&f.g, f.x_in, f.u, &after, f.y_in, f.room);
+        assert_close(f.y_in, sums, f.outputs, f.g.to);
+        free(beside);
+        free(beside_in);
+        free(sums);
+        close_fixture(&f);
+    }
+}
+
+/* As float_to_bf16 has them: ties to even, infinity stays, NaN is NaN. */
+static void bfloat16_is_rounded_as_everywhere(void **state)
+{
+    (void)state;
+    enum { CASES = 8 };
+    const float cases[CASES] = {1.00390625f, 1.01171875f, -1.0e-40f, INFINITY, -INFINITY, NAN, 3.3999e38f, 0.3333333f};
+    winograd g = {1, 1, 1, 16, 16, 1, NN_FLOAT32, NN_BFLOAT16};
+    fixture f = open_fixture(g);
+    memset(f.u, 0, winograd_weights(16, 16) * sizeof *f.u);
+    for (int i = 0; i < 16; i++)
+        f.bias[i] = cases[i % CASES];
+    winograd_convolve(&f.g, f.x_in, f.u, &(winograd_after){.bias = f.bias}, f.y_in, f.room);
+    const uint16_t *y = f.y_in;
+    for (int i = 0; i < 16; i++) {
+        uint16_t expected = float_to_bf16(cases[i % CASES]);
+        if (y[i] != expected) fail_msg("%g is %#x, not %#x", (double)cases[i % CASES], y[i], expected);
+    }
     close_fixture(&f);
 }
 
@@ -170,8 +232,8 @@ static void input_gradient_matches_the_definition(void **state)
         const winograd back = winograd_back(&f.g);
         for_all_pairs(&f, add_input_gradient, sums);
         winograd_transform_back(f.weight, f.g.in, f.g.out, f.u);
-        winograd_convolve(&back, f.dy, f.u, &(winograd_after){0}, f.x, f.room);
-        assert_close(f.x, sums, f.inputs);
+        winograd_convolve(&back, f.dy_in, f.u, &(winograd_after){0}, f.x_in, f.room);
+        assert_close(f.x_in, sums, f.inputs, f.g.from);
         free(sums);
         close_fixture(&f);
     }
@@ -184,8 +246,8 @@ static void weight_gradient_matches_the_definition(void **state)
         fixture f = open_fixture(shapes[k]);
         double *sums = new_sums(f.taps);
         for_all_pairs(&f, add_weight_gradient, sums);
-        winograd_gradient(&f.g, f.x, f.dy, f.weight, f.room);
-        assert_close(f.weight, sums, f.taps);
+        winograd_gradient(&f.g, f.x_in, f.dy_in, f.weight, f.room);
+        assert_close(f.weight, sums, f.taps, NN_FLOAT32);
         free(sums);
         close_fixture(&f);
     }
@@ -194,16 +256,16 @@ static void weight_gradient_matches_the_definition(void **state)
 static void threads_change_no_bit(void **state)
 {
     (void)state;
-    winograd one = {2, 18, 30, 32, 48, 1}, three = one;
+    winograd one = {2, 18, 30, 32, 48, 1, NN_FLOAT32, NN_FLOAT32}, three = one;
     three.threads = 3;
     fixture a = open_fixture(one), b = open_fixture(three);
     for (int k = 0; k < 2; k++) {
         fixture *f = k ? &b : &a;
         winograd_transform(f->weight, f->g.in, f->g.out, f->u);
-        winograd_convolve(&f->g, f->x, f->u, &(winograd_after){0}, f->y, f->room);
-        winograd_gradient(&f->g, f->x, f->dy, f->weight, f->room);
+        winograd_convolve(&f->g, f->x_in, f->u, &(winograd_after){0}, f->y_in, f->room);
+        winograd_gradient(&f->g, f->x_in, f->dy_in, f->weight, f->room);
     }
-    assert_memory_equal(a.y, b.y, a.outputs * sizeof *a.y);
+    assert_memory_equal(a.y_in, b.y_in, a.outputs * sizeof *a.y);
     assert_memory_equal(a.weight, b.weight, a.taps * sizeof *a.weight);
     close_fixture(&a);
     close_fixture(&b);
@@ -227,11 +289,11 @@ static nn_graph *build_net(void)
     return g;
 }
 
-static nn_program *compile(nn_params *params, nn_purpose purpose, int size)
+static nn_program *compile(nn_params *params, nn_purpose purpose, int size, nn_type type)
 {
     nn_graph *g = build_net();
     nn_program *p;
-    const nn_options options = {.batch = BATCH, .height = size, .width = size, .type = NN_FLOAT32, .purpose = purpose};
+    const nn_options options = {.batch = BATCH, .height = size, .width = size, .type = type, .purpose = purpose};
     if (nn_compile(g, params, &options, &p) != OK) fail_msg("%s", status_message());
     nn_graph_free(g);
     const char *names[] = {"x", "target", "mask"};
@@ -262,7 +324,7 @@ static void gradients_of_a_program_match_differences(void **state)
     nn_graph *g = build_net();
     assert_int_equal(nn_params_new(g, 3, &params), OK);
     nn_graph_free(g);
-    nn_program *p = compile(params, NN_TRAIN, SIZE);
+    nn_program *p = compile(params, NN_TRAIN, SIZE, NN_FLOAT32);
     const char *names[] = {"stem.weight", "a.weight", "a.bias", "b.weight", "b.bias", "c.weight"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         nn_param *w = nn_params_find(params, names[k]);
@@ -285,6 +347,34 @@ static void gradients_of_a_program_match_differences(void **state)
     nn_params_free(params);
 }
 
+/* Activations of 8 bits leave gradients that are right to a few hundredths. */
+static void gradients_in_bfloat16_are_nearly_those_in_float32(void **state)
+{
+    (void)state;
+    nn_params *params[2];
+    for (int k = 0; k < 2; k++) {
+        nn_graph *g = build_net();
+        assert_int_equal(nn_params_new(g, 3, &params[k]), OK);
+        nn_graph_free(g);
+        nn_program *p = compile(params[k], NN_TRAIN, SIZE, k ? NN_BFLOAT16 : NN_FLOAT32);
+        assert_int_equal(nn_forward(p), OK);
+        assert_int_equal(nn_backward(p), OK);
+        nn_program_free(p);
+    }
+    for (size_t i = 0; i < nn_params_count(params[0]); i++) {
+        const nn_param *exact = nn_params_at(params[0], i), *rounded = nn_params_at(params[1], i);
+        double square = 0, error = 0;
+        for (size_t j = 0; exact->gradient && j < exact->count; j++) {
+            square += pow((double)exact->gradient[j], 2);
+            error += pow((double)rounded->gradient[j] - (double)exact->gradient[j], 2);
+        }
+        if (!(sqrt(error) <= 0.03 * sqrt(square) + 1e-6))
+            fail_msg("%s: %g of %g", exact->name, sqrt(error), sqrt(square));
+    }
+    nn_params_free(params[0]);
+    nn_params_free(params[1]);
+}
+
 /* What is far from a picture's border does not depend on its size. The smaller one has too few tiles to be filtered:
  * oneDNN computes it, batch norm folded into its weights as well. */
 static void a_program_agrees_with_one_of_another_size(void **state)
@@ -301,7 +391,8 @@ static void a_program_agrees_with_one_of_another_size(void **state)
         scale->value[i] = 1.5f - 0.1f * (float)i;
     }
     nn_params_touch(params);
-    nn_program *large = compile(params, NN_INFER, SIZE), *small = compile(params, NN_INFER, SMALL);
+    nn_program *large = compile(params, NN_INFER, SIZE, NN_FLOAT32),
+               *small = compile(params, NN_INFER, SMALL, NN_FLOAT32);
     for (int y = 0; y < SMALL; y++)
         memcpy(nn_input_data(small, "x") + y * SMALL * 3, nn_input_data(large, "x") + y * SIZE * 3,
                SMALL * 3 * sizeof(float));
@@ -320,11 +411,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(convolution_matches_the_definition),
-        cmocka_unit_test(bias_old_values_and_relu_come_after_the_sums),
+        cmocka_unit_test(bias_a_picture_old_values_and_relu_come_after_the_sums),
+        cmocka_unit_test(bfloat16_is_rounded_as_everywhere),
         cmocka_unit_test(input_gradient_matches_the_definition),
         cmocka_unit_test(weight_gradient_matches_the_definition),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(gradients_of_a_program_match_differences),
+        cmocka_unit_test(gradients_in_bfloat16_are_nearly_those_in_float32),
         cmocka_unit_test(a_program_agrees_with_one_of_another_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

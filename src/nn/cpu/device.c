@@ -8,10 +8,15 @@
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/steps.h"
 
+static bool has_isa(dnnl_cpu_isa_t wanted)
+{
+    unsigned isa = (unsigned)dnnl_get_effective_cpu_isa();
+    return (isa & (unsigned)wanted) == (unsigned)wanted;
+}
+
 static nn_type usable_type(nn_type wanted)
 {
-    unsigned isa = (unsigned)dnnl_get_effective_cpu_isa(), needed = (unsigned)dnnl_cpu_isa_avx512_core;
-    return (isa & needed) == needed ? wanted : NN_FLOAT32;
+    return has_isa(dnnl_cpu_isa_avx512_core) ? wanted : NN_FLOAT32;
 }
 
 #if defined(__x86_64__) || defined(__i386__)
@@ -31,19 +36,19 @@ static bool is_amd(void)
  * one. Intel's cores do it a quarter as often: where AMX is missing or hidden, float32 is twice as fast. */
 static nn_type fastest_type(void)
 {
-    unsigned isa = (unsigned)dnnl_get_effective_cpu_isa();
-    unsigned products = (unsigned)dnnl_cpu_isa_avx512_core_bf16, tiles = (unsigned)dnnl_cpu_isa_avx512_core_amx;
-    if ((isa & tiles) == tiles) return NN_BFLOAT16;
-    return (isa & products) == products && is_amd() ? NN_BFLOAT16 : NN_FLOAT32;
+    if (has_isa(dnnl_cpu_isa_avx512_core_amx)) return NN_BFLOAT16;
+    return has_isa(dnnl_cpu_isa_avx512_core_bf16) && is_amd() ? NN_BFLOAT16 : NN_FLOAT32;
 }
 
-/* Winograd's filtering is written for registers of eight floats: where oneDNN has wider ones, and bfloat16, its own
- * sums are as fast. */
-static bool registers_of_eight(void)
+/* Tells whether Winograd's filtering is faster than oneDNN's sums where it suits a convolution at all. In float32 a
+ * training step takes 0.6 of the time by registers of sixteen floats, in bfloat16 0.8 (Zen 5, docs/evaluation.md); AMX
+ * does bfloat16 products faster than the filtering's own. */
+static bool filtering_pays(nn_type type)
 {
-#if defined(__AVX2__) && defined(__FMA__) && !defined(__AVX512F__)
-    return usable_type(NN_BFLOAT16) == NN_FLOAT32;
+#if defined(__AVX2__) && defined(__FMA__)
+    return type == NN_FLOAT32 || !has_isa(dnnl_cpu_isa_avx512_core_amx);
 #else
+    (void)type;
     return false;
 #endif
 }
@@ -51,7 +56,7 @@ static bool registers_of_eight(void)
 static status create(nn_step *step)
 {
     if (op_is_conv(step->op))
-        return registers_of_eight() && winograd_suits(step) ? winograd_create(step) : conv_create(step);
+        return filtering_pays(step->compute) && winograd_suits(step) ? winograd_create(step) : conv_create(step);
     if (step->op == OP_NORM) return norm_create(step);
     return kernel_create(step);
 }

@@ -7,26 +7,30 @@
  *     winograd_transform(weight, g.in, g.out, u);                       u: winograd_weights(64, 96) floats
  *     winograd_convolve(&g, x, u, &(winograd_after){.bias = b}, y, room);    room: winograd_room(&g) floats
  *
- * Activations are float32 and channels-last, weights [out][in][3][3]; channels are multiples of WINOGRAD_CHANNELS and
- * at most CPU_MAX_CHANNELS. Rounding is some ten times that of the plain sum (3e-6 of the result). Results do not
- * depend on the number of threads. */
+ * Activations are float32 or bfloat16, sums and weights float32; activations channels-last, weights [out][in][3][3];
+ * channels are multiples of WINOGRAD_CHANNELS and at most CPU_MAX_CHANNELS. Rounding is some ten times that of the
+ * plain sum (3e-6 of the result). Results do not depend on the number of threads. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_H
 #define MERLIN_NN_CPU_WINOGRAD_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "nn/nn.h"
+
 enum { WINOGRAD_CHANNELS = 16 };
 
 typedef struct winograd {
-    int n, h, w; /* of input and output */
-    int in, out; /* channels */
-    int threads; /* that may work on it; room is for so many */
+    int n, h, w;      /* of input and output */
+    int in, out;      /* channels */
+    int threads;      /* that may work on it; room is for so many */
+    nn_type from, to; /* of input and output in memory */
 } winograd;
 
 /* What is done to the sums before they are stored. */
 typedef struct winograd_after {
-    const float *bias; /* out, or NULL */
+    const float *bias;  /* out, or NULL */
+    const void *beside; /* of the output's shape and the input's type: added; or NULL */
     bool relu;
     bool accumulate; /* add to what is there */
 } winograd_after;
@@ -34,7 +38,7 @@ typedef struct winograd_after {
 /* The convolution that takes g's output's gradient to its input's. */
 static inline winograd winograd_back(const winograd *g)
 {
-    return (winograd){g->n, g->h, g->w, g->out, g->in, g->threads};
+    return (winograd){g->n, g->h, g->w, g->out, g->in, g->threads, g->to, g->from};
 }
 
 size_t winograd_tiles(const winograd *g);
@@ -45,11 +49,11 @@ void winograd_transform(const float *weight, int in, int out, float *u);
 void winograd_transform_back(const float *weight, int in, int out, float *u);
 
 size_t winograd_room(const winograd *g);
-void winograd_convolve(const winograd *g, const float *x, const float *u, const winograd_after *after, float *y,
+void winograd_convolve(const winograd *g, const void *x, const float *u, const winograd_after *after, void *y,
                        float *room);
 
 size_t winograd_gradient_room(const winograd *g);
 /* dw = d(loss)/d(weight) where dy = d(loss)/d(output). */
-void winograd_gradient(const winograd *g, const float *x, const float *dy, float *dw, float *room);
+void winograd_gradient(const winograd *g, const void *x, const void *dy, float *dw, float *room);
 
 #endif

@@ -1,5 +1,6 @@
 /* A convolution as a step of the device, by Winograd's filtering. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -20,7 +21,7 @@ typedef struct state {
 static winograd shape_of(const nn_step *step)
 {
     const nn_tensor *x = &step->in[0];
-    return (winograd){x->n, x->h, x->w, x->c, step->out.c, parallel_threads()};
+    return (winograd){x->n, x->h, x->w, x->c, step->out.c, parallel_threads(), x->type, step->out.type};
 }
 
 static bool is_whole(int channels)
@@ -31,7 +32,7 @@ static bool is_whole(int channels)
 bool winograd_suits(const nn_step *step)
 {
     const winograd shape = shape_of(step);
-    return step->at.kernel == 3 && step->at.stride == 1 && step->compute == NN_FLOAT32 && is_whole(shape.in) &&
+    return step->at.kernel == 3 && step->at.stride == 1 && step->in[0].type == step->compute && is_whole(shape.in) &&
            is_whole(shape.out) && winograd_tiles(&shape) >= (step->backs ? LEAST_TILES_TRAINED : LEAST_TILES);
 }
 
@@ -64,32 +65,44 @@ static status forward(nn_step *step)
     return OK;
 }
 
-/* Of all pixels, in their order. */
-static void sum_to_bias(const nn_tensor *dy, const float *from, float *to)
+/* Sums the output's gradient over all pixels, in their order. */
+static void sum_to_bias(const nn_tensor *dy, float *to)
 {
     const size_t pixels = tensor_count(dy) / (size_t)dy->c;
 #pragma omp parallel for schedule(static)
     for (int first = 0; first < dy->c; first += WINOGRAD_CHANNELS) {
-        float sum[WINOGRAD_CHANNELS] = {0};
-        for (size_t i = 0; i < pixels; i++)
+        float sum[WINOGRAD_CHANNELS] = {0}, room[WINOGRAD_CHANNELS];
+        for (size_t i = 0; i < pixels; i++) {
+            const float *from = cpu_load(dy, i * (size_t)dy->c + (size_t)first, WINOGRAD_CHANNELS, room);
             for (int c = 0; c < WINOGRAD_CHANNELS; c++)
-                sum[c] += from[i * (size_t)dy->c + (size_t)(first + c)];
-        for (int c = 0; c < WINOGRAD_CHANNELS; c++)
-            to[first + c] = sum[c];
+                sum[c] += from[c];
+        }
+        memcpy(to + first, sum, sizeof sum);
     }
+}
+
+/* The output's gradient as convolutions take it: in the type that is computed in, ReLU's part applied. */
+static nn_tensor prepare(nn_step *step)
+{
+    nn_tensor dy = step->out;
+    dy.type = step->compute;
+    dy.data = conv_prepared(step, step->backward_space);
+    conv_prepare(step, step->backward_space);
+    return dy;
 }
 
 static status backward(nn_step *step)
 {
     const state *own = step->state;
-    float *prepared = step->backward_space, *dy = conv_prepared(step, prepared);
-    float *room = prepared + conv_prepared_bytes(step) / sizeof *prepared;
-    conv_prepare(step, prepared);
-    winograd_gradient(&own->shape, step->in[0].data, dy, step->params.weight->gradient, room);
-    if (step->params.bias) sum_to_bias(&step->out, dy, step->params.bias->gradient);
+    const nn_tensor dy = prepare(step);
+    float *room = (float *)((char *)step->backward_space + conv_prepared_bytes(step));
+    winograd g = own->shape;
+    g.to = step->compute;
+    winograd_gradient(&g, step->in[0].data, dy.data, step->params.weight->gradient, room);
+    if (step->params.bias) sum_to_bias(&dy, step->params.bias->gradient);
     const winograd_after after = {.accumulate = step->accumulate[0]};
-    const winograd back = winograd_back(&own->shape);
-    if (step->wants[0]) winograd_convolve(&back, dy, own->weights_back, &after, step->in_gradient[0].data, room);
+    const winograd back = winograd_back(&g);
+    if (step->wants[0]) winograd_convolve(&back, dy.data, own->weights_back, &after, step->in_gradient[0].data, room);
     return OK;
 }
 
