@@ -43,7 +43,7 @@ ALWAYS_INLINE void wide_widen(wide *v, const uint16_t *from)
 ALWAYS_INLINE void wide_narrow(const wide *v, uint16_t *to)
 {
     wide_codes bits = (wide_codes)*v, rounded = bits + 0x7fff + (bits >> 16 & 1);
-    wide_codes nan = (wide_codes)(*v != *v);
+    wide_codes nan = (wide_codes)((bits & 0x7fffffff) > 0x7f800000);
     bits = (rounded & ~nan) | ((bits | 0x400000) & nan);
     wide_words words = __builtin_convertvector(bits >> 16, wide_words);
     memcpy(to, &words, sizeof words);
