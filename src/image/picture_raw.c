@@ -3,6 +3,7 @@
 
 #include "base/library.h"
 #include "image/picture.h"
+#include "image/picture_dng.h"
 
 #define LIBRAW_FUNCTIONS(USE)                                                                                          \
     USE(init)                                                                                                          \
@@ -118,6 +119,8 @@ static void take(const libraw_processed_image_t *made, const float (*matrix)[4],
 
 status picture_read_raw(const char *path, picture_colour how, img *color)
 {
+    picture_head head;
+    if (picture_is_float_dng(path)) return picture_read_float_dng(path, how, color, &head);
     bool damaged = false;
     libraw_data_t *file;
     libraw_processed_image_t *made = NULL;
@@ -135,6 +138,7 @@ status picture_read_raw(const char *path, picture_colour how, img *color)
 
 status picture_look_raw(const char *path, picture_head *head)
 {
+    if (picture_is_float_dng(path)) return picture_read_float_dng(path, PICTURE_AS_IT_IS, NULL, head);
     bool damaged = false;
     libraw_data_t *file;
     status s = open_raw(path, &damaged, &file);

@@ -19,7 +19,7 @@ static void multiply(const double a[9], const double b[9], double out[9])
         out[i] = a[i / 3 * 3] * b[i % 3] + a[i / 3 * 3 + 1] * b[i % 3 + 3] + a[i / 3 * 3 + 2] * b[i % 3 + 6];
 }
 
-static bool invert(const double m[9], double out[9])
+bool primaries_invert(const double m[9], double out[9])
 {
     double determinant = 0;
     for (int i = 0; i < 9; i++) {
@@ -53,7 +53,7 @@ static bool to_xyz(const float xy[8], double m[9])
         m[3 + k] = xy[2 * k + 1];
         m[6 + k] = 1 - m[k] - m[3 + k];
     }
-    if (!invert(m, inverse)) return false;
+    if (!primaries_invert(m, inverse)) return false;
     white_of(xy, white);
     apply(inverse, white, strength);
     for (int i = 0; i < 9; i++)
@@ -70,7 +70,7 @@ static bool adapt_to_srgb(const float xy[8], double m[9])
     apply(bradford, to, cones_to);
     for (int i = 0; i < 9; i++)
         scaled[i] = bradford[i] * cones_to[i / 3] / cones_from[i / 3];
-    if (!invert(bradford, back)) return false;
+    if (!primaries_invert(bradford, back)) return false;
     multiply(back, scaled, m);
     return true;
 }
@@ -78,7 +78,8 @@ static bool adapt_to_srgb(const float xy[8], double m[9])
 bool primaries_to_srgb(const float xy[8], double m[9])
 {
     double in[9], out[9], from_xyz[9], adapted[9], adapt[9];
-    if (!to_xyz(xy, in) || !to_xyz(srgb, out) || !invert(out, from_xyz) || !adapt_to_srgb(xy, adapt)) return false;
+    if (!to_xyz(xy, in) || !to_xyz(srgb, out) || !primaries_invert(out, from_xyz) || !adapt_to_srgb(xy, adapt))
+        return false;
     multiply(adapt, in, adapted);
     multiply(from_xyz, adapted, m);
     for (int i = 0; i < 9; i++)

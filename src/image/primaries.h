@@ -14,4 +14,7 @@ bool primaries_to_srgb(const float xy[8], double m[9]);
 /* sRGB's own, as far as files tell them apart. */
 bool primaries_are_srgb(const float xy[8]);
 
+/* The inverse of a matrix of such rows; false where there is none. */
+bool primaries_invert(const double m[9], double out[9]);
+
 #endif

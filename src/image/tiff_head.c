@@ -1,6 +1,9 @@
 #include "image/tiff_head.h"
 
-enum { BYTE = 1, SHORT = 3, LONG = 4, RATIONAL = 5, UNDEFINED = 7, FOLDER = 13, BIG_TIFF = 43 };
+#include <string.h>
+
+enum { BYTE = 1, SHORT = 3, LONG = 4, RATIONAL = 5, UNDEFINED = 7, SIGNED_RATIONAL = 10, FLOAT = 11, DOUBLE = 12 };
+enum { FOLDER = 13, BIG_TIFF = 43 };
 
 /* The number in so many bytes at a place of the file; 0 where there is none. */
 static uint64_t number_at(const tiff_head *t, uint64_t at, int bytes)
@@ -85,12 +88,35 @@ bool tiff_open(tiff_head *t, FILE *file)
     return (order == 'M' || order == 'I') && t->pages > 0;
 }
 
-double tiff_real(const tiff_head *t, uint64_t page, unsigned tag)
+/* The number that so many bytes are, as a TIFF of that type means them. */
+static double real_of(const tiff_head *t, uint64_t at, uint64_t type)
+{
+    uint64_t bits = number_at(t, at, type == DOUBLE ? 8 : 4);
+    uint32_t low = (uint32_t)bits;
+    float narrow;
+    double wide;
+    memcpy(&narrow, &low, sizeof narrow);
+    memcpy(&wide, &bits, sizeof wide);
+    if (type == FLOAT || type == DOUBLE) return type == FLOAT ? (double)narrow : wide;
+    bool negative = type == SIGNED_RATIONAL;
+    uint32_t under = (uint32_t)number_at(t, at + 4, 4);
+    double over = negative ? (double)(int32_t)low : (double)low, by = negative ? (double)(int32_t)under : (double)under;
+    return under ? over / by : 0;
+}
+
+double tiff_real_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index)
 {
     uint64_t at = find_entry(t, page, tag), type = at ? number_at(t, at + 2, 2) : 0;
-    if (type != RATIONAL) return tiff_value(t, page, tag);
+    if (type != RATIONAL && type != SIGNED_RATIONAL && type != FLOAT && type != DOUBLE)
+        return tiff_value_at(t, page, tag, index);
+    uint64_t bytes = type == FLOAT ? 4 : 8, count = number_at(t, at + 4, offset_bytes(t));
+    if (index >= count) return 0;
     uint64_t value = at + 4 + (uint64_t)offset_bytes(t);
-    if (!t->wide) value = number_at(t, value, offset_bytes(t));
-    double over = (double)number_at(t, value, 4), under = (double)number_at(t, value + 4, 4);
-    return under > 0 ? over / under : 0;
+    if (count > (uint64_t)offset_bytes(t) / bytes) value = number_at(t, value, offset_bytes(t));
+    return real_of(t, value + index * bytes, type);
+}
+
+double tiff_real(const tiff_head *t, uint64_t page, unsigned tag)
+{
+    return tiff_real_at(t, page, tag, 0);
 }

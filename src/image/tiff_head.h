@@ -24,7 +24,13 @@ enum {
     TIFF_ORIENTATION = 274,
     TIFF_SAMPLES = 277,
     TIFF_STRIP_HEIGHT = 278,
+    TIFF_STRIP_SIZES = 279,
+    TIFF_PLANES = 284,
+    TIFF_PREDICTOR = 317,
+    TIFF_TILE_WIDTH = 322,
+    TIFF_TILE_HEIGHT = 323,
     TIFF_TILES = 324,
+    TIFF_TILE_SIZES = 325,
     TIFF_BELOW = 330,
     TIFF_EXTRA_SAMPLES = 338,
     TIFF_SAMPLE_FORMAT = 339,
@@ -47,7 +53,8 @@ uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
 /* Returns how many numbers an entry has, or one of them by its place. */
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag);
 uint32_t tiff_value_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
-/* Returns the first number of an entry, whole or a fraction; 0 where there is none. */
+/* Returns the first number of an entry, or one by its place, whole, a fraction or a float; 0 where there is none. */
 double tiff_real(const tiff_head *t, uint64_t page, unsigned tag);
+double tiff_real_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
 
 #endif

@@ -152,6 +152,71 @@ static void a_preview_is_not_the_picture(void **state)
     }
 }
 
+static void read_float(const dng *d, img *out, bool photograph)
+{
+    int bits;
+    dng_write(scratch_path("f.dng"), d);
+    status s = photograph ? img_read(scratch_path("f.dng"), out, NULL)
+                          : img_read_samples(scratch_path("f.dng"), true, out, &bits);
+    if (s != OK) fail_msg("%s", status_message());
+}
+
+static float bright_half(int x, int y, int channel)
+{
+    (void)y;
+    return (x < WIDTH / 2 ? 2.5f : 0.25f) * (channel == 1 ? 1 : 0.5f);
+}
+
+/* Of three colours and of a mosaic, of each width, with and without the predictor, for white of 1 and of 4. */
+static void raw_pictures_of_floats_are_light_beyond_white(void **state)
+{
+    (void)state;
+    static const float bright[3] = {1.25f, 2.5f, 1.25f}, dark[3] = {0.125f, 0.25f, 0.125f};
+    for (int k = 0; k < 24; k++) {
+        dng d = picture(bright_half);
+        d.floats = 16 + 8 * (k % 3);
+        d.planes = k / 3 % 2;
+        d.linear = k / 6 % 2;
+        d.big_endian = k % 2;
+        d.exceeds = k / 12 ? 4 : 0;
+        dng_write(scratch_path("f.dng"), &d);
+        img image = {0};
+        int bits, width, height;
+        if (img_read_samples(scratch_path("f.dng"), true, &image, &bits) != OK) fail_msg("%s", status_message());
+        assert_true(bits == 32 && image.width == WIDTH && image.height == HEIGHT && image.channels == 3);
+        assert_colour(&image, 0, 0, bright, 1);
+        assert_colour(&image, WIDTH / 2 - 2, HEIGHT - 1, bright, 1);
+        assert_colour(&image, WIDTH / 2 + 2, HEIGHT / 2, dark, 1);
+        assert_colour(&image, WIDTH - 1, HEIGHT - 1, dark, 1);
+        img_free(&image);
+        assert_int_equal(img_read_size(scratch_path("f.dng"), &width, &height), OK);
+        assert_true(width == WIDTH && height == HEIGHT);
+    }
+}
+
+static void raw_pictures_of_floats_are_balanced_and_upright(void **state)
+{
+    (void)state;
+    const float balanced[3] = {orange[0] / 0.8f, orange[1], orange[2] / 0.5f};
+    dng d = picture(plain);
+    img image = {0};
+    d.floats = 32;
+    d.linear = d.planes = true;
+    d.orientation = 6;
+    d.neutral[0] = 0.8f;
+    d.neutral[2] = 0.5f;
+    read_float(&d, &image, true);
+    assert_true(image.width == HEIGHT && image.height == WIDTH);
+    assert_colour(&image, 5, 5, balanced, 1);
+    img_free(&image);
+    read_float(&d, &image, false);
+    assert_colour(&image, 5, 5, orange, 1);
+    img_free(&image);
+    assert_int_equal(truncate(scratch_path("f.dng"), 9000), 0);
+    assert_int_equal(img_read(scratch_path("f.dng"), &image, NULL), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "damaged or cut short"));
+}
+
 static void cut(const char *name, off_t bytes)
 {
     dng d = picture(plain);
@@ -185,6 +250,8 @@ int main(void)
         in_scratch(photographs_are_white_balanced_and_measurements_are_not),
         in_scratch(a_camera_on_its_side_gives_an_upright_picture),
         in_scratch(a_preview_is_not_the_picture),
+        in_scratch(raw_pictures_of_floats_are_light_beyond_white),
+        in_scratch(raw_pictures_of_floats_are_balanced_and_upright),
         in_scratch(damaged_and_unknown_ones_are_refused_in_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

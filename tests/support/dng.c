@@ -101,13 +101,17 @@ static void add_camera(tiff *t, const dng *d)
     add_one(t, 50778, SHORT, 21); /* D65 */
 }
 
-static void add_mosaic(tiff *t, const dng *d)
+static void add_mosaic_words(tiff *t)
 {
     static const uint32_t period[2] = {2, 2}, pattern[4] = {0, 1, 1, 2};
-    add_one(t, 254, LONG, 0);
-    add_size(t, (uint32_t)d->width, (uint32_t)d->height, 16, 1, 32803);
     add(t, 33421, SHORT, 2, period);
     add(t, 33422, BYTE, 4, pattern);
+}
+
+static void add_mosaic(tiff *t, const dng *d)
+{
+    add_one(t, 254, LONG, 0);
+    add_size(t, (uint32_t)d->width, (uint32_t)d->height, 16, 1, 32803);
     add_one(t, 50714, SHORT, BLACK);
     add_one(t, 50717, SHORT, WHITE);
 }
@@ -120,6 +124,87 @@ static void put_codes(tiff *t, const dng *d)
             float seen = fminf(d->see(x, y, y % 2 + x % 2), 1);
             put(t, t->size, (uint32_t)lrintf(BLACK + seen * (WHITE - BLACK)), 2);
         }
+}
+
+/* So many bits of a float that has them exactly, but for the last. */
+static uint32_t float_code(float value, int bits)
+{
+    if (value == 0) return 0;
+    const int fraction = bits == 16 ? 10 : bits == 24 ? 16 : 23, bias = bits == 16 ? 15 : bits == 24 ? 63 : 127;
+    int exponent;
+    float whole = frexpf(value, &exponent);
+    return (uint32_t)(exponent - 1 + bias) << fraction | (uint32_t)((2 * whole - 1) * (float)(1 << fraction));
+}
+
+/* A row of floats as bytes, which may then be told as differences to the pixel before, all of one weight together. */
+static void float_row(const dng *d, int y, uint8_t *row)
+{
+    const int channels = d->linear ? 3 : 1, bytes = d->floats / 8, count = d->width * channels;
+    for (int i = 0; i < count; i++) {
+        int x = i / channels, c = d->linear ? i % 3 : y % 2 + x % 2;
+        uint32_t code = float_code(d->see(x, y, c) * (d->exceeds > 0 ? d->exceeds : 1), d->floats);
+        for (int k = 0; k < bytes; k++)
+            row[d->planes ? k * count + i : i * bytes + k] =
+                (uint8_t)(code >> 8 * (d->planes || d->big_endian ? bytes - 1 - k : k));
+    }
+    for (int i = count * bytes - 1; d->planes && i >= channels; i--)
+        row[i] = (uint8_t)(row[i] - row[i - channels]);
+}
+
+/* In zlib's form, one block a row of bytes as they are; the check at the end is RFC 1950's. */
+static void put_deflated_rows(tiff *t, const dng *d, int first, int end)
+{
+    const uint32_t bytes = (uint32_t)(d->width * (d->linear ? 3 : 1) * d->floats / 8);
+    uint32_t a = 1, b = 0, start = t->size;
+    t->data[t->size++] = 0x78;
+    t->data[t->size++] = 0x01;
+    for (int y = first; y < end; y++) {
+        uint8_t *block = t->data + t->size;
+        block[0] = y + 1 == end;
+        for (int k = 0; k < 4; k++)
+            block[1 + k] = (uint8_t)((k < 2 ? bytes : ~bytes) >> 8 * (k % 2));
+        float_row(d, y, block + 5);
+        for (uint32_t i = 0; i < bytes; i++) {
+            a = (a + block[5 + i]) % 65521;
+            b = (b + a) % 65521;
+        }
+        t->size += 5 + bytes;
+    }
+    for (int k = 3; k >= 0; k--)
+        t->data[t->size++] = (uint8_t)((b << 16 | a) >> 8 * k);
+    t->size += (t->size - start) & 1;
+}
+
+/* In strips of 24 rows, the last of them perhaps shorter. */
+static void put_floats(tiff *t, const dng *d)
+{
+    enum { ROWS = 24, MOST = 16 };
+    const uint32_t of_floats[3] = {3, 3, 3},
+                   all_bits[3] = {(uint32_t)d->floats, (uint32_t)d->floats, (uint32_t)d->floats};
+    const uint32_t channels = d->linear ? 3 : 1;
+    uint32_t places[MOST], sizes[MOST], count = 0;
+    uint32_t folder = t->entries_at, behind = t->size;
+    t->size += 512; /* for the values of what is added below */
+    for (int y = 0; y < d->height; y += ROWS, count++) {
+        places[count] = t->size;
+        put_deflated_rows(t, d, y, y + ROWS < d->height ? y + ROWS : d->height);
+        sizes[count] = t->size - places[count];
+    }
+    uint32_t end = t->size;
+    t->size = behind;
+    t->entries_at = folder;
+    add_one(t, 256, LONG, (uint32_t)d->width);
+    add_one(t, 257, LONG, (uint32_t)d->height);
+    add(t, 258, SHORT, channels, all_bits);
+    add_one(t, 259, SHORT, 8);
+    add_one(t, 262, SHORT, d->linear ? 34892 : 32803);
+    add(t, 273, LONG, count, places);
+    add_one(t, 277, SHORT, channels);
+    add_one(t, 278, LONG, ROWS);
+    add(t, 279, LONG, count, sizes);
+    add_one(t, 317, SHORT, d->planes ? 3 : 1);
+    add(t, 339, SHORT, channels, of_floats);
+    t->size = end;
 }
 
 static void put_preview(tiff *t)
@@ -135,7 +220,7 @@ static void put_preview(tiff *t)
 void dng_write(const char *path, const dng *d)
 {
     tiff t = {
-        .data = calloc(1, ROOM + 2 * (size_t)d->width * (size_t)d->height), .size = 8, .big_endian = d->big_endian};
+        .data = calloc(1, ROOM + 13 * (size_t)d->width * (size_t)d->height), .size = 8, .big_endian = d->big_endian};
     if (!t.data) abort();
     memcpy(t.data, d->big_endian ? "MM" : "II", 2);
     put(&t, 2, 42, 2);
@@ -147,8 +232,14 @@ void dng_write(const char *path, const dng *d)
         add_one(&t, 330, LONG, t.size);
         open_folder(&t);
     }
-    add_mosaic(&t, d);
-    put_codes(&t, d);
+    if (!d->floats || !d->linear) add_mosaic_words(&t);
+    if (d->floats) {
+        if (d->exceeds > 0) add_fractions(&t, 50717, RATIONAL, 1, &d->exceeds);
+        put_floats(&t, d);
+    } else {
+        add_mosaic(&t, d);
+        put_codes(&t, d);
+    }
     FILE *f = fopen(path, "wb");
     if (!f || fwrite(t.data, 1, t.size, f) != t.size || fclose(f) != 0) abort();
     free(t.data);

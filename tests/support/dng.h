@@ -15,6 +15,10 @@ typedef struct dng {
     int orientation;                         /* EXIF */
     bool preview;                            /* a small picture comes first */
     bool big_endian;
+    int floats;    /* bits of a sample, deflated: 16, 24 or 32; 0 for whole numbers */
+    bool linear;   /* floats of three colours instead of a mosaic's */
+    bool planes;   /* floats as differences of their bytes, the most significant first: the predictor of floats */
+    float exceeds; /* what white is in floats; 0 for 1 */
 } dng;
 
 enum { DNG_PREVIEW_SIDE = 16 };
