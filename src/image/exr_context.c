@@ -19,12 +19,17 @@ void exr_forget_complaint(void)
     complaint[0] = 0;
 }
 
+bool exr_complained_of(const char *words)
+{
+    return strstr(complaint, words) != NULL;
+}
+
 exr_context_initializer_t exr_quiet(void)
 {
     exr_forget_complaint();
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = keep_complaint;
-    init.flags = EXR_CONTEXT_FLAG_SILENT_HEADER_PARSE | EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     return init;
 }
 

@@ -6,12 +6,16 @@
 #define MERLIN_IMAGE_EXR_CONTEXT_H
 
 #include <OpenEXR/openexr.h>
+#include <stdbool.h>
 
 #include "base/status.h"
 
 /* An initializer with a silent error handler; forgets this thread's complaints so far. */
 exr_context_initializer_t exr_quiet(void);
 void exr_forget_complaint(void);
+
+/* Says whether the first complaint since the last forgetting has the words in it. */
+bool exr_complained_of(const char *words);
 
 /* "cannot VERB PATH: the library's first words since the last forgetting" with status s. */
 status exr_fail(status s, const char *verb, const char *path, exr_result_t code);

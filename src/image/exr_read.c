@@ -27,7 +27,7 @@ typedef struct source {
 
 static status fail_reading(const exr_file *f, exr_result_t code)
 {
-    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED) /* DWAA and DWAB, in OpenEXR 3.1 */
+    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED) /* DWAA and DWAB, in OpenEXR 3.1.5 */
         return fail(ERROR_INPUT,
                     "cannot read %s: the OpenEXR installed here does not know its compression; save it with ZIP or PIZ",
                     f->path);
@@ -70,6 +70,9 @@ static status open_file(exr_file *f)
     if (s != OK) return s;
     exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
+    /* a method that OpenEXR does not know: it complains and takes it for ZIP */
+    if (r == EXR_ERR_SUCCESS && exr_complained_of("'compression'")) r = EXR_ERR_FEATURE_NOT_IMPLEMENTED;
+    if (r == EXR_ERR_SUCCESS) exr_forget_complaint();
     if (r == EXR_ERR_SUCCESS) r = exr_get_count(f->context, &f->parts);
     return r == EXR_ERR_SUCCESS ? open_part(f) : fail_reading(f, r);
 }

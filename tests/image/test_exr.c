@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/rng.h"
 #include "image/exr.h"
 #include "image/read.h"
 
@@ -105,54 +104,6 @@ static void full_channels_are_read_back_exactly(void **state)
     assert_memory_equal(depth2, depth, sizeof depth);
     for (int i = 0; i < COUNT; i++)
         assert_true(green[i] == rgb[3 * i + 1]);
-}
-
-/* A line of half floats, packed by ZIP, in a file that says that it is by another method. */
-static void write_line(const char *path, const float *value, exr_compression_t said)
-{
-    static const char ZIP[] = "compression\0compression\0\1\0\0\0\3";
-    const exr_channel channel = {"depth.Z", value, 1, false};
-    char *bytes = NULL;
-    size_t size = 0;
-    assert_int_equal(exr_write(path, WIDTH, 1, &channel, 1, NULL, 0), OK);
-    assert_int_equal(file_read(path, 1 << 20, &bytes, &size), OK);
-    char *at = memmem(bytes, size, ZIP, sizeof ZIP - 1);
-    assert_non_null(at);
-    at[sizeof ZIP - 2] = (char)said;
-    assert_int_equal(file_write(path, bytes, size), OK);
-    free(bytes);
-}
-
-/* What noise is packed into is no smaller, whatever packs it, and such a file holds it as it was. */
-static void what_b44_could_not_pack_is_read_as_it_was(void **state)
-{
-    (void)state;
-    float depth[WIDTH], depth2[WIDTH];
-    rng r = rng_at(7, 0, 0);
-    for (int i = 0; i < WIDTH; i++)
-        depth[i] = (float)(rng_u32(&r) % 2048) / 2048; /* exact in half */
-    write_line(scratch_path("b44.exr"), depth, EXR_COMPRESSION_B44);
-    exr_file *f = NULL;
-    assert_int_equal(exr_open(scratch_path("b44.exr"), &f), OK);
-    const exr_target target = {"depth.Z", depth2, 1};
-    assert_int_equal(exr_read(f, &target, 1), OK);
-    exr_close(f);
-    assert_memory_equal(depth2, depth, sizeof depth);
-}
-
-static void compression_that_is_not_known_is_refused_with_what_to_do(void **state)
-{
-    (void)state;
-    float depth[WIDTH] = {1}, depth2[WIDTH];
-    write_line(scratch_path("dwaa.exr"), depth, EXR_COMPRESSION_DWAA);
-    exr_file *f = NULL;
-    assert_int_equal(exr_open(scratch_path("dwaa.exr"), &f), OK);
-    const exr_target target = {"depth.Z", depth2, 1};
-    assert_int_equal(exr_read(f, &target, 1), ERROR_INPUT);
-    exr_close(f);
-    assert_non_null(strstr(status_message(), "dwaa.exr"));
-    if (OPENEXR_VERSION_MAJOR == 3 && OPENEXR_VERSION_MINOR == 1)
-        assert_non_null(strstr(status_message(), "save it with ZIP"));
 }
 
 static void missing_channel_is_named(void **state)
@@ -334,8 +285,6 @@ int main(void)
         cmocka_unit_test(written_channels_and_attributes_are_read_back),
         cmocka_unit_test(values_beyond_half_are_clamped),
         cmocka_unit_test(full_channels_are_read_back_exactly),
-        cmocka_unit_test(what_b44_could_not_pack_is_read_as_it_was),
-        cmocka_unit_test(compression_that_is_not_known_is_refused_with_what_to_do),
         cmocka_unit_test(missing_channel_is_named),
         cmocka_unit_test(every_truncation_is_refused),
         cmocka_unit_test(a_small_file_is_not_given_memory_for_very_many_pixels),
