@@ -4,6 +4,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/messages.h"
+
 double clock_seconds(void)
 {
     struct timespec t;
@@ -20,7 +22,7 @@ void progress_begin(progress *p, const char *label, const char *unit, size_t don
                     .total = total,
                     .started = clock_seconds(),
                     .quiet = quiet,
-                    .terminal = isatty(STDERR_FILENO) != 0};
+                    .terminal = isatty(fileno(messages())) != 0};
     p->shown = p->started;
 }
 
@@ -47,12 +49,13 @@ static void show(progress *p, const char *note)
         for (size_t i = 0; i < WIDTH; i++)
             bar[i] = i < filled ? '#' : '.';
         bar[WIDTH] = 0;
-        fprintf(stderr, "\r%s [%s] %zu/%zu  %.3g %s/s  %s left  %s\033[K", p->label, bar, p->done, p->total, rate,
+        fprintf(messages(), "\r%s [%s] %zu/%zu  %.3g %s/s  %s left  %s\033[K", p->label, bar, p->done, p->total, rate,
                 p->unit, left, extra);
     } else {
-        fprintf(stderr, "%s %zu/%zu, %.3g %s/s, %s left %s\n", p->label, p->done, p->total, rate, p->unit, left, extra);
+        fprintf(messages(), "%s %zu/%zu, %.3g %s/s, %s left %s\n", p->label, p->done, p->total, rate, p->unit, left,
+                extra);
     }
-    fflush(stderr);
+    fflush(messages());
 }
 
 void progress_update(progress *p, size_t done, const char *note)
@@ -69,5 +72,5 @@ void progress_end(progress *p)
 {
     if (p->quiet) return;
     show(p, NULL);
-    if (p->terminal) fputc('\n', stderr);
+    if (p->terminal) fputc('\n', messages());
 }

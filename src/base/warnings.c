@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/messages.h"
 #include "base/utf8.h"
 
 void warnings_add(warnings *list, const char *code, const char *format, ...)
@@ -48,9 +49,9 @@ void warnings_print(const warnings *list, const char *command, const char *subje
 {
     size_t shown = list->count < most ? list->count : most, more = list->count - shown + list->more;
     if (list->count == 0) return;
-    fprintf(stderr, "merlin %s: %s: ", command, subject);
+    fprintf(messages(), "merlin %s: %s: ", command, subject);
     for (size_t i = 0; i < shown; i++)
-        fprintf(stderr, "%s%s", i ? "; " : "", list->at[i].message);
-    if (more) fprintf(stderr, "%sand %zu more, which --json names", shown ? "; " : "", more);
-    fputc('\n', stderr);
+        fprintf(messages(), "%s%s", i ? "; " : "", list->at[i].message);
+    if (more) fprintf(messages(), "%sand %zu more, which --json names", shown ? "; " : "", more);
+    fputc('\n', messages());
 }

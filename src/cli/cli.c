@@ -7,11 +7,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/messages.h"
+
 static volatile sig_atomic_t interrupted;
 
 int cli_fail(const char *command, status s)
 {
-    fprintf(stderr, "merlin %s: %s\n", command, status_message());
+    fprintf(messages(), "merlin %s: %s\n", command, status_message());
     return s == ERROR_USAGE ? 2 : 1;
 }
 
@@ -22,7 +24,7 @@ int cli_usage(const char *command, const char *format, ...)
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    fprintf(stderr, "merlin %s: %s (try merlin %s --help)\n", command, message, command);
+    fprintf(messages(), "merlin %s: %s (try merlin %s --help)\n", command, message, command);
     return 2;
 }
 

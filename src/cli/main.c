@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/messages.h"
 #include "cli/cli.h"
 #include "image/start.h"
 #include "merlin/merlin.h"
@@ -45,7 +46,7 @@ static void print_help(FILE *stream)
 static int finish(int code)
 {
     bool written = fflush(stdout) == 0 && !ferror(stdout);
-    if (!written) fprintf(stderr, "merlin: cannot write to standard output\n");
+    if (!written) fprintf(messages(), "merlin: cannot write to standard output\n");
     if (!written && code == 0) code = 1;
     /* all files are closed, and what libraries would tidy up the system takes back anyway; but leaks are looked for
      * behind a proper end */
@@ -78,10 +79,11 @@ static void one_thread_for_blas(void)
 
 int main(int argc, char **argv)
 {
+    messages_keep();
     vips_without_modules();
     one_thread_for_blas();
     if (argc < 2) {
-        print_help(stderr);
+        print_help(messages());
         return 2;
     }
     if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help eval photos is merlin eval photos --help */
@@ -99,7 +101,7 @@ int main(int argc, char **argv)
     const cli_command *command = find_command(argv[1]);
     if (!command) {
         (void)fail(ERROR_USAGE, "no command \"%s\"", argv[1]); /* on one line, whatever is in it */
-        fprintf(stderr, "merlin: %s (try merlin --help)\n", status_message());
+        fprintf(messages(), "merlin: %s (try merlin --help)\n", status_message());
         return 2;
     }
     reuse_memory();

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "base/messages.h"
 #include "image/mask_values.h"
 #include "image/picture_plain.h"
 #include "image/picture_rows.h"
@@ -76,7 +77,7 @@ static bool is_plain(picture_kind kind)
     return kind == PICTURE_PNM || kind == PICTURE_BMP || kind == PICTURE_TGA;
 }
 
-static status look_into(const char *path, picture_kind kind, picture_head *head)
+static status look_with_decoder(const char *path, picture_kind kind, picture_head *head)
 {
     if (kind == PICTURE_EXR) return picture_look_exr(path, head);
     if (kind == PICTURE_RAW) return picture_look_raw(path, head);
@@ -85,6 +86,14 @@ static status look_into(const char *path, picture_kind kind, picture_head *head)
     if (kind != PICTURE_PNG) return picture_look(path, kind, head);
     status s = picture_read_png(path, PICTURE_AS_IT_IS, NULL, NULL, head);
     return s == OK && !head->plain ? picture_look(path, kind, head) : s;
+}
+
+static status look_into(const char *path, picture_kind kind, picture_head *head)
+{
+    messages_hush();
+    status s = look_with_decoder(path, kind, head);
+    messages_unhush();
+    return s;
 }
 
 status img_read_size(const char *path, int *width, int *height)
@@ -109,7 +118,7 @@ static status check_finite(const char *path, const img *image)
     return fail(ERROR_INPUT, "cannot read %s: %td of its values are not finite numbers (NaN or infinity)", path, bad);
 }
 
-static status read_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+static status decode_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
 {
     picture_head head = {.plain = false};
     if (kind == PICTURE_EXR || kind == PICTURE_RAW) {
@@ -122,6 +131,14 @@ static status read_pixels(const char *path, picture_kind kind, picture_colour ho
                : kind == PICTURE_PNG ? picture_read_png(path, how, color, alpha, &head)
                                      : OK;
     return s == OK && !head.plain ? picture_decode(path, kind, how, color, alpha) : s;
+}
+
+static status read_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+{
+    messages_hush();
+    status s = decode_pixels(path, kind, how, color, alpha);
+    messages_unhush();
+    return s;
 }
 
 static status read_any(const char *path, picture_colour how, img *color, img *alpha)
