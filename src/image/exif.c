@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/tiff_head.h"
 
 enum {
     FLASH = 37385,
@@ -55,10 +54,22 @@ static double focal_by_sensor(const tiff_head *t)
     return number(t, FOCAL_LENGTH) * DIAGONAL_35MM / diagonal;
 }
 
+exif_colours exif_colours_of(const tiff_head *t, uint64_t page)
+{
+    enum { RULE = 1, SRGB = 1, ADOBE = 2 };
+    uint32_t space = tiff_value(t, page, TIFF_EXIF_COLOUR_SPACE);
+    uint64_t rules = tiff_value(t, page, TIFF_EXIF_INTEROPERABILITY);
+    bool r03 = rules && tiff_value_at(t, rules, RULE, 0) == 'R' && tiff_value_at(t, rules, RULE, 1) == '0' &&
+               tiff_value_at(t, rules, RULE, 2) == '3';
+    if (space == ADOBE || (space != SRGB && r03)) return EXIF_COLOURS_ADOBE;
+    return space == SRGB ? EXIF_COLOURS_SRGB : EXIF_COLOURS_UNKNOWN;
+}
+
 static void take_facts(const tiff_head *t, exif_facts *out)
 {
     uint32_t orientation = tiff_value(t, t->page[0], TIFF_ORIENTATION);
     if (orientation >= 1 && orientation <= 8) out->orientation = (int)orientation;
+    out->colours = exif_colours_of(t, tiff_value(t, t->page[0], TIFF_EXIF));
     uint64_t page = page_with(t, FLASH);
     if (tiff_count(t, page, FLASH)) {
         uint32_t flash = tiff_value(t, page, FLASH);

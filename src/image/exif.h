@@ -13,11 +13,17 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "image/tiff_head.h"
+
 typedef enum exif_flash { EXIF_FLASH_UNKNOWN, EXIF_FLASH_NONE, EXIF_FLASH_FIRED } exif_flash;
+
+/* Adobe RGB as cameras tell it: uncalibrated, by rule R03 of DCF. */
+typedef enum exif_colours { EXIF_COLOURS_UNKNOWN, EXIF_COLOURS_SRGB, EXIF_COLOURS_ADOBE } exif_colours;
 
 typedef struct exif_facts {
     int orientation; /* by the EXIF standard, from 1 (upright) to 8 */
     exif_flash flash;
+    exif_colours colours;
     float focal_35mm; /* the focal length in mm whose picture on 36 × 24 mm has as wide a diagonal; 0: unknown */
 } exif_facts;
 
@@ -32,5 +38,7 @@ typedef struct exif_place {
     size_t size; /* 0: all of the file is a TIFF */
 } exif_place;
 bool exif_find(FILE *file, exif_place *out);
+/* Reads the colour space in an EXIF page, whose place may be 0 for none. */
+exif_colours exif_colours_of(const tiff_head *t, uint64_t page);
 
 #endif

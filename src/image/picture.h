@@ -35,9 +35,9 @@ status picture_look(const char *path, picture_kind kind, picture_head *head);
 status picture_check_hdr(const char *path);
 /* The page of a TIFF that is the picture. */
 typedef struct picture_tiff_page {
-    int number, pages;  /* from 0, and how many there are */
-    bool premultiplied; /* its colours are multiplied by its alpha, the only band beside them */
-    bool is_srgb;       /* its EXIF says so */
+    int number, pages;   /* from 0, and how many there are */
+    bool premultiplied;  /* its colours are multiplied by its alpha, the only band beside them */
+    picture_light light; /* by its own words beside a profile */
 } picture_tiff_page;
 /* Finds it; refuses TIFFs of several that it might be, those whose YCbCr would be taken for RGB, and what would take
  * too much memory. */

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "image/picture.h"
+#include "image/picture_tiff_light.h"
 #include "image/tiff_head.h"
 
 enum { JPEG = 7, YCBCR = 6, CMYK = 5, MOSAIC = 32803, LINEAR_RAW = 34892, ASSOCIATED = 1, REDUCED = 1, MASK = 4 };
@@ -133,6 +134,28 @@ static status check_samples(const tiff_head *t, uint64_t page, const char *path)
     return picture_check_whole(path, width, strip < height ? strip : height, bytes < 64 ? bytes : 64, "in more strips");
 }
 
+/* Refuses samples that libvips would take for others, or refuse in words for programmers. */
+static status check_meaning(const tiff_head *t, uint64_t page, const char *path)
+{
+    enum { ICC_LAB = 9, ITU_LAB = 10, LOG_L = 32844, LOG_LUV = 32845, SIGNED = 2, FLOATS = 3 };
+    uint32_t meaning = tiff_value(t, page, TIFF_PHOTOMETRIC), bits = tiff_value(t, page, TIFF_BITS);
+    uint32_t format = tiff_value(t, page, TIFF_SAMPLE_FORMAT);
+    if (meaning == ICC_LAB || meaning == ITU_LAB)
+        return fail(ERROR_INPUT, "cannot read %s: its colours are %s L*a*b*; save it as RGB", path,
+                    meaning == ICC_LAB ? "ICC" : "ITU");
+    bool whole = bits <= 2 || bits == 4 || bits == 8 || bits == 16;
+    bool logarithmic = meaning == LOG_L || meaning == LOG_LUV; /* its decoder makes floats */
+    if (logarithmic || (format == FLOATS ? bits == 32 : format != SIGNED && whole)) return OK;
+    return fail(ERROR_INPUT,
+                "cannot read %s: its samples are %s of %u bits; whole ones of 8 or 16 bits without a sign, or floats "
+                "of 32, are read",
+                path,
+                format == FLOATS   ? "floats"
+                : format == SIGNED ? "whole numbers with a sign"
+                                   : "whole numbers",
+                bits);
+}
+
 static status check_open(const tiff_head *t, const char *path, picture_tiff_page *out)
 {
     int others, found = find_page(t, &others);
@@ -142,13 +165,15 @@ static status check_open(const tiff_head *t, const char *path, picture_tiff_page
     if (others)
         return fail(ERROR_INPUT, "cannot read %s: it has %d pages of about the same size; save the one that is meant",
                     path, others + 1);
+    status s = check_meaning(t, page, path);
+    if (s != OK) return s;
     /* those of JPEG its decoder makes RGB */
     if (tiff_value(t, page, TIFF_PHOTOMETRIC) == YCBCR && tiff_value(t, page, TIFF_COMPRESSION) != JPEG)
         return fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path);
     out->premultiplied =
         tiff_count(t, page, TIFF_EXTRA_SAMPLES) == 1 && tiff_value(t, page, TIFF_EXTRA_SAMPLES) == ASSOCIATED;
-    out->is_srgb = tiff_value(t, tiff_value(t, page, TIFF_EXIF), TIFF_EXIF_COLOUR_SPACE) == 1;
-    return check_samples(t, page, path);
+    s = check_samples(t, page, path);
+    return s == OK ? picture_tiff_light(t, page, path, &out->light) : s;
 }
 
 status picture_check_tiff(const char *path, picture_tiff_page *out)

@@ -2,6 +2,9 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/file.h"
+#include "image/box_file.h"
+#include "image/exif.h"
 #include "image/picture_rows.h"
 #include "image/vips_library.h"
 
@@ -58,6 +61,40 @@ static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
            replace(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
 }
 
+/* Reads the numbers that a HEIC or AVIF states its codes by. They are codes for screens always, however many bits. */
+static status find_heif_light(const char *path, picture_light *light)
+{
+    int n[3];
+    FILE *file = file_open(path);
+    bool stated = file && box_read_colour(file, n);
+    if (file) fclose(file);
+    *light = (picture_light){.said = true};
+    if (!stated || picture_light_of_cicp(n[0], n[1], light)) {
+        light->said = true;
+        return OK;
+    }
+    return fail(ERROR_INPUT,
+                "cannot read %s: it states primaries %d and transfer %d, which are not known here; save it as sRGB",
+                path, n[0], n[1]);
+}
+
+/* Finds what a file says of its codes beside a profile. */
+static status find_light(const char *path, picture_kind kind, picture_tiff_page *page, picture_light *light)
+{
+    exif_facts facts;
+    *light = (picture_light){.said = false};
+    if (kind == PICTURE_HDR) return picture_check_hdr(path);
+    if (kind == PICTURE_HEIC) return find_heif_light(path, light);
+    if (kind == PICTURE_TIFF) {
+        status s = picture_check_tiff(path, page);
+        *light = page->light;
+        return s;
+    }
+    exif_read(path, &facts);
+    if (facts.colours == EXIF_COLOURS_ADOBE) *light = picture_light_of_adobe_rgb();
+    return OK;
+}
+
 /* light: what the file says of its codes beside a profile. */
 static status open_picture(const char *path, picture_kind kind, VipsImage **out, picture_light *light)
 {
@@ -65,11 +102,8 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
     picture_tiff_page page = {.number = 0};
     loader *load = loader_of(kind);
     if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
-    status s = kind == PICTURE_HDR    ? picture_check_hdr(path)
-               : kind == PICTURE_TIFF ? picture_check_tiff(path, &page)
-                                      : OK;
+    status s = find_light(path, kind, &page, light);
     if (s != OK) return s;
-    *light = (picture_light){.said = page.is_srgb};
     /* what is read in sequence is not kept for the next time, when the file may be another */
     int failed = kind == PICTURE_TIFF
                      ? load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, "page",
@@ -114,13 +148,19 @@ typedef struct request {
     bool *profiled; /* becomes true where a profile was used */
 } request;
 
+/* Tells whether a profile says what the codes are, and is to be heeded. */
+static bool has_profile(VipsImage *image, const request *r)
+{
+    return r->by_profile && vips()->band_format_isint(vips()->image_get_format(image)) &&
+           vips()->image_get_typeof(image, VIPS_META_ICC_NAME);
+}
+
 /* Brings other colour spaces to sRGB: by the embedded profile, at 16 bits so that dark codes keep their steps, or by
  * what the file says it is. */
 static bool convert_space(VipsImage **image, const request *r)
 {
     VipsImage *made = NULL;
-    bool integers = vips()->band_format_isint(vips()->image_get_format(*image));
-    if (r->by_profile && integers && vips()->image_get_typeof(*image, VIPS_META_ICC_NAME)) {
+    if (has_profile(*image, r)) {
         *r->profiled = true;
         return replace(image, &made,
                        vips()->icc_transform(*image, &made, "srgb", "embedded", TRUE, "depth", 16, "intent",
@@ -172,16 +212,20 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
     return s;
 }
 
-static status decode_open(VipsImage **image, const request *r)
+/* light: the codes' own, which other spaces and profiles are brought to sRGB from. */
+static status decode_open(VipsImage **image, const request *r, picture_light light)
 {
     bool decode = r->how == PICTURE_LINEARIZE;
     picture_layout layout;
+    if (has_profile(*image, r) || !is_plain(vips()->image_get_interpretation(*image)))
+        light = (picture_light){.said = false};
     if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(ERROR_INPUT, "read", r->path);
     VipsInterpretation space = vips()->image_get_interpretation(*image);
     if (!decode && !is_plain(space))
         return fail(ERROR_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
                     vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = find_layout(*image, r->path, &layout);
+    layout.light = light;
     return s == OK ? take_rows(image, r->path, &layout, r->how, r->color, r->alpha) : s;
 }
 
@@ -192,7 +236,7 @@ static status decode(const request *r)
     status s = open_picture(r->path, r->kind, &opened, &light);
     if (s != OK) return s;
     image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
-    s = decode_open(&image, r);
+    s = decode_open(&image, r, light);
     vips()->g_object_unref(image);
     /* last: with it goes the colour profile of a HEIF, which no copy keeps alive */
     vips()->g_object_unref(opened);

@@ -2,7 +2,17 @@
 
 #include <string.h>
 
-enum { BYTE = 1, SHORT = 3, LONG = 4, RATIONAL = 5, UNDEFINED = 7, SIGNED_RATIONAL = 10, FLOAT = 11, DOUBLE = 12 };
+enum {
+    BYTE = 1,
+    ASCII = 2,
+    SHORT = 3,
+    LONG = 4,
+    RATIONAL = 5,
+    UNDEFINED = 7,
+    SIGNED_RATIONAL = 10,
+    FLOAT = 11,
+    DOUBLE = 12
+};
 enum { FOLDER = 13, BIG_TIFF = 43 };
 
 /* The number in so many bytes at a place of the file; 0 where there is none. */
@@ -48,7 +58,10 @@ static uint64_t find_entry(const tiff_head *t, uint64_t page, unsigned tag)
 
 static int bytes_of_type(uint64_t type)
 {
-    return type == BYTE || type == UNDEFINED ? 1 : type == SHORT ? 2 : type == LONG || type == FOLDER ? 4 : 0;
+    return type == BYTE || type == ASCII || type == UNDEFINED ? 1
+           : type == SHORT                                    ? 2
+           : type == LONG || type == FOLDER                   ? 4
+                                                              : 0;
 }
 
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag)

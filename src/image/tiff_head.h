@@ -26,7 +26,10 @@ enum {
     TIFF_STRIP_HEIGHT = 278,
     TIFF_STRIP_SIZES = 279,
     TIFF_PLANES = 284,
+    TIFF_TRANSFER = 301,
     TIFF_PREDICTOR = 317,
+    TIFF_WHITE = 318,
+    TIFF_PRIMARIES = 319,
     TIFF_TILE_WIDTH = 322,
     TIFF_TILE_HEIGHT = 323,
     TIFF_TILES = 324,
@@ -36,6 +39,7 @@ enum {
     TIFF_SAMPLE_FORMAT = 339,
     TIFF_EXIF = 34665,
     TIFF_EXIF_COLOUR_SPACE = 40961,
+    TIFF_EXIF_INTEROPERABILITY = 40965,
     TIFF_DNG_VERSION = 50706,
 };
 
@@ -48,7 +52,7 @@ typedef struct tiff_head {
 
 /* Goes over the pages of an open file; false if it is no TIFF or has none. */
 bool tiff_open(tiff_head *t, FILE *file);
-/* The first number of an entry of a page, of 8, 16 or 32 bits; 0 where there is none. */
+/* The first number of an entry of a page, of 8, 16 or 32 bits, or letter; 0 where there is none. */
 uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
 /* Returns how many numbers an entry has, or one of them by its place. */
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag);
