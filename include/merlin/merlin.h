@@ -85,9 +85,11 @@ typedef enum merlin_flash { MERLIN_FLASH_UNKNOWN, MERLIN_FLASH_NONE, MERLIN_FLAS
 typedef struct merlin_shot {
     merlin_flash flash;
     float focal_35mm; /* the focal length in mm whose picture on 36 x 24 mm has as wide a diagonal; 0: unknown */
+    int reduced;      /* so many of the file's pixels a side became one, as merlin_image_read has it: 0 or 1 for most */
+    int frames;       /* of an animation, whose first alone is read: 0 or 1 for most */
 } merlin_shot;
 
-/* By the EXIF of a JPEG, PNG, WebP, HEIC, TIFF or raw picture; unknown without. */
+/* By the EXIF of a JPEG, PNG, WebP, HEIC, TIFF or raw picture, and the file's head; unknown without. */
 merlin_status merlin_shot_read(const char *path, merlin_shot *out);
 
 typedef struct merlin_params {
@@ -125,6 +127,8 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_OBJECT_CUT = 1 << 10,     /* a quarter of the photograph's edge or more cuts through the object */
     MERLIN_DOUBT_OBJECT_SMALL = 1 << 11,   /* the object has fewer than 2500 pixels */
     MERLIN_DOUBT_GREY = 1 << 12,           /* a black-and-white picture: albedo's colour is not to be known */
+    MERLIN_DOUBT_REDUCED = 1 << 13,        /* params.shot says that it was read at a reduced size */
+    MERLIN_DOUBT_FIRST_FRAME = 1 << 14,    /* params.shot says that it is an animation's first picture */
 } merlin_doubt;
 
 /* All of the photograph's size, zero where mask is zero, finite everywhere. */
@@ -151,6 +155,7 @@ typedef struct merlin_maps {
     merlin_timing timing;
     unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */
     float light_elsewhere; /* how likely the photograph was lit from elsewhere than the lens, in [0, 1] */
+    int reduced, frames;   /* params.shot's */
     float lens_degrees;    /* how wide the crop is by params.shot, which the maps take for 60 degrees; 0: unknown */
 } merlin_maps;
 

@@ -10,6 +10,7 @@
 #include "image/color.h"
 #include "image/exif.h"
 #include "image/public.h"
+#include "image/read.h"
 
 /* merlin.h says what they mean; docs/evaluation.md how they were found. */
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
@@ -149,6 +150,10 @@ void doubts_find(const light_cues *cues, const merlin_shot *shot, merlin_maps *m
     if (maps->burnt_out >= MUCH_BURNT_OUT) maps->doubts |= MERLIN_DOUBT_BURNT_OUT;
     if (maps->lens_degrees > 0 && maps->lens_degrees < NARROW) maps->doubts |= MERLIN_DOUBT_LENS_NARROW;
     if (maps->lens_degrees > WIDE) maps->doubts |= MERLIN_DOUBT_LENS_WIDE;
+    maps->reduced = shot->reduced;
+    maps->frames = shot->frames;
+    if (shot->reduced > 1) maps->doubts |= MERLIN_DOUBT_REDUCED;
+    if (shot->frames > 1) maps->doubts |= MERLIN_DOUBT_FIRST_FRAME;
 }
 
 /* ---- words ---- */
@@ -170,6 +175,8 @@ static const struct {
     {MERLIN_DOUBT_OBJECT_CUT, "object_cut"},
     {MERLIN_DOUBT_OBJECT_SMALL, "object_small"},
     {MERLIN_DOUBT_GREY, "grey"},
+    {MERLIN_DOUBT_REDUCED, "reduced_size"},
+    {MERLIN_DOUBT_FIRST_FRAME, "first_frame"},
 };
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -239,6 +246,11 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
     case MERLIN_DOUBT_LENS_NARROW:
     case MERLIN_DOUBT_LENS_WIDE:
         return lens_words(maps, text, room);
+    case MERLIN_DOUBT_REDUCED:
+        return snprintf(text, room, "it was read at a reduced size: %d x %d of its pixels became one", maps->reduced,
+                        maps->reduced);
+    case MERLIN_DOUBT_FIRST_FRAME:
+        return snprintf(text, room, "it is an animation, of whose %d pictures the first alone was read", maps->frames);
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",
                         coverage_of(maps).object);
@@ -264,6 +276,10 @@ merlin_status merlin_shot_read(const char *path, merlin_shot *out)
     if (s != OK) return result_of(s);
     exif_facts facts;
     exif_read(path, &facts);
-    *out = (merlin_shot){.flash = (merlin_flash)facts.flash, .focal_35mm = facts.focal_35mm};
+    img_facts file = img_look(path);
+    *out = (merlin_shot){.flash = (merlin_flash)facts.flash,
+                         .focal_35mm = facts.focal_35mm,
+                         .reduced = file.reduced,
+                         .frames = file.frames};
     return MERLIN_OK;
 }

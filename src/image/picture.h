@@ -20,6 +20,7 @@ typedef enum picture_colour {
 typedef struct picture_head {
     int width, height, bits; /* as stored: an orientation may exchange width and height */
     bool plain;              /* of PNG: without colour profile */
+    int frames;              /* of an animation; 0 is 1, too */
     bool profile;            /* a colour profile says what the samples mean */
     picture_light light;     /* whole numbers' meaning without one */
 } picture_head;

@@ -16,6 +16,7 @@ typedef struct chunks {
     bool has_cicp;
     unsigned char cicp[4]; /* primaries, transfer, matrix, full range */
     int orientation;
+    int frames;      /* of an animation */
     uint64_t packed; /* bytes of all pixels */
 } chunks;
 
@@ -75,6 +76,13 @@ static int orientation_in(int file, off_t at, uint32_t size)
     return orientation;
 }
 
+static int frames_in(int file, off_t at)
+{
+    unsigned char b[4];
+    bool there = pread(file, b, sizeof b, at) == (ssize_t)sizeof b && b[0] == 0;
+    return there ? b[1] << 16 | b[2] << 8 | b[3] : 0;
+}
+
 /* Goes over a file's chunks; what is damaged libpng says later. */
 static chunks find_chunks(int file)
 {
@@ -86,6 +94,7 @@ static chunks find_chunks(int file)
         if (memcmp(name, "cICP", 4) == 0 && size == 4) found.has_cicp = pread(file, found.cicp, 4, at + 8) == 4;
         if (memcmp(name, "eXIf", 4) == 0) found.orientation = orientation_in(file, at + 8, size);
         if (memcmp(name, "IDAT", 4) == 0) found.packed += size;
+        if (memcmp(name, "acTL", 4) == 0 && size == 8) found.frames = frames_in(file, at + 8);
         if (memcmp(name, "IEND", 4) == 0) break;
         at += 12 + (off_t)size;
     }
@@ -244,6 +253,7 @@ status picture_read_png(const char *path, picture_colour how, img *color, img *a
     *head = (picture_head){.width = r.layout.width,
                            .height = r.layout.height,
                            .bits = r.layout.sample == PICTURE_UINT16 ? 16 : 8,
+                           .frames = r.chunks.frames,
                            .plain = !r.profile,
                            .light = r.layout.light};
     reader_free(&r);

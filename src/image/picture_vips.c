@@ -250,13 +250,15 @@ static status look(const request *r)
     status s = open_picture(r->path, r->kind, &image, &light);
     if (s != OK) return s;
     VipsBandFormat format = vips()->image_get_format(image);
-    *r->head = (picture_head){.width = vips()->image_get_width(image),
-                              .height = vips()->image_get_height(image),
-                              .bits = format == VIPS_FORMAT_UCHAR    ? 8
-                                      : format == VIPS_FORMAT_USHORT ? 16
-                                                                     : 32,
-                              .profile = vips()->image_get_typeof(image, VIPS_META_ICC_NAME) != 0,
-                              .light = light};
+    *r->head = (picture_head){
+        .width = vips()->image_get_width(image),
+        .height = vips()->image_get_height(image),
+        .bits = format == VIPS_FORMAT_UCHAR    ? 8
+                : format == VIPS_FORMAT_USHORT ? 16
+                                               : 32,
+        .frames = r->kind == PICTURE_GIF || r->kind == PICTURE_WEBP ? vips()->image_get_n_pages(image) : 1,
+        .profile = vips()->image_get_typeof(image, VIPS_META_ICC_NAME) != 0,
+        .light = light};
     vips()->g_object_unref(image);
     return OK;
 }

@@ -108,6 +108,17 @@ status img_read_size(const char *path, int *width, int *height)
     return s;
 }
 
+img_facts img_look(const char *path)
+{
+    picture_kind kind;
+    picture_head head = {.width = 0};
+    img_facts facts = {1, 1};
+    if (look_at(path, &kind) != OK || look_into(path, kind, &head) != OK) return facts;
+    facts.reduced = picture_reduction(head.width, head.height);
+    if (head.frames > 1) facts.frames = head.frames;
+    return facts;
+}
+
 static status check_finite(const char *path, const img *image)
 {
     ptrdiff_t count = (ptrdiff_t)image->width * image->height * image->channels;

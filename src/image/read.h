@@ -28,6 +28,12 @@ status img_read(const char *path, img *color, img *alpha);
 /* The size that it is read at, from the file's head alone, the longer side perhaps as height: before an orientation is
  * applied. */
 status img_read_size(const char *path, int *width, int *height);
+typedef struct img_facts {
+    int reduced; /* so many of its pixels a side become one: 1 for most */
+    int frames;  /* pictures in it, one after the other, of which the first is read: 1 for most */
+} img_facts;
+/* What a file's head says of how it is read; 1 and 1 of what is refused. */
+img_facts img_look(const char *path);
 /* img_read of an environment, a latitude-longitude picture: twice as wide as high and 8×4 pixels at least. Mirror
  * balls' and cubes' pictures, which would be bent around the object, are refused. */
 status img_read_latlong(const char *path, img *color);

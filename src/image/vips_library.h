@@ -34,6 +34,7 @@
     USE(image_get_format)                                                                                              \
     USE(image_get_height)                                                                                              \
     USE(image_get_interpretation)                                                                                      \
+    USE(image_get_n_pages)                                                                                             \
     USE(image_get_orientation)                                                                                         \
     USE(image_get_typeof)                                                                                              \
     USE(image_get_width)                                                                                               \

@@ -54,6 +54,8 @@ typedef struct pst_capture {
     bool intensities_known;
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
     pst_camera camera;
+    int reduced;     /* so many of the first picture's pixels a side became one: 1 for most */
+    int frames;      /* of an animation in the first picture's file, whose first is read: 1 for most */
     img mask;        /* 1 channel; 1 on the object */
     img normal_true; /* 3, or empty: ground truth where the layout has one */
     img depth_true;  /* 1, or empty */

@@ -150,6 +150,13 @@ static void doubt_exposure(const pst_capture *c, warnings *out)
 
 static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
 {
+    if (c->reduced > 1)
+        warnings_add(out, "reduced_size",
+                     "the pictures were read at a reduced size: %d x %d of their pixels became one", c->reduced,
+                     c->reduced);
+    if (c->frames > 1)
+        warnings_add(out, "first_frame", "%s is an animation, of whose %d pictures the first alone was read",
+                     c->name[0], c->frames);
     if (c->lights_in_order)
         warnings_add(out, "lights_in_order",
                      "none of the pictures that the .lp file names is there: its lights were taken in the order of the "

@@ -29,6 +29,16 @@ typedef struct reading {
     pst_capture *into;
 } reading;
 
+/* Finds out how the first picture is read; others of its size are read alike. */
+static void look_at_first(const reading *r, pst_capture *c)
+{
+    char *path = file_join(r->folder, c->name[0]);
+    img_facts facts = path ? img_look(path) : (img_facts){1, 1};
+    c->reduced = facts.reduced;
+    c->frames = facts.frames;
+    free(path);
+}
+
 static status read_one(const reading *r, const char *name, img *out, int *bits)
 {
     char *path = file_join(r->folder, name);
@@ -132,6 +142,7 @@ static status read_first_shape(reading *r, pst_capture *c)
     if (c->width && (c->width != first->width || c->height != first->height))
         s = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
                  first->width, first->height, c->width, c->height);
+    look_at_first(r, c);
     c->width = first->width;
     c->height = first->height;
     c->channels = first->channels;

@@ -41,7 +41,7 @@ static void a_good_photograph_has_no_doubt(void **state)
     (void)state;
     merlin_maps maps;
     make(&maps, 20, 10, 100, 80);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 26}), 0);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED, .focal_35mm = 26}), 0);
     merlin_maps_free(&maps);
 }
 
@@ -86,11 +86,16 @@ static void what_exif_says_is_told(void **state)
     (void)state;
     merlin_maps maps;
     make(&maps, 20, 10, 100, 80);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_NONE, 26}), MERLIN_DOUBT_NO_FLASH);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_NONE, .focal_35mm = 26}),
+                     MERLIN_DOUBT_NO_FLASH);
     assert_float_equal(maps.lens_degrees, 67.3, 0.2);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 135}), MERLIN_DOUBT_LENS_NARROW);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED, .focal_35mm = 135}),
+                     MERLIN_DOUBT_LENS_NARROW);
     assert_float_equal(maps.lens_degrees, 14.6, 0.1);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){MERLIN_FLASH_FIRED, 12}), MERLIN_DOUBT_LENS_WIDE);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED, .focal_35mm = 12}),
+                     MERLIN_DOUBT_LENS_WIDE);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.reduced = 2}), MERLIN_DOUBT_REDUCED);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.reduced = 1, .frames = 3}), MERLIN_DOUBT_FIRST_FRAME);
     merlin_maps_free(&maps);
 }
 

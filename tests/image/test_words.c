@@ -288,6 +288,7 @@ static void what_is_too_large_is_read_at_a_reduced_size(void **state)
     write_wide_png(scratch_path("wide.png"), 20001, 5);
     assert_int_equal(img_read_size(scratch_path("wide.png"), &width, &height), OK);
     assert_true(width == 10001 && height == 3);
+    assert_true(img_look(scratch_path("wide.png")).reduced == 2 && img_look(scratch_path("wide.png")).frames == 1);
     assert_int_equal(img_read(scratch_path("wide.png"), &color, NULL), OK);
     assert_true(color.width == 10001 && color.height == 3);
     /* the means of 0.2 and 1, of 0 and 1, and the last column alone; the last row is one of the file's */
@@ -298,6 +299,21 @@ static void what_is_too_large_is_read_at_a_reduced_size(void **state)
     assert_int_equal(img_read_mask(scratch_path("wide.png"), &mask), OK);
     assert_true(mask.width == 10001 && mask.height == 3); /* as the photograph it is for */
     img_free(&mask);
+}
+
+/* Two of one pixel, the first of colour 0 of a table of two, the other of colour 1. */
+static void the_first_picture_of_an_animation_is_read(void **state)
+{
+    (void)state;
+    static const uint8_t gif[] = "GIF89a\1\0\1\0\x80\0\0\xff\0\0\0\0\xff"
+                                 "!\xf9\4\0\0\0\0\0,\0\0\0\0\1\0\1\0\0\2\2\x44\1\0"
+                                 "!\xf9\4\0\0\0\0\0,\0\0\0\0\1\0\1\0\0\2\2\x4c\1\0;";
+    assert_int_equal(file_write(scratch_path("two.gif"), gif, sizeof gif - 1), OK);
+    img color;
+    if (img_read(scratch_path("two.gif"), &color, NULL) != OK) fail_msg("%s", status_message());
+    assert_true(color.width == 1 && color.height == 1 && color.data[0] == 1 && color.data[2] == 0);
+    img_free(&color);
+    assert_int_equal(img_look(scratch_path("two.gif")).frames, 2);
 }
 
 /* As EXR and raw pictures are, which come as a whole. */
@@ -332,6 +348,7 @@ int main(void)
         in_scratch(pages_of_one_size_are_refused_for_which_is_meant),
         in_scratch(a_tiff_of_16_bits_whose_exif_says_srgb_is_decoded),
         in_scratch(what_is_too_large_is_read_at_a_reduced_size),
+        in_scratch(the_first_picture_of_an_animation_is_read),
         in_scratch(what_was_decoded_as_a_whole_is_reduced_alike),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
