@@ -3,24 +3,24 @@
 _merlin() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} more=()
     local -A options=(
-        [estimate]="--mask --output --model --size --views --exposure --mesh --json --quiet --help"
-        [relight]="--light --direction --lights --orbit --dome --lp --near --radius --power --color --exposure --format --env --rotate --env-exposure --by --no-shadows --matte --frame --mask --output --model --size --views --photo-exposure --json --quiet --help"
+        [estimate]="--mask --output --model --size --views --exposure --mesh --json --threads --quiet --help"
+        [relight]="--light --direction --lights --orbit --dome --lp --near --radius --power --color --exposure --format --env --rotate --env-exposure --by --no-shadows --matte --frame --mask --output --model --size --views --photo-exposure --json --threads --quiet --help"
         [stereo]="--lights --near --fov --distance --method --mask --ambient --linear --integrate --mesh --output --model --size --views --exposure
-            --json --quiet --help"
-        ["stereo calibrate"]="--sphere --mask --linear --fov --output --json --quiet --help"
+            --json --threads --quiet --help"
+        ["stereo calibrate"]="--sphere --mask --linear --fov --output --json --threads --quiet --help"
         [render]="--count --output --seed --first --size --fov --mesh --env-dir --material-dir --no-env --targets --bounces --spp --paths
-            --threads --json --quiet --help"
+            --json --threads --quiet --help"
         [train]="--data --output --resume --init --init-shared --note --threads --quiet --help"
         [eval]="--data --model --means-file --count --white --given --environments --views --precision --figure --figure-rows --means --output
-            --json --quiet --help"
-        ["eval stereo"]="--data --model --count --figure --json --quiet --help"
-        ["eval detail"]="--data --model --count --views --json --quiet --help"
-        ["eval doubts"]="--right --wrong --data --count --model --json --quiet --help"
-        ["eval masks"]="--data --mask --count --seed --json --quiet --help"
-        ["eval solvers"]="--count --seed --size --json --quiet --help"
-        ["eval photos"]="--model --output --mask --quiet --help"
-        [bench]="--model --config --batch --stereo --profile --quick --json --quiet --help"
-        [info]="--tensors --json --quiet --help"
+            --json --threads --quiet --help"
+        ["eval stereo"]="--data --model --count --figure --json --threads --quiet --help"
+        ["eval detail"]="--data --model --count --views --json --threads --quiet --help"
+        ["eval doubts"]="--right --wrong --data --count --model --json --threads --quiet --help"
+        ["eval masks"]="--data --mask --count --seed --json --threads --quiet --help"
+        ["eval solvers"]="--count --seed --size --json --threads --quiet --help"
+        ["eval photos"]="--model --output --mask --threads --quiet --help"
+        [bench]="--model --config --batch --stereo --profile --quick --json --threads --quiet --help"
+        [info]="--tensors --json --threads --quiet --help"
     )
     local -A below=([eval]="stereo solvers detail photos doubts masks" [stereo]="calibrate")
     local commands="estimate relight stereo render train eval bench info"

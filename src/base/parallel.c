@@ -65,8 +65,3 @@ int parallel_threads(void)
 {
     return omp_get_max_threads();
 }
-
-void parallel_set_threads(int count)
-{
-    threads_use_here(count);
-}

@@ -16,7 +16,7 @@ status parallel_try(size_t count, status (*body)(void *context, size_t i), void 
 /* body(context, begin, end) over contiguous blocks that tile [0, count), one block a thread. */
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context);
 
+/* Returns how many threads the loops of the calling thread have (base/threads.h). */
 int parallel_threads(void);
-void parallel_set_threads(int count);
 
 #endif

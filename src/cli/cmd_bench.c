@@ -27,7 +27,8 @@ static const char help[] =
     "      --profile FILE  write what each of the network's layers takes, forward, backward and in either precision\n"
     "      --quick         fewer runs, smaller pictures\n"
     "      --json          report on standard output as JSON\n"
-    "      --quiet         no progress\n"
+    "  -t, --threads N     how many threads work (default: one a processor)\n"
+    "  -q, --quiet         no progress\n"
     "  -h, --help          this text\n";
 
 typedef struct request {
@@ -46,7 +47,7 @@ static status parse(int argc, char **argv, request *r)
         {"quick", .flag = &r->options.quick},
         {"stereo", .flag = &r->stereo},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->options.quiet},
+        {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -32,7 +32,8 @@ static const char help[] =
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh           write mesh.glb, too: the object's front with albedo, normals and roughness\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
-    "      --quiet          no other output than errors\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Several photographs: goes on after one that fails, and then exits with 1. What stands beside maps.exr in\n"
     "a FOLDER under the names above is no photograph.\n";
@@ -55,7 +56,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"mesh", .flag = &r->mesh},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -42,7 +42,8 @@ static const char help[] =
     "  --means DIR        compute mean maps over this folder\n"
     "  -o, --output FILE  where to write them\n"
     "      --json         report on standard output as JSON\n"
-    "      --quiet        no progress, and with --means no other output than errors\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no progress, and with --means no other output than errors\n"
     "  -h, --help         this text\n";
 
 enum { USUAL_ROWS = 8 };
@@ -117,7 +118,7 @@ static status parse(int argc, char **argv, request *r)
         {"means", .text = &r->means_folder},
         {"output", 'o', .text = &r->output},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->options.quiet},
+        {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -15,13 +15,14 @@ static const char help[] =
     "usage: merlin eval detail --data DIR [options]\n\n"
     "The errors of merlin estimate on samples of more than 256 pixels a side (merlin render --size 512) when the\n"
     "network sees them in 256 pixels, in up to 512, and in both, as it does unless --size says otherwise.\n\n"
-    "  --data DIR     held-out samples\n"
-    "  --model W      weights (default: those merlin estimate takes)\n"
-    "  --count N      only the first N samples\n"
-    "  --views N      maps as merlin estimate --views N makes them (default 4, as there)\n"
-    "      --json     report on standard output as JSON\n"
-    "      --quiet    no progress\n"
-    "  -h, --help     this text\n";
+    "  --data DIR       held-out samples\n"
+    "  --model W        weights (default: those merlin estimate takes)\n"
+    "  --count N        only the first N samples\n"
+    "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
+    "      --json       report on standard output as JSON\n"
+    "  -t, --threads N  how many threads work (default: one a processor)\n"
+    "  -q, --quiet      no progress\n"
+    "  -h, --help       this text\n";
 
 typedef struct request {
     detail_options options;
@@ -36,7 +37,7 @@ static status parse(int argc, char **argv, request *r)
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->options.quiet},
+        {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -24,7 +24,8 @@ static const char help[] =
     "      --count N        only the first N samples\n"
     "      --model W        weights (default: those merlin estimate takes)\n"
     "      --json           report on standard output as JSON, with the cues that each judgement is made of\n"
-    "      --quiet          no progress\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no progress\n"
     "  -h, --help           this text\n\n"
     "In a folder NAME.mask.png is the mask of NAME.*. Goes on after a photograph that fails, and then exits with 1.\n";
 
@@ -52,7 +53,7 @@ static status parse(int argc, char **argv, request *r)
         {"count", .count = &r->count, .low = 1, .high = 1000000},
         {"model", .text = &r->weights},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

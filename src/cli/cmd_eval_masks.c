@@ -24,7 +24,8 @@ static const char help[] =
     "      --count N     only the first N samples\n"
     "      --seed S      other backgrounds (default 1)\n"
     "      --json        report on standard output as JSON, picture by picture\n"
-    "      --quiet       no progress\n"
+    "  -t, --threads N   how many threads work (default: one a processor)\n"
+    "  -q, --quiet       no progress\n"
     "  -h, --help        this text\n\n"
     "Photographs without a mask are left out. Goes on after one that fails, and then exits with 1.\n";
 
@@ -53,7 +54,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"count", .count = &r->count, .low = 1, .high = 1000000},
         {"seed", .whole = &r->seed, .low = 0, .high = 1000000000},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -22,7 +22,8 @@ static const char help[] =
     "most 4\n"
     "  -o, --output F.png   the picture\n"
     "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
-    "      --quiet          no other output than errors\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Goes on after a photograph that fails, leaves it out, and then exits with 1.\n";
 
@@ -45,7 +46,7 @@ static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
         {"model", .take = take_model, .into = r}, {"mask", .text = &r->mask},
-        {"output", 'o', .picture = &r->output},   {"quiet", .flag = &r->quiet},
+        {"output", 'o', .picture = &r->output},   {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},          {0},
     };
     status s = cli_read_options(argc, argv, options);

@@ -12,12 +12,13 @@ static const char help[] =
     "usage: merlin eval solvers [options]\n\n"
     "How far the normals and depth of photometric stereo are off, and how long it takes, on objects rendered under 50\n"
     "known lights: least squares and robust under distant lights, near under LEDs beside the object.\n\n"
-    "      --count N   objects (default 8)\n"
-    "      --seed S    other objects (default 2000)\n"
-    "      --size P    pixels on a side (default 224: some 20,000 of an object)\n"
-    "      --json      report on standard output as JSON\n"
-    "      --quiet     no progress\n"
-    "  -h, --help      this text\n";
+    "      --count N    objects (default 8)\n"
+    "      --seed S     other objects (default 2000)\n"
+    "      --size P     pixels on a side (default 224: some 20,000 of an object)\n"
+    "      --json       report on standard output as JSON\n"
+    "  -t, --threads N  how many threads work (default: one a processor)\n"
+    "  -q, --quiet      no progress\n"
+    "  -h, --help       this text\n";
 
 typedef struct request {
     solver_options options;
@@ -31,7 +32,7 @@ static status parse(int argc, char **argv, request *r)
         {"seed", .whole = &r->options.seed, .low = 0, .high = 2147483647},
         {"size", .integer = &r->options.size, .low = 32, .high = 2048},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->options.quiet},
+        {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -21,7 +21,8 @@ static const char help[] =
     "  --count N          only the first N objects\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
-    "      --quiet        no progress\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no progress\n"
     "  -h, --help         this text\n\n"
     "The rendered near-field set of docs/evaluation.md is made by\n"
     "  merlin render --count 14 --seed 52 --size 256 --targets 52 --paths 16 --no-env -o near-field\n";
@@ -40,7 +41,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"figure", .picture = &r->options.figure},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->options.quiet},
+        {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

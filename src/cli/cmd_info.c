@@ -15,10 +15,11 @@ static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json] [--q
                            "Says what is in a weights file, or in the shipped merlin-point or merlin-env: the model's\n"
                            "configuration, where the weights come from, their number, and what one picture of 256x256\n"
                            "costs.\n\n"
-                           "      --tensors  every tensor with its type and shape\n"
-                           "      --json     as JSON\n"
-                           "      --quiet    no other output than errors\n"
-                           "  -h, --help     this text\n";
+                           "      --tensors    every tensor with its type and shape\n"
+                           "      --json       as JSON\n"
+                           "  -t, --threads N  how many threads work (default: one a processor)\n"
+                           "  -q, --quiet      no other output than errors\n"
+                           "  -h, --help       this text\n";
 
 enum { COST_SIZE = 256 };
 
@@ -141,7 +142,7 @@ int cmd_info(int argc, char **argv)
     const cli_option options[] = {
         {"tensors", .flag = &tensors},
         {"json", .flag = &json},
-        {"quiet", .flag = &quiet},
+        {"quiet", 'q', .flag = &quiet},
         {"help", 'h', .flag = &wants_help},
         {0},
     };

@@ -74,7 +74,8 @@ static const char help_on_options[] =
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
     "                       $MERLIN_MODEL, else merlin-point)\n"
     "      --json           a report as JSON on standard output\n"
-    "      --quiet          no other output than errors\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
     "them;\n"
@@ -233,7 +234,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"model", .text = &r->weights},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/parallel.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
@@ -15,29 +14,28 @@ static const char help[] =
     "Renders training samples: objects with their maps, under a flash at the camera (direct and indirect light apart)\n"
     "and under an environment. A run that was interrupted is continued by the same command.\n"
     "\n"
-    "  --count N       how many samples (required)\n"
-    "  -o, --output D  folder for the samples, 000000.exr and on, and render.txt with the options (required)\n"
-    "  --seed S        seed of the data set (default 1)\n"
-    "  --first I       index of the first sample (default 0)\n"
-    "  --size P        pixels on a side (default 128)\n"
-    "  --fov DEG       horizontal field of view (default 60)\n"
-    "  --mesh F        this OBJ, PLY or glTF object, with procedural materials, instead of procedural shapes\n"
-    "  --env-dir D     environment maps from this folder instead of procedural ones\n"
-    "  --material-dir D  photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
-    "  --no-env        no environment image\n"
-    "  --targets K     also K images under random lights in front, with cast shadows\n"
-    "  --bounces       also keep bounce 2 and bounce 3 apart\n"
-    "  --spp N         camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
-    "  --paths N       indirect paths a pixel (default 8); environment light takes five for every eight\n"
-    "  --threads T     threads (default: all processors)\n"
-    "  --quiet         no other output than errors\n"
-    "  --json          a report as JSON on standard output\n"
-    "  -h, --help      this text\n";
+    "  --count N          how many samples (required)\n"
+    "  -o, --output D     folder for the samples, 000000.exr and on, and render.txt with the options (required)\n"
+    "  --seed S           seed of the data set (default 1)\n"
+    "  --first I          index of the first sample (default 0)\n"
+    "  --size P           pixels on a side (default 128)\n"
+    "  --fov DEG          horizontal field of view (default 60)\n"
+    "  --mesh F           this OBJ, PLY or glTF object, with procedural materials, instead of procedural shapes\n"
+    "  --env-dir D        environment maps from this folder instead of procedural ones\n"
+    "  --material-dir D   photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
+    "  --no-env           no environment image\n"
+    "  --targets K        also K images under random lights in front, with cast shadows\n"
+    "  --bounces          also keep bounce 2 and bounce 3 apart\n"
+    "  --spp N            camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
+    "  --paths N          indirect paths a pixel (default 8); environment light takes five for every eight\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no other output than errors\n"
+    "  --json             a report as JSON on standard output\n"
+    "  -h, --help         this text\n";
 
 typedef struct request {
     render_options options;
     bool no_environment, json, help;
-    int threads;
 } request;
 
 static status take_strata(const char *text, void *to)
@@ -70,8 +68,7 @@ static status read_options(int *argc, char ***argv, request *r)
         {"bounces", .flag = &o->image.bounces},
         {"spp", .take = take_strata, .into = &o->image.strata},
         {"paths", .integer = &o->image.paths, .low = 1, .high = 4096},
-        {"threads", .integer = &r->threads, .low = 1, .high = 1024},
-        {"quiet", .flag = &o->quiet},
+        {"quiet", 'q', .flag = &o->quiet},
         {"json", .flag = &r->json},
         {"help", 'h', .flag = &r->help},
         {0},
@@ -125,7 +122,6 @@ int cmd_render(int argc, char **argv)
     r.options.interrupted = cli_interrupted;
     if (parse(argc, argv, &r) != OK) return cli_usage("render", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
     render_stats stats;
     status s = render_samples(&r.options, &stats);

@@ -49,7 +49,8 @@ static const char help[] =
     "      --model W, --size N, --views N, --exposure EV\n"
     "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
     "      --json           the report on standard output\n"
-    "      --quiet          no other output than errors\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
     "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (mesh.glb is\n"
@@ -162,7 +163,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

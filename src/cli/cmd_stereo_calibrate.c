@@ -24,7 +24,8 @@ static const char help[] =
     "      --fov DEG      the camera's horizontal field of view (default: as seen from afar)\n"
     "  -o, --output DIR   where to (default: DIR itself)\n"
     "      --json         a report as JSON on standard output\n"
-    "      --quiet        no other output than errors\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no other output than errors\n"
     "  -h, --help         this text\n\n"
     "Writes lights.txt (x y z a line; x right, y up, z toward the camera), in the order of the pictures' names (9.png\n"
     "before 10.png), and calibration.png, which shows what was found.\n";
@@ -57,7 +58,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"fov", .real = &r->options.field_of_view, .low = 1, .high = 170},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
-        {"quiet", .flag = &r->quiet},
+        {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
     };

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/parallel.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/photos.h"
@@ -20,7 +19,7 @@ static const char help[] =
     "      --init-shared W start from those of another model's weights that fit by name and shape; may be repeated:\n"
     "                      what several have is taken from the last\n"
     "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"
-    "  -t, --threads N     processor threads (default: all)\n"
+    "  -t, --threads N     how many threads work (default: one a processor)\n"
     "  -q, --quiet         no progress bar\n"
     "  -h, --help          this text\n"
     "\n"
@@ -31,7 +30,6 @@ enum { MOST_SHARED = 8 };
 typedef struct request {
     trn_options options;
     const char *shared[MOST_SHARED + 1]; /* ended by NULL */
-    int threads;
     bool help;
 } request;
 
@@ -56,7 +54,6 @@ static status parse(int argc, char **argv, request *r)
         {"init", 'i', .text = &o->init},
         {"init-shared", .take = take_shared, .into = r},
         {"note", 'n', .text = &o->note},
-        {"threads", 't', .integer = &r->threads, .low = 1, .high = 1024},
         {"quiet", 'q', .flag = &o->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
@@ -102,7 +99,6 @@ int cmd_train(int argc, char **argv)
     request r = {.options = {.interrupted = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("train", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    if (r.threads > 0) parallel_set_threads(r.threads);
     cli_catch_interrupts();
     status s = train(&r);
     return s == OK ? 0 : cli_fail("train", s);

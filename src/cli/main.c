@@ -6,9 +6,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/messages.h"
 #include "cli/cli.h"
+#include "cli/suggest.h"
 #include "image/start.h"
 #include "merlin/merlin.h"
 
@@ -39,7 +41,25 @@ static void print_help(FILE *stream)
           stream);
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
-    fputs("\nmerlin COMMAND --help explains a command; merlin --version prints the version.\n", stream);
+    fputs("\nmerlin COMMAND --help explains a command; merlin --version (or -V) prints the version.\n", stream);
+}
+
+/* Says it on one line, whatever is in the name. */
+static int refuse_command(const char *name)
+{
+    const char *names[COMMAND_COUNT + 2] = {"--help", "--version"};
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        names[2 + i] = commands[i].name;
+    const char *meant = suggest(name, strlen(name), names, COMMAND_COUNT + 2);
+    const char *kind = name[0] == '-' ? "option" : "command";
+    if (meant)
+        (void)fail(ERROR_USAGE, "no %s \"%s\": did you mean %s?", kind, name, meant);
+    else if (file_exists(name))
+        (void)fail(ERROR_USAGE, "no command \"%s\": for a photograph, merlin estimate %s", name, name);
+    else
+        (void)fail(ERROR_USAGE, "no %s \"%s\"", kind, name);
+    fprintf(messages(), "merlin: %s (try merlin --help)\n", status_message());
+    return 2;
 }
 
 /* Output that went to a full disk or a closed pipe is a failure even if the command did not notice. */
@@ -94,16 +114,12 @@ int main(int argc, char **argv)
         print_help(stdout);
         return finish(0);
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         printf("merlin %s\n", merlin_version());
         return finish(0);
     }
     const cli_command *command = find_command(argv[1]);
-    if (!command) {
-        (void)fail(ERROR_USAGE, "no command \"%s\"", argv[1]); /* on one line, whatever is in it */
-        fprintf(messages(), "merlin: %s (try merlin --help)\n", status_message());
-        return 2;
-    }
+    if (!command) return refuse_command(argv[1]);
     reuse_memory();
     return finish(command->run(argc - 1, argv + 1));
 }

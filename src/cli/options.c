@@ -3,12 +3,47 @@
 #include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/threads.h"
 #include "cli/cli.h"
+#include "cli/suggest.h"
 
 enum { FIRST_LONG = 256, LETTERS = 2 * CLI_MOST_OPTIONS + 2 };
+
+static status take_threads(const char *text, void *into)
+{
+    long count = 0;
+    (void)into;
+    status s = cli_int("--threads", text, 1, THREADS_MOST, &count);
+    if (s != OK) return s;
+    threads_use((int)count);
+    (void)setenv("OMP_NUM_THREADS", text, 1); /* for the programs that merlin bench starts */
+    return OK;
+}
+
+/* Every command has these. */
+static const cli_option common[] = {
+    {"threads", 't', .take = take_threads},
+    {0},
+};
+
+/* Puts a command's own and the common ones into a table of CLI_MOST_OPTIONS rows and an empty one. */
+static void join(const cli_option *own, cli_option *all)
+{
+    size_t n = 0;
+    for (; own->name; own++) {
+        assert(n < CLI_MOST_OPTIONS);
+        all[n++] = *own;
+    }
+    for (const cli_option *o = common; o->name; o++) {
+        assert(n < CLI_MOST_OPTIONS);
+        all[n++] = *o;
+    }
+    all[n] = (cli_option){0};
+}
 
 /* Letters that take values are followed by a colon; the one in front has a missing value told from a wrong option. */
 static void describe(const cli_option *options, struct option *longs, char *letters)
@@ -17,7 +52,6 @@ static void describe(const cli_option *options, struct option *longs, char *lett
     *letters++ = ':';
     for (; options[n].name; n++) {
         const cli_option *o = &options[n];
-        assert(n < CLI_MOST_OPTIONS);
         longs[n] = (struct option){
             .name = o->name, .has_arg = o->flag ? no_argument : required_argument, .val = FIRST_LONG + (int)n};
         if (!o->letter) continue;
@@ -45,6 +79,17 @@ static bool is_ambiguous(const cli_option *options, const char *given)
     return matches > 1;
 }
 
+static status refuse_unknown(const cli_option *options, const char *given)
+{
+    const char *names[CLI_MOST_OPTIONS];
+    size_t count = 0;
+    for (; options->name; options++)
+        names[count++] = options->name;
+    const char *meant = suggest(given + 2, strcspn(given + 2, "="), names, count);
+    return meant ? fail(ERROR_USAGE, "unknown option %s: did you mean --%s?", given, meant)
+                 : fail(ERROR_USAGE, "unknown option %s", given);
+}
+
 /* What getopt_long did not take, value being its answer. A letter it names itself; a long option it has just passed. */
 static status refuse(const cli_option *options, int value, char *const *argv)
 {
@@ -54,7 +99,7 @@ static status refuse(const cli_option *options, int value, char *const *argv)
     if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
     if (optopt >= FIRST_LONG) return fail(ERROR_USAGE, "%s: this option takes no value", given);
     if (is_long && is_ambiguous(options, given)) return fail(ERROR_USAGE, "%s is short for several options", given);
-    return fail(ERROR_USAGE, "unknown option %s", given);
+    return is_long ? refuse_unknown(options, given) : fail(ERROR_USAGE, "unknown option %s", given);
 }
 
 static status take_number(const cli_option *o, const char *value)
@@ -109,8 +154,10 @@ static status take(const cli_option *o, const char *value)
     return OK;
 }
 
-status cli_read_options(int *argc, char ***argv, const cli_option *options)
+status cli_read_options(int *argc, char ***argv, const cli_option *own)
 {
+    cli_option options[CLI_MOST_OPTIONS + 1];
+    join(own, options);
     struct option longs[CLI_MOST_OPTIONS + 1];
     char letters[LETTERS];
     describe(options, longs, letters);

@@ -11,7 +11,7 @@
  *     };
  *     status s = cli_read_options(&argc, &argv, options);
  *
- * Each row fills one of the places. */
+ * Each row fills one of the places. --threads belongs to every command and needs no row. */
 #ifndef MERLIN_CLI_OPTIONS_H
 #define MERLIN_CLI_OPTIONS_H
 
@@ -37,10 +37,10 @@ typedef struct cli_option {
     void *into;
 } cli_option;
 
-enum { CLI_MOST_OPTIONS = 32 };
+enum { CLI_MOST_OPTIONS = 40 }; /* with those of every command */
 
 /* Reads options wherever they stand, as getopt_long does; *argc and *argv are then the operands alone. A later value
  * replaces an earlier one, but take is called for each. ERROR_USAGE names the option. At most CLI_MOST_OPTIONS rows. */
-status cli_read_options(int *argc, char ***argv, const cli_option *options);
+status cli_read_options(int *argc, char ***argv, const cli_option *own);
 
 #endif

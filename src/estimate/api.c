@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/file.h"
+#include "base/threads.h"
 #include "estimate/mask.h"
 #include "image/read.h"
 #include "image/write.h"
@@ -21,6 +22,14 @@ const char *merlin_version(void)
 const char *merlin_error(void)
 {
     return status_message();
+}
+
+merlin_status merlin_set_threads(int count)
+{
+    if (count < 1 || count > THREADS_MOST)
+        return result_of(fail(ERROR_USAGE, "%d threads are not from 1 to %d", count, THREADS_MOST));
+    threads_use(count);
+    return MERLIN_OK;
 }
 
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)

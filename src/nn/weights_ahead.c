@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "base/parallel.h"
+#include "base/threads.h"
 
 /* How many steps are bound once it is more than `done`, or `done` if no more will be. */
 static int wait_for_more(weights_ahead *a, int done)
@@ -30,7 +30,7 @@ static void *refresh(void *context)
 {
     weights_ahead *a = context;
     const nn_device *device = a->program->device;
-    parallel_set_threads(1); /* this one's alone: the other processors are busy */
+    threads_use_here(1); /* this one's alone: the other processors are busy */
     device->begin(a->program->context);
     a->result = refresh_steps(a);
     device->end(a->program->context);

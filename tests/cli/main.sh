@@ -5,7 +5,13 @@ source "$(dirname "$0")/support/check.bash"
 
 succeeds "commands:" "$MERLIN" --help
 succeeds "^merlin [0-9]" "$MERLIN" --version
+succeeds "^merlin [0-9]" "$MERLIN" -V
 refuses 2 'no command "estimat"' "$MERLIN" estimat photo.png
+refuses 2 'no command "esitmate": did you mean estimate? (try' "$MERLIN" esitmate photo.png
+refuses 2 'no command "realight": did you mean relight?' "$MERLIN" help realight
+refuses 2 'no option "--verson": did you mean --version?' "$MERLIN" --verson
+refuses 2 'no command "quux" (try' "$MERLIN" quux
+refuses 2 "for a photograph, merlin estimate $scratch/cup.jpg" "$MERLIN" "$(touch "$scratch/cup.jpg" && echo "$scratch/cup.jpg")"
 refuses 2 'no command "photo?.png"' "$MERLIN" $'photo\n.png'
 for command in estimate relight render train eval bench info; do
     succeeds "$command" "$MERLIN" --help
@@ -13,13 +19,20 @@ for command in estimate relight render train eval bench info; do
     succeeds "[Uu]sage: merlin $command" "$MERLIN" help "$command"
     refuses 2 "$command: unknown option --no-such-option" "$MERLIN" "$command" --no-such-option
     refuses 2 "$command: unknown option -j " "$MERLIN" "$command" -jpg.png
+    for count in 0 -1 1025 many 2x; do
+        refuses 2 "$command: --threads wants a whole number from 1 to 1024, not \"$count\"" "$MERLIN" "$command" -t "$count"
+    done
+    succeeds "[Uu]sage: merlin $command" "$MERLIN" "$command" -q --threads 1 -h
     refuses 2 "$command: --help=me: this option takes no value" "$MERLIN" "$command" --help=me
 done
 refuses 2 "-o wants a value" "$MERLIN" estimate photo.png -o
 succeeds "usage: merlin estimate" "$MERLIN" estimate --he
 refuses 2 "--m is short for several options" "$MERLIN" estimate photo.png --m mask.png
 refuses 2 "--li=0,0,0 is short for several options" "$MERLIN" relight photo.png --li=0,0,0
-refuses 2 "unknown option --lamp" "$MERLIN" relight photo.png --lamp
+refuses 2 "unknown option --lamp (try" "$MERLIN" relight photo.png --lamp
+refuses 2 "unknown option --exposre=1: did you mean --exposure? (try" "$MERLIN" estimate photo.png --exposre=1
+refuses 2 "unknown option --ligth: did you mean --light?" "$MERLIN" relight photo.png --ligth 0,0,0
+refuses 2 "unknown option --thread-count (try" "$MERLIN" bench --thread-count 1
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
 for command in "stereo calibrate" "eval stereo" "eval solvers" "eval detail" "eval photos"; do
     read -ra words <<<"$command"

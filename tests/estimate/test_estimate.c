@@ -1,5 +1,6 @@
 /* The whole way from photograph to folder with a model of random weights: everything but the answer's quality. */
 #include "base/file.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 #include "image/exr.h"
 #include "image/read.h"
@@ -187,6 +188,25 @@ static void the_object_is_found_in_a_picture_of_any_unit(void **state)
         merlin_maps_free(&other);
     }
     merlin_maps_free(&usual);
+}
+
+static void as_many_threads_work_as_was_said(void **state)
+{
+    merlin_maps maps;
+    int before = parallel_threads();
+    for (int count = 1; count <= 2; count++) {
+        assert_int_equal(merlin_set_threads(count), MERLIN_OK);
+        estimate(*state, &maps);
+        assert_int_equal(parallel_threads(), count);
+        merlin_maps_free(&maps);
+    }
+    assert_int_equal(merlin_set_threads(0), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_set_threads(1025), MERLIN_WRONG_USE);
+    assert_string_equal(merlin_error(), "1025 threads are not from 1 to 1024");
+    estimate(*state, &maps);
+    assert_int_equal(parallel_threads(), 2);
+    merlin_maps_free(&maps);
+    merlin_set_threads(before);
 }
 
 static void masks_of_another_size_are_refused(void **state)
@@ -728,6 +748,7 @@ int main(void)
         cmocka_unit_test(albedo_and_roughness_are_in_their_ranges),
         cmocka_unit_test(the_object_is_found_without_a_mask),
         cmocka_unit_test(the_object_is_found_in_a_picture_of_any_unit),
+        cmocka_unit_test(as_many_threads_work_as_was_said),
         cmocka_unit_test(masks_of_another_size_are_refused),
         cmocka_unit_test(empty_masks_are_refused),
         cmocka_unit_test(an_object_too_thin_for_the_networks_pixels_is_refused_as_that),

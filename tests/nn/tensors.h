@@ -13,6 +13,7 @@
 
 #include "base/half.h"
 #include "base/parallel.h"
+#include "base/threads.h"
 #include "base/rng.h"
 #include "nn/cpu/kernels.h"
 

@@ -232,11 +232,11 @@ static void kernels_do_not_depend_on_the_number_of_threads(void **state)
     int before = parallel_threads();
     for (int i = 0; i < 2; i++) {
         v[i] = tensor_random(NN_FLOAT32, 1, 1, 1, COUNT, 2), m1[i] = tensor_like(&g), m2[i] = tensor_like(&g);
-        parallel_set_threads(i + 1);
+        threads_use_here(i + 1);
         cpu_adam(&step, COUNT, v[i].data, g.data, m1[i].data, m2[i].data);
         sum[i] = cpu_sum_squares(g.data, COUNT);
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
     assert_same_bits("value", &v[0], &v[1]), assert_same_bits("moment", &m2[0], &m2[1]);
     assert_true(sum[0] == sum[1] && fabs(sum[0] - tensor_dot(&g, &g)) < 1e-9 * sum[0]);
     for (int i = 0; i < 2; i++)

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "base/threads.h"
 #include "base/rng.h"
 #include "nn/nn.h"
 
@@ -354,7 +355,7 @@ static void gradients_of_a_narrow_strided_convolution_are_the_same_every_time(vo
 {
     (void)state;
     int before = parallel_threads();
-    parallel_set_threads(4);
+    threads_use_here(4);
     for (nn_type type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {
         nn_params *params;
         nn_program *p = strided_program(type, &params);
@@ -369,7 +370,7 @@ static void gradients_of_a_narrow_strided_convolution_are_the_same_every_time(vo
         nn_program_free(p);
         nn_params_free(params);
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
 }
 
 int main(void)

@@ -155,7 +155,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
             cpu_tensor x = sized(types[t], 2, 1), y[2] = {tensor_like(&x), tensor_like(&x)};
             cpu_tensor dx[2] = {tensor_like(&x), tensor_like(&x)};
             for (int i = 0; i < 2; i++) {
-                parallel_set_threads(i + 1);
+                threads_use_here(i + 1);
                 operations[o].forward(&x, &y[i]);
                 operations[o].backward(&y[i], &x, &dx[i], false);
             }
@@ -163,7 +163,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
             assert_same_bits(operations[o].name, &dx[0], &dx[1]);
             tensor_free(&x), tensor_free(&y[0]), tensor_free(&y[1]), tensor_free(&dx[0]), tensor_free(&dx[1]);
         }
-    parallel_set_threads(before);
+    threads_use_here(before);
 }
 
 static void tanh_and_sigmoid_keep_their_stated_error(void **state)

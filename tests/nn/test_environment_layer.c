@@ -152,11 +152,11 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
     cpu_tensor y[2] = {tensor_like(&s.dy), tensor_like(&s.dy)};
     cpu_environment d[2] = {{.sh = tensor_like(&s.in.sh)}, {.sh = tensor_like(&s.in.sh)}};
     for (int i = 0; i < 2; i++) {
-        parallel_set_threads(i + 1);
+        threads_use_here(i + 1);
         cpu_shade_environment(&s.in, &s.mask, &y[i]);
         cpu_environment_backward(&s.in, &s.mask, &s.dy, &d[i], (cpu_environment_accumulate){0});
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
     assert_same_bits("shading", &y[0], &y[1]);
     assert_same_bits("gradient", &d[0].sh, &d[1].sh);
     tensor_free(&y[0]), tensor_free(&y[1]), tensor_free(&d[0].sh), tensor_free(&d[1].sh);

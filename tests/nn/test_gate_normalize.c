@@ -166,13 +166,13 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
     cpu_tensor x = made(NN_FLOAT32, b, b[3], 1), gate = made(NN_FLOAT32, b, 1, 2), y[2], dx[2], dgate[2], unit[2];
     for (int i = 0; i < 2; i++) {
         y[i] = tensor_like(&x), dx[i] = tensor_like(&x), unit[i] = tensor_like(&x), dgate[i] = tensor_like(&gate);
-        parallel_set_threads(i + 1);
+        threads_use_here(i + 1);
         cpu_gate(&x, &gate, &y[i]);
         cpu_gate_backward(&x, &gate, &y[i], &dx[i], false, &dgate[i], false);
         cpu_normalize(&x, &unit[i]);
         cpu_normalize_backward(&x, &unit[i], &y[i], &dx[i], true);
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
     assert_same_bits("gate", &y[0], &y[1]), assert_same_bits("dgate", &dgate[0], &dgate[1]);
     assert_same_bits("dx", &dx[0], &dx[1]), assert_same_bits("normalize", &unit[0], &unit[1]);
     for (int i = 0; i < 2; i++)

@@ -222,7 +222,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
         float value[2];
         for (int i = 0; i < 2; i++) {
             double sum;
-            parallel_set_threads(i + 1);
+            threads_use_here(i + 1);
             value[i] = losses[l].forward(&o.prediction, &o.target, &o.mask, &sum);
             losses[l].backward(&o.prediction, &o.target, &o.mask, sum, 1, &d[i], false);
         }
@@ -231,7 +231,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
         tensor_free(&d[0]), tensor_free(&d[1]);
         operands_free(&o);
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
 }
 
 int main(void)

@@ -257,7 +257,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
         cpu_tensor x = made(NN_FLOAT32, s.x, 1), y[2] = {made(NN_FLOAT32, s.y, 2), made(NN_FLOAT32, s.y, 2)};
         cpu_tensor dx[2] = {tensor_like(&x), tensor_like(&x)};
         for (int i = 0; i < 2; i++) {
-            parallel_set_threads(i + 1);
+            threads_use_here(i + 1);
             operations[o].forward(&x, &y[i], false);
             operations[o].adjoint(&y[i], &dx[i], false);
         }
@@ -265,7 +265,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
         assert_same_bits(operations[o].name, &dx[0], &dx[1]);
         tensor_free(&x), tensor_free(&y[0]), tensor_free(&y[1]), tensor_free(&dx[0]), tensor_free(&dx[1]);
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
 }
 
 /* By hand: a row 0 4 8 becomes 0 1 3 5 7 8. */

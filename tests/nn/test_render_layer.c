@@ -256,11 +256,11 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
     cpu_tensor y[2] = {tensor_like(&s.dy), tensor_like(&s.dy)};
     cpu_render_tensors d[2] = {{.normal = tensor_like(&s.dy)}, {.normal = tensor_like(&s.dy)}};
     for (int i = 0; i < 2; i++) {
-        parallel_set_threads(i + 1);
+        threads_use_here(i + 1);
         cpu_render(&s.maps, &s.mask, &s.light, fov, power, &y[i]);
         cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &d[i], (cpu_render_accumulate){0});
     }
-    parallel_set_threads(before);
+    threads_use_here(before);
     assert_same_bits("rendering", &y[0], &y[1]);
     assert_same_bits("gradient", &d[0].normal, &d[1].normal);
     tensor_free(&y[0]), tensor_free(&y[1]), tensor_free(&d[0].normal), tensor_free(&d[1].normal);

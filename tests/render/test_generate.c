@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/parallel.h"
+#include "base/threads.h"
 #include "image/write.h"
 #include "optics/camera.h"
 #include "optics/light.h"
@@ -62,12 +62,12 @@ static void set_is_the_same_from_one_thread_and_from_two(void **state)
     char *one = scratch_new(), *two = scratch_new();
     render_stats stats;
     render_options o = small(one);
-    parallel_set_threads(1);
+    threads_use_here(1);
     assert_int_equal(render_samples(&o, &stats), OK);
     assert_int_equal(stats.rendered, COUNT);
     assert_true(stats.rays > 0);
     o = small(two);
-    parallel_set_threads(2);
+    threads_use_here(2);
     assert_int_equal(render_samples(&o, &stats), OK);
     assert_same_sets(one, two);
     scratch_remove(one);
