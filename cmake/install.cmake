@@ -37,3 +37,5 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin.pc DESTINATION ${CMAKE_INSTALL_
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/merlin)
 install(FILES man/merlin.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES completions/merlin.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME merlin)
+install(FILES completions/_merlin DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES completions/merlin.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

@@ -23,7 +23,8 @@ grep -q -e "--prefix [\"']$scratch/my programs[\"']\$" make.log || complain "it 
 
 echo "the installed command finds its weights and its manual lies where man looks"
 succeeds merlin-point prefix/bin/merlin info merlin-point
-present prefix/share/man/man1/merlin.1 prefix/share/bash-completion/completions/merlin
+present prefix/share/man/man1/merlin.1 prefix/share/bash-completion/completions/merlin \
+    prefix/share/zsh/site-functions/_merlin prefix/share/fish/vendor_completions.d/merlin.fish
 
 echo "a program that was built with one minor version before 1.0 finds no other"
 version=$(prefix/bin/merlin --version | cut -d ' ' -f 2)

@@ -40,33 +40,6 @@ for command in "stereo calibrate" "eval stereo" "eval solvers" "eval detail" "ev
 done
 succeeds "usage: merlin estimate" "$MERLIN" help estimate photo.png
 
-# every option that a command's help names is completed, and is in the manual
-# shellcheck source=completions/merlin.bash
-source "$MERLIN_SOURCE_DIR/completions/merlin.bash"
-manual=$(sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/merlin.1")
-completes() { # PATTERN WORD...: the words of a command line, the last one to be completed
-    local pattern=$1
-    shift
-    COMP_WORDS=(merlin "$@") COMP_CWORD=$# COMPREPLY=()
-    _merlin
-    [[ " ${COMPREPLY[*]} " == *" $pattern "* ]] || complain "$* is not completed to $pattern but to: ${COMPREPLY[*]}"
-}
-for command in estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval detail" "eval photos" bench info; do
-    read -ra words <<<"$command"
-    named=$("$MERLIN" "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+')
-    for option in $named; do
-        completes "$option" "${words[@]}" -
-        [[ $manual == *"$option"* ]] || complain "the manual does not know $option of $command"
-    done
-done
-completes relight rel
-completes photos eval ph
-completes merlin-env relight photo.png --model merlin-e
-completes network relight photo.png --by = # as the shell parts --by=
-completes network relight photo.png --by = n
-completes merlin-env relight photo.png --model = merlin-e
-completes photos help eval ph
-
 "$MERLIN" >"$scratch/stdout" 2>"$scratch/stderr"
 [[ $? == 2 && ! -s $scratch/stdout ]] || complain "merlin alone should explain itself on standard error and exit with 2"
 "$MERLIN" --help >/dev/full 2>"$scratch/stderr" && complain "a full disk should not pass unnoticed"

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Every option that a command takes is in its help and in the manual, and bash, zsh and fish complete exactly those.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
+completions=$MERLIN_SOURCE_DIR/completions
+mkdir "$scratch/bin"
+ln -s "$(realpath "$MERLIN")" "$scratch/bin/merlin"
+PATH=$scratch/bin:$PATH
+cd "$scratch" || exit 1
+manual=$(sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/merlin.1")
+commands=(estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval detail"
+    "eval doubts" "eval masks" "eval photos" bench info)
+
+in_source() { # COMMAND: the names in its table, and those of the table that all have
+    grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$MERLIN_SOURCE_DIR/src/cli/cmd_${1// /_}.c" \
+        "$MERLIN_SOURCE_DIR/src/cli/options.c" | sed 's/{"\([a-z-]*\)".*/--\1/' | sort -u
+}
+in_help() { # COMMAND
+    local words
+    read -ra words <<<"$1"
+    merlin "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(( [A-Z]+)?, --[a-z-]+)*' | grep -oE -e '--[a-z-]+' | sort -u
+}
+# shellcheck source=completions/merlin.bash
+source "$completions/merlin.bash"
+by_bash() { # WORD...: the words of a command line, the last one to be completed
+    COMP_WORDS=(merlin "$@") COMP_CWORD=$# COMPREPLY=()
+    _merlin
+    printf '%s\n' "${COMPREPLY[@]}"
+}
+by_fish() { fish --no-config -c 'source $argv[1]; complete -C "$argv[2]"' "$completions/merlin.fish" "merlin $*" | cut -f 1; }
+# What zsh's function of that name would offer: descriptions are cut off by compadd's callers, hence by _describe's double.
+by_zsh() {
+    zsh -f -c '_describe() { print -rl -- ${${(P)2}%%:*} }; _values() { shift; print -rl -- "$@" }; _files() { : }
+        completion=$1; shift; words=(merlin "$@") CURRENT=${#words} PREFIX=${words[-1]}; source $completion' zsh \
+        "$completions/_merlin" "$@"
+}
+same() { # WHAT EXPECTED GOT
+    [[ $2 == "$3" ]] || complain "$1: $(diff <(echo "$2") <(echo "$3") | grep '^[<>]' | tr '\n' ' ')"
+}
+completes() { # SHELL WORD LINE...: the word is among what the shell offers for the line
+    local shell=$1 word=$2
+    shift 2
+    "by_$shell" "$@" | grep -qxF -e "$word" || complain "$shell does not complete $* to $word but to: $("by_$shell" "$@" | tr '\n' ' ')"
+}
+
+shells=(bash)
+for shell in zsh fish; do
+    if command -v $shell >/dev/null; then shells+=($shell); else echo "no $shell here: its completion is not tested"; fi
+done
+for command in "${commands[@]}"; do
+    read -ra words <<<"$command"
+    expected=$(in_source "$command")
+    [[ $(wc -l <<<"$expected") -ge 4 ]] || complain "no table of options was found for $command"
+    same "$command --help beside its table" "$expected" "$(in_help "$command")"
+    for option in $expected; do
+        [[ $manual == *"$option"* ]] || complain "the manual does not know $option of $command"
+    done
+    for shell in "${shells[@]}"; do
+        same "$shell for $command" "$expected" "$("by_$shell" "${words[@]}" -- | grep -e -- | sort -u)"
+    done
+done
+for shell in "${shells[@]}"; do
+    completes "$shell" relight rel
+    completes "$shell" photos eval ph
+    completes "$shell" calibrate stereo c
+    completes "$shell" merlin-env relight photo.png --model merlin-e
+    completes "$shell" network relight photo.png --by n
+    completes "$shell" stereo help st
+done
+completes bash network relight photo.png --by = # as the shell parts --by=
+completes bash network relight photo.png --by = n
+completes bash merlin-env relight photo.png --model = merlin-e
+completes bash photos help eval ph
+finish
