@@ -24,9 +24,10 @@
  * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. What a function
  * fills in is yours to free; it is overwritten, not freed first, and after a failure it is empty. Pointers must not be
  * NULL unless a comment says so (MERLIN_WRONG_USE); what frees or closes takes NULL, and then does nothing. Nothing is
- * printed, nothing exits. There are no globals but how many threads work: a model may be used from several threads (runs through one model take
- * turns). Processes do not share it: where the parent has called the library, what fork leaves in the child lacks the
- * threads of OpenMP and would wait for them for ever, so let the child exec, or fork before the first call. */
+ * printed, nothing exits. There are no globals but how many threads work: a model may be used from several threads
+ * (runs through one model take turns). Processes do not share it: where the parent has called the library, what fork
+ * leaves in the child lacks the threads of OpenMP and would wait for them for ever, so let the child exec, or fork
+ * before the first call. */
 #ifndef MERLIN_MERLIN_H
 #define MERLIN_MERLIN_H
 

@@ -13,8 +13,8 @@
 
 #include "base/half.h"
 #include "base/parallel.h"
-#include "base/threads.h"
 #include "base/rng.h"
+#include "base/threads.h"
 #include "nn/cpu/kernels.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */

@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "base/threads.h"
 #include "base/rng.h"
+#include "base/threads.h"
 #include "nn/nn.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */
