@@ -15,7 +15,7 @@
 #include "image/picture_rows.h"
 
 /* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */
-enum { MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
+enum { MOST_SIDE = 1000000, MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
 
 static status check_plain(const char *path)
 {
@@ -50,6 +50,9 @@ static status look_at(const char *path, picture_kind *kind)
 status picture_check_size(const char *path, long long width, long long height)
 {
     if (width < 1 || height < 1) return fail(ERROR_INPUT, "cannot read %s: it has no pixels", path);
+    if (width > MOST_SIDE || height > MOST_SIDE) /* a row of which is too much to hold */
+        return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
+                    path, width, height, MOST_SIDE);
     if (width <= MOST_PIXELS / height) return OK;
     return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d million; make it smaller first",
                 path, width, height, MOST_PIXELS / 1000000);

@@ -265,6 +265,7 @@ static void write_wide_png(const char *path, int width, int height)
     assert_non_null(f);
     assert_non_null(row);
     png_init_io(png, f);
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_compression_level(png, 1);
     png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -299,6 +300,18 @@ static void what_is_too_large_is_read_at_a_reduced_size(void **state)
     assert_int_equal(img_read_mask(scratch_path("wide.png"), &mask), OK);
     assert_true(mask.width == 10001 && mask.height == 3); /* as the photograph it is for */
     img_free(&mask);
+}
+
+static void rows_too_long_to_hold_are_refused(void **state)
+{
+    (void)state;
+    img color;
+    write_wide_png(scratch_path("long.png"), 1000001, 1);
+    assert_int_equal(img_read(scratch_path("long.png"), &color, NULL), ERROR_INPUT);
+    assert_non_null(strstr(status_message(), "1000001 x 1 pixels, more than 1000000 a side"));
+    write_wide_png(scratch_path("long.png"), 1000000, 1);
+    assert_int_equal(img_read(scratch_path("long.png"), &color, NULL), OK);
+    img_free(&color);
 }
 
 /* Two of one pixel, the first of colour 0 of a table of two, the other of colour 1. */
@@ -348,6 +361,7 @@ int main(void)
         in_scratch(pages_of_one_size_are_refused_for_which_is_meant),
         in_scratch(a_tiff_of_16_bits_whose_exif_says_srgb_is_decoded),
         in_scratch(what_is_too_large_is_read_at_a_reduced_size),
+        in_scratch(rows_too_long_to_hold_are_refused),
         in_scratch(the_first_picture_of_an_animation_is_read),
         in_scratch(what_was_decoded_as_a_whole_is_reduced_alike),
     };
