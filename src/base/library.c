@@ -3,9 +3,13 @@
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
-static bool load(const library *l)
+enum { REASON = 256 };
+
+/* Writes the reason why not where it fails. */
+static bool load(const library *l, char reason[REASON])
 {
     void *handle = dlopen(l->file, RTLD_LAZY | RTLD_LOCAL);
     bool found = handle != NULL;
@@ -15,16 +19,19 @@ static bool load(const library *l)
         memcpy(l->functions[i].into, &function, sizeof function);
         found = function != NULL;
     }
+    const char *why = found ? NULL : dlerror(); /* which names the library or the function */
+    if (why) snprintf(reason, REASON, "%s", why);
     return found;
 }
 
 status library_need(library *l)
 {
     static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+    char reason[REASON] = "is it installed?";
     if (atomic_load(&l->loaded)) return OK;
     pthread_mutex_lock(&one_at_a_time);
-    bool found = atomic_load(&l->loaded) || load(l);
+    bool found = atomic_load(&l->loaded) || load(l, reason);
     atomic_store(&l->loaded, found);
     pthread_mutex_unlock(&one_at_a_time);
-    return found ? OK : fail(ERROR_DEVICE, "the library %s cannot be loaded: is it installed?", l->file);
+    return found ? OK : fail(ERROR_DEVICE, "the library %s cannot be loaded: %s", l->file, reason);
 }

@@ -1,5 +1,5 @@
 /* Shared libraries that a program loads when it needs them. One that is linked starts with every program, whether it is
- * called or not: libvips and the hundred libraries behind it take 20 ms, LAPACK 6 (it starts threads).
+ * called or not: libvips and the hundred libraries behind it take 20 ms.
  *
  *     static struct { __typeof__(cbrt) *cbrt; } maths;
  *     static const library_function wanted[] = {{"cbrt", &maths.cbrt}};

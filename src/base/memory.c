@@ -48,6 +48,12 @@ void memory_free(void *block)
         free(from.whole);
 }
 
+bool memory_is_left(size_t bytes)
+{
+    void *whole = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return whole != MAP_FAILED && munmap(whole, bytes) == 0;
+}
+
 void memory_prefer_large_pages(void *block, size_t bytes)
 {
     if (!block || bytes < LEAST_BLOCK) return;

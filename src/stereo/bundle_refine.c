@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "stereo/bundle.h"
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 
 /* Priors in outliers: of a light's logarithm of distance off the lights' mean; of a bend and a twist of slope 1 between
  * neighbouring cells, each times the number of lights; of the mean depth. */
@@ -340,7 +340,7 @@ static bool solve_step(equations *y, double damping)
     memcpy(y->step, y->right, n * sizeof *y->step);
     for (size_t i = 0; i < n; i++)
         y->damped[i * n + i] += damping * (y->matrix[i * n + i] + shared_damping * mean[i >= y->corners]) + 1e-9;
-    return lapack_solve_positive(y->damped, y->size, y->step);
+    return dense_solve_positive(y->damped, y->size, y->step);
 }
 
 static void take_step(bundle *b, const equations *y)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 #include "stereo/light_check.h"
 
 /* Pixels and values that are looked at. */
@@ -27,7 +27,7 @@ static const double much_burnt_out = 0.05;
 
 static void doubt_directions(const pst_capture *c, warnings *out)
 {
-    double m[9] = {0}, spread[3];
+    double m[9] = {0}, spread[6];
     int away = 0;
     for (int k = 0; k < c->count; k++) {
         vec3 d = c->light[k].direction;
@@ -42,7 +42,7 @@ static void doubt_directions(const pst_capture *c, warnings *out)
             "%d of %d lights stand behind the object (z below 0), where they light nothing that is seen: z of a "
             "direction points toward the camera",
             away, c->count);
-    if (lapack_eigen(m, 3, false, spread) && spread[0] < alike * alike * spread[2])
+    if (dense_eigen(m, 3, false, spread) && spread[0] < alike * alike * spread[2])
         warnings_add(out, "lights_alike",
                      "the lights come from nearly one direction or one plane, which enlarges every error of the "
                      "pictures: light the object from more sides");

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 #include "stereo/lobe_fit.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
@@ -150,7 +150,7 @@ static status solve_form(intensities_job *job)
 {
     int n = job->sample.lights;
     scale_form(job);
-    if (!lapack_eigen(job->form, n, true, job->eigenvalue))
+    if (!dense_eigen(job->form, n, true, job->eigenvalue))
         return fail(ERROR_INPUT, "the lights' intensities cannot be told from these pictures");
     double least = fmax(job->eigenvalue[0], 1e-12);
     memset(job->next, 0, (size_t)n * sizeof *job->next);
@@ -212,12 +212,12 @@ static status job_new(const pst_problem *p, size_t sample, intensities_job *job)
     size_t n = (size_t)job->sample.lights;
     job->problem = p;
     job->level = calloc(2 * job->sample.count, sizeof *job->level);
-    job->form = malloc(n * (n + 3) * sizeof *job->form);
+    job->form = malloc(n * (n + 4) * sizeof *job->form);
     if (!job->level || !job->form) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
     job->ratio = job->level + job->sample.count;
     job->own = job->form + n * n;
     job->eigenvalue = job->own + n;
-    job->next = job->eigenvalue + n;
+    job->next = job->eigenvalue + 2 * n;
     start_weights(job);
     return OK;
 }

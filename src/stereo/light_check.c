@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 #include "stereo/light_turns.h"
 
 enum { WORDS = 256, FEWEST = 4, PAIRED = 64 };
@@ -237,8 +237,7 @@ static status check_all(check *c, warnings *out)
 status pst_check_lights(const pst_capture *c, const pst_surface *s, warnings *out)
 {
     check all = {.capture = c};
-    status result = lapack_begin();
-    if (result == OK) result = pst_light_fit_new(c, s, &all.fit);
+    status result = pst_light_fit_new(c, s, &all.fit);
     if (result != OK) return result;
     result = check_all(&all, out);
     free(all.light);

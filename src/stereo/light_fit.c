@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/shrink.h"
 
@@ -172,7 +172,7 @@ static double explained_by(const pst_light_fit *f, const double *along)
 
 double pst_light_fit_unexplained(const pst_light_fit *f, const vec3 *light, int without)
 {
-    double m[9] = {0}, eigenvalue[3], explained = 0;
+    double m[9] = {0}, eigenvalue[6], explained = 0;
     vec3 l[PST_CHECKED_PICTURES];
     for (int k = 0; k < f->count; k++) {
         l[k] = k == without ? (vec3){0, 0, 0} : light[f->picture[k]];
@@ -180,7 +180,7 @@ double pst_light_fit_unexplained(const pst_light_fit *f, const vec3 *light, int 
         for (int j = 0; j < 9; j++)
             m[j] += v[j / 3] * v[j % 3];
     }
-    if (!lapack_eigen(m, 3, true, eigenvalue)) return 1;
+    if (!dense_eigen(m, 3, true, eigenvalue)) return 1;
     for (int axis = 0; axis < 3; axis++) {
         double along[PST_CHECKED_PICTURES];
         if (!(eigenvalue[axis] > 1e-9 * eigenvalue[2])) continue;
@@ -194,12 +194,12 @@ double pst_light_fit_unexplained(const pst_light_fit *f, const vec3 *light, int 
 double pst_light_fit_least(const pst_light_fit *f, int without)
 {
     size_t n = (size_t)f->count;
-    double *m = malloc(n * n * sizeof *m), value[PST_CHECKED_PICTURES], left = 0;
+    double *m = malloc(n * n * sizeof *m), value[2 * PST_CHECKED_PICTURES], left = 0;
     if (!m) return 0;
     memcpy(m, f->gram, n * n * sizeof *m);
     for (size_t k = 0; without >= 0 && k < n; k++)
         m[k * n + (size_t)without] = m[(size_t)without * n + k] = 0;
-    bool found = lapack_eigen(m, (int)n, false, value);
+    bool found = dense_eigen(m, (int)n, false, value);
     for (size_t k = 0; found && k + 3 < n; k++)
         left += fmax(value[k], 0);
     free(m);

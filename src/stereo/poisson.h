@@ -10,7 +10,7 @@
  *
  * minimizes  Σ weight (x_j − x_i − target)²  over pairs of neighbours  +  Σ pull (x_i − pulled_to)².
  *
- * Up to POISSON_DIRECT unknowns by sparse Cholesky factorization (CHOLMOD, ordered by AMD or METIS); above it by
+ * Up to POISSON_DIRECT unknowns by sparse Cholesky factorization (CHOLMOD); above it by
  * conjugate gradients preconditioned with a W-cycle over blocks of 2 × 2, 4 × 4 and on, in which what jumps and slits
  * part stays apart, the coarsest level factorized. Memory is about 110 bytes an unknown (12 million: 1.3 GB). Where
  * that does not converge, as on a band that winds to and fro, all unknowns are factorized, in about a kilobyte each. */

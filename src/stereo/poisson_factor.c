@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/library.h"
+#include "base/memory.h"
 #include "stereo/poisson_level.h"
 
 /* Loaded when it is first needed. */
@@ -30,6 +31,8 @@ static const library_function wanted[] = {
     {"cholmod_free_dense", &cholmod.free_dense},
 };
 static library libcholmod = {.file = MERLIN_CHOLMOD, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
+
+static const size_t for_blas = (size_t)512 << 20; /* bytes: a buffer is a quarter of it */
 
 struct poisson_factor {
     int count;
@@ -70,6 +73,18 @@ static void fill(poisson_factor *f, const poisson_graph *g)
         }
 }
 
+/* Supernodes go through a BLAS, and OpenBLAS waits for ever where it gets no memory; METIS ends the program. Up to
+ * POISSON_DIRECT unknowns neither is quicker. */
+static void start(cholmod_common *common, int count)
+{
+    cholmod.start(common);
+    common->print = 0;
+    if (count > POISSON_DIRECT && memory_is_left(for_blas)) return;
+    common->supernodal = CHOLMOD_SIMPLICIAL;
+    common->nmethods = 1;
+    common->method[0].ordering = CHOLMOD_AMD;
+}
+
 status poisson_factor_new(const poisson_graph *g, poisson_factor **out)
 {
     *out = NULL;
@@ -78,8 +93,7 @@ status poisson_factor_new(const poisson_graph *g, poisson_factor **out)
     poisson_factor *f = calloc(1, sizeof *f);
     if (!f) return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", g->count);
     f->count = g->count;
-    cholmod.start(&f->common);
-    f->common.print = 0;
+    start(&f->common, f->count);
     size_t n = (size_t)g->count, links = (size_t)g->start[n] / 2;
     f->matrix = cholmod.allocate_sparse(n, n, n + links, false, true, -1, CHOLMOD_REAL, &f->common);
     if (f->matrix) {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "base/parallel.h"
+#include "stereo/dense.h"
 #include "stereo/field_fit.h"
-#include "stereo/lapack.h"
 #include "stereo/lobe_fit.h"
 #include "stereo/pixel_fit.h"
 
@@ -86,11 +86,11 @@ static void fill_gram(const pst_samples *m, double *gram, size_t *lit)
 status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
 {
     size_t n = (size_t)m->lights;
-    double *gram = calloc(n * n + n, sizeof *gram);
+    double *gram = calloc(n * n + 2 * n, sizeof *gram);
     if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
     fill_gram(m, gram, lit);
     double *eigenvalue = gram + n * n;
-    bool solved = lapack_eigen(gram, m->lights, true, eigenvalue);
+    bool solved = dense_eigen(gram, m->lights, true, eigenvalue);
     double smallest = eigenvalue[n - 3], largest = eigenvalue[n - 1];
     for (size_t j = 0; j < n; j++)
         for (size_t k = 0; k < 3; k++)
@@ -104,11 +104,11 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
 status pst_samples_differ(const pst_samples *m, bool *differ)
 {
     size_t n = (size_t)m->lights, lit;
-    double *gram = calloc(n * n + n, sizeof *gram);
+    double *gram = calloc(n * n + 2 * n, sizeof *gram);
     if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
     fill_gram(m, gram, &lit);
     double *eigenvalue = gram + n * n;
-    bool solved = lapack_eigen(gram, m->lights, false, eigenvalue);
+    bool solved = dense_eigen(gram, m->lights, false, eigenvalue);
     double share = eigenvalue[n - 2] / eigenvalue[n - 1];
     bool noise = n >= 4 && eigenvalue[n - 2] < above_noise * eigenvalue[n - 4];
     *differ = !solved || (share > flattest && (share > flat || !noise));

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/solve_parts.h"
 #include "stereo/unlit.h"
@@ -39,10 +39,10 @@ static void add_square(vec3 v, const double about[3], double m[9])
 status pst_check_directions(const pst_light *light, int count)
 {
     if (count < 3) return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
-    double m[9] = {0}, eigenvalue[3];
+    double m[9] = {0}, eigenvalue[6];
     for (int i = 0; i < count; i++)
         add_square(light[i].direction, (const double[3]){0}, m);
-    if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
+    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
     return OK;
@@ -64,7 +64,7 @@ static status check_known_directions(const pst_light *light, int count)
 /* From any point, lights on a line have their directions in a plane, too. */
 static status check_positions(const pst_light *light, int count)
 {
-    double m[9] = {0}, eigenvalue[3], mean[3] = {0};
+    double m[9] = {0}, eigenvalue[6], mean[3] = {0};
     for (int i = 0; i < count; i++) {
         mean[0] += (double)light[i].position.x / count;
         mean[1] += (double)light[i].position.y / count;
@@ -72,7 +72,7 @@ static status check_positions(const pst_light *light, int count)
     }
     for (int i = 0; i < count; i++)
         add_square(light[i].position, mean, m);
-    if (!lapack_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light positions are not numbers");
+    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light positions are not numbers");
     if (!(eigenvalue[1] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(ERROR_INPUT, "the %d light positions lie on one line; light the object from a third side", count);
     return OK;
@@ -267,8 +267,7 @@ static size_t expected_effort(const pst_problem *p, pst_method method)
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
 {
     *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
-    status s = lapack_begin();
-    if (s == OK) s = check_method(c, out->method);
+    status s = check_method(c, out->method);
     if (s != OK) return s;
     pst_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/lapack.h"
+#include "stereo/dense.h"
 
 enum { PASSES = 8, UNKNOWNS = 6 };
 /* Of the quadric: its smallest axis' share of its largest. */
@@ -38,7 +38,7 @@ static double median_distance(const unit_quadric *q, const vec3 *v, size_t count
 /* vᵀ Q v = 1, linear in the six numbers of Q, weighted by how close the last quadric came (Cauchy). */
 static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *q)
 {
-    double form[36] = {0}, m[6] = {0}, eigenvalue[3];
+    double form[36] = {0}, m[6] = {0}, eigenvalue[6];
     for (size_t i = 0; i < count; i++) {
         double x = (double)v[i].x, y = (double)v[i].y, z = (double)v[i].z;
         double row[6] = {x * x, 2 * x * y, 2 * x * z, y * y, 2 * y * z, z * z};
@@ -49,9 +49,9 @@ static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *
             m[j] += w * row[j];
     }
     double axis[9];
-    bool solved = lapack_solve_positive(form, 6, m);
+    bool solved = dense_solve_positive(form, 6, m);
     memcpy(axis, &(double[9]){m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5]}, sizeof axis);
-    if (!solved || !lapack_eigen(axis, 3, true, eigenvalue) || !(eigenvalue[2] > 0))
+    if (!solved || !dense_eigen(axis, 3, true, eigenvalue) || !(eigenvalue[2] > 0))
         return fail(ERROR_INPUT, "the pictures do not tell lights from surface: are the lights equally strong?");
     for (int j = 0; j < 9; j++) {
         /* not positive: highlights have bent the factors */
