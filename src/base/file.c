@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/leftovers.h"
 #include "base/plain_locale.h"
 
 bool file_exists(const char *path)
@@ -151,7 +152,7 @@ static status check_replaceable(const char *path)
 /* The end of a name that leaves room for what is put in front of it: its ending says which format it has. */
 static const char *end_of_long_name(const char *name)
 {
-    enum { ROOM = 24, MOST = NAME_MAX - ROOM };
+    enum { MOST = NAME_MAX - LEFTOVERS_FRONT };
     size_t length = strlen(name);
     if (length <= MOST) return name;
     name += length - MOST;
@@ -160,15 +161,32 @@ static const char *end_of_long_name(const char *name)
     return name;
 }
 
+static void clear_folder_of(const char *path)
+{
+    char *folder = file_folder_of(path);
+    if (folder) leftovers_clear_once(folder);
+    free(folder);
+}
+
+/* Frees a name that stands for nothing any more. */
+static void forget(char *temporary)
+{
+    leftovers_forget(temporary);
+    free(temporary);
+}
+
 status file_temporary(const char *path, char **temporary)
 {
     const char *name = file_name_of(path);
     char *out = NULL;
     status s = check_replaceable(path);
     if (s != OK) return s;
-    /* the thread's number, which no other thread of any process has: several may write one file */
-    if (asprintf(&out, "%.*s.%ld~%s", (int)(name - path), path, (long)gettid(), end_of_long_name(name)) < 0)
+    char front[LEFTOVERS_FRONT];
+    leftovers_file_front(front);
+    if (asprintf(&out, "%.*s%s%s", (int)(name - path), path, front, end_of_long_name(name)) < 0)
         return fail(ERROR_MEMORY, "no memory for a file name");
+    clear_folder_of(path);
+    leftovers_note(out, 0);
     *temporary = out;
     return OK;
 }
@@ -177,7 +195,7 @@ void file_discard(char *temporary)
 {
     if (!temporary) return;
     unlink(temporary);
-    free(temporary);
+    forget(temporary);
 }
 
 status file_commit(char *temporary, const char *path)
@@ -187,7 +205,7 @@ status file_commit(char *temporary, const char *path)
         s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
         unlink(temporary);
     }
-    free(temporary);
+    forget(temporary);
     return s;
 }
 
@@ -199,7 +217,7 @@ static status write_through_temporary(const char *path, const void *data, size_t
     FILE *f = fopen(temporary, "wb");
     if (!f) {
         s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
-        free(temporary);
+        forget(temporary);
         return s;
     }
     bool written = fwrite(data, 1, size, f) == size;
@@ -243,7 +261,7 @@ status file_print(const char *path, file_printer *print, const void *context)
     FILE *f = fopen(temporary, "wb");
     if (!f) {
         s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
-        free(temporary);
+        forget(temporary);
         return s;
     }
     locale_t before = uselocale(plain_locale());

@@ -51,6 +51,11 @@ static int try_threads(int count)
     return started;
 }
 
+bool threads_are_left(int count)
+{
+    return try_threads(count) == count;
+}
+
 /* ---- how they wait ---- */
 
 /* libgomp's threads spin for milliseconds before they sleep, 300,000 turns, unless there are more of them than

@@ -7,6 +7,8 @@
 #ifndef MERLIN_BASE_THREADS_H
 #define MERLIN_BASE_THREADS_H
 
+#include <stdbool.h>
+
 enum { THREADS_MOST = 1024 };
 
 /* Makes the calling thread's loops ready: no more threads than can be had, and such as sleep soon where there is
@@ -19,5 +21,8 @@ void threads_use(int count);
 
 /* The same for the calling thread alone, and at once. */
 void threads_use_here(int count);
+
+/* Tells if so many more threads could be started now: before libraries are called that end the program otherwise. */
+bool threads_are_left(int count);
 
 #endif

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/messages.h"
 #include "cli/cli.h"
+#include "cli/last_words.h"
 #include "cli/suggest.h"
 #include "image/start.h"
 #include "merlin/merlin.h"
@@ -120,6 +121,7 @@ int main(int argc, char **argv)
     }
     const cli_command *command = find_command(argv[1]);
     if (!command) return refuse_command(argv[1]);
+    last_words_prepare(command->name);
     reuse_memory();
     return finish(command->run(argc - 1, argv + 1));
 }

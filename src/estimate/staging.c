@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/leftovers.h"
 
 struct staging {
     char *folder, *hidden;
@@ -26,6 +27,7 @@ static bool is_input(const staging *t, const char *path)
 
 static void staging_free(staging *t)
 {
+    if (t->hidden) leftovers_forget(t->hidden);
     free(t->folder);
     free(t->hidden);
     free(t);
@@ -71,9 +73,18 @@ static status begin(staging *t)
         return fail(ERROR_OUTPUT, "cannot write: a path of %zu bytes is too long: %s", strlen(t->folder), t->folder);
     t->kept = existing_length(t->folder);
     status s = file_make_folder(t->folder);
+    if (s == OK) leftovers_clear(t->folder);
     if (s == OK && !mkdtemp(t->hidden)) s = fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
     if (s != OK) remove_made(t);
+    if (s == OK) leftovers_note(t->hidden, t->kept ? t->kept : 1);
     return s;
+}
+
+static char *hidden_in(const char *folder)
+{
+    char name[LEFTOVERS_NAME];
+    leftovers_folder_name(name);
+    return file_join(folder, name);
 }
 
 status staging_begin(const char *folder, const char *const *inputs, staging **out)
@@ -82,7 +93,7 @@ status staging_begin(const char *folder, const char *const *inputs, staging **ou
     staging *t = calloc(1, sizeof *t);
     if (!t) return fail(ERROR_MEMORY, "no memory to write %s", folder);
     t->folder = strdup(folder);
-    t->hidden = file_join(folder, ".merlin-XXXXXX");
+    t->hidden = hidden_in(folder);
     if (inputs) memcpy(t->inputs, inputs, sizeof t->inputs);
     status s = t->folder && t->hidden ? begin(t) : fail(ERROR_MEMORY, "no memory to write %s", folder);
     if (s != OK)

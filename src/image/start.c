@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/library.h"
+#include "base/memory.h"
+#include "base/threads.h"
 #include "image/vips_library.h"
 
 static vips_functions functions;
@@ -36,9 +38,20 @@ static void start(void)
     functions.cache_set_max(0);
 }
 
+/* GLib ends the program where it gets no memory or no thread. */
+static status check_room(void)
+{
+    static const size_t some = (size_t)64 << 20;
+    enum { THREADS = 3 };
+    if (!memory_is_left(some)) return fail(ERROR_MEMORY, "no memory for the image library " MERLIN_VIPS);
+    if (!threads_are_left(THREADS)) return fail(ERROR_MEMORY, "no threads for the image library " MERLIN_VIPS);
+    return OK;
+}
+
 status vips_begin(void)
 {
     status s = library_need(&libvips);
+    if (s == OK) s = check_room();
     if (s != OK) return s;
     pthread_once(&once, start);
     return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start");

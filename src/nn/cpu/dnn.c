@@ -4,6 +4,7 @@
 
 #include "nn/cpu/dnn_pack.h"
 
+#include "base/fragile.h"
 #include "base/threads.h"
 
 static const char *reason(dnnl_status_t code)
@@ -90,13 +91,23 @@ status dnn_argument_of(dnn_call *call, const dnn_context *context, int kind, con
     return s;
 }
 
+/* Machine code is made here, in memory that oneDNN does not ask twice about. */
+static status make_primitive(dnn_call *call, const char *what)
+{
+    enum { MOST_CODE = 32 << 20 };
+    status s = fragile_begin("the network's machine code", MOST_CODE);
+    if (s != OK) return s;
+    s = dnn_check(dnnl_primitive_create(&call->primitive, call->description), what);
+    fragile_end();
+    return s;
+}
+
 status dnn_make(dnn_call *call, void *scratch, const dnn_context *context)
 {
     status s = OK;
     if (dnn_scratch_bytes(call))
         s = dnn_argument(call, context, DNNL_ARG_SCRATCHPAD, dnn_query(call, dnnl_query_scratchpad_md), scratch);
-    if (s == OK) s = dnn_check(dnnl_primitive_create(&call->primitive, call->description), "primitive");
-    return s;
+    return s == OK ? make_primitive(call, "primitive") : s;
 }
 
 static status make_reorder(dnn_call *call, const dnn_context *context, dnn_layout from, void *source, dnn_layout to,
@@ -107,8 +118,7 @@ static status make_reorder(dnn_call *call, const dnn_context *context, dnn_layou
         "reorder");
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_FROM, from, source);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_TO, to, target);
-    if (s == OK) s = dnn_check(dnnl_primitive_create(&call->primitive, call->description), "reorder");
-    return s;
+    return s == OK ? make_primitive(call, "reorder") : s;
 }
 
 status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_layout from, void *source,
