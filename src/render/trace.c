@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/threads.h"
 #include "render/embree.h"
 
 struct trace_device {
@@ -28,6 +29,9 @@ static status device_fail(RTCDevice device, const char *what)
 
 status trace_device_new(trace_device **out)
 {
+    *out = NULL;
+    /* TBB behind it ends the program where it gets none */
+    if (!threads_are_left(1)) return fail(ERROR_MEMORY, "no thread for the ray tracer");
     *out = calloc(1, sizeof **out);
     if (!*out) return fail(ERROR_MEMORY, "out of memory for the ray tracer");
     /* samples are parallel, so each hierarchy is built by the thread that wants it */
