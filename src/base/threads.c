@@ -146,10 +146,25 @@ static int grant(int count)
     return threads;
 }
 
+/* OpenMP starts the calling thread's team at its first loop, when other work may have taken what was there: it is
+ * started here, right after another look. */
+static int start_team(int threads)
+{
+    if (threads < 2 || omp_in_parallel()) return threads;
+    threads = try_threads(threads - 1) + 1;
+#pragma omp parallel num_threads(threads)
+    {
+        __asm__ volatile("" ::: "memory"); /* an empty team would not be started */
+    }
+    return threads;
+}
+
 void threads_use_here(int count)
 {
+    bool first = settled.threads == 0;
     settled.change = atomic_load(&changes);
     settled.threads = grant(smaller(count, THREADS_MOST));
+    if (first) settled.threads = start_team(settled.threads);
     omp_set_num_threads(settled.threads);
 }
 
