@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/half.h"
+#include "base/memory.h"
 #include "nn/safetensors_format.h"
 
 /* Files are mapped, not copied. Checkpoints are four times a model, and one that was written must be read again. */
@@ -223,6 +224,8 @@ static bool only_spaces(const char *begin, const char *end)
     return begin == end;
 }
 
+static const size_t for_header = (size_t)16 << 20; /* bytes: more than parsing asks for at once */
+
 static status read_header(st_file *f, const unsigned char *bytes, size_t size)
 {
     uint64_t length = 0;
@@ -234,6 +237,8 @@ static status read_header(st_file *f, const unsigned char *bytes, size_t size)
         return fail(ERROR_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
     const char *header = (const char *)bytes + ST_PREFIX, *end = NULL;
     f->header = cJSON_ParseWithLengthOpts(header, (size_t)length, &end, false);
+    if (!f->header && !memory_is_left(for_header)) /* cJSON does not say why */
+        return fail(ERROR_MEMORY, "no memory to read the header of %s", f->where);
     if (!cJSON_IsObject(f->header) || !only_spaces(end, header + length))
         return fail(ERROR_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);
     f->data = bytes + ST_PREFIX + length;

@@ -14,6 +14,10 @@ else
     for limit in 160 200 300; do
         refuses 1 "no memory" with $limit "$MERLIN" train "$scratch/tiny.json" --data "$scratch/samples" -o "$scratch/lack-$limit" --quiet
     done
+    # the weights' header was said to be no JSON
+    for limit in 150 160 170; do
+        refuses 1 "no memory\|annot allocate memory" with $limit "$MERLIN" estimate "$photo" -o "$scratch/lack" --quiet
+    done
     refuses 1 "no memory" with 300 "$MERLIN" estimate "$photo" --size 256 -o "$scratch/lack" --quiet
     [[ ! -e $scratch/lack ]] || complain "an estimate without memory left a folder"
 fi
