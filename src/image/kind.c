@@ -110,14 +110,20 @@ static bool is_bmp(const unsigned char *head, size_t size)
     return length >= 16 && length <= 124 && little16(head + 26) == 1;
 }
 
+static bool is_space(unsigned char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 /* Text may begin with a letter and a digit, too: a number or a remark follows here. */
 static bool is_pnm(const unsigned char *head, size_t size)
 {
     if (size < 8 || head[0] != 'P') return false;
     if (memcmp(head, "P7\n", 3) == 0) return true;
-    if (!memchr("123456Ff", head[1], 8)) return false;
+    bool is_kind = (head[1] >= '1' && head[1] <= '6') || head[1] == 'F' || head[1] == 'f';
+    if (!is_kind) return false;
     size_t at = 2;
-    while (at < size && memchr(" \t\r\n", head[at], 4))
+    while (at < size && is_space(head[at]))
         at++;
     return at > 2 && at < size && (head[at] == '#' || (head[at] >= '0' && head[at] <= '9'));
 }
@@ -125,7 +131,7 @@ static bool is_pnm(const unsigned char *head, size_t size)
 static bool is_svg(const unsigned char *head, size_t size)
 {
     size_t at = file_text_mark((const char *)head, size);
-    while (at < size && memchr(" \t\r\n", head[at], 4))
+    while (at < size && is_space(head[at]))
         at++;
     return at < size && head[at] == '<' && memmem(head + at, size - at, "<svg", 4);
 }
@@ -146,6 +152,11 @@ img_format img_format_of_head(const void *bytes, size_t size)
     return f;
 }
 
+static bool has_color(unsigned bits)
+{
+    return bits == 15 || bits == 16 || bits == 24 || bits == 32;
+}
+
 /* Truevision's TGA has no mark at its beginning, and not all have one at their end: a head in which all fits, and as
  * many bytes behind it as its pixels need at least. */
 static bool is_tga(FILE *file, const unsigned char *head, size_t size)
@@ -155,9 +166,8 @@ static bool is_tga(FILE *file, const unsigned char *head, size_t size)
     unsigned type = head[2], kind = type & ~(unsigned)RUNS, bits = head[16], map_bits = head[7];
     unsigned long long width = little16(head + 12), height = little16(head + 14), map = little16(head + 5);
     if (kind < 1 || kind > 3 || type > 11 || width == 0 || height == 0 || head[17] & 0xc0) return false;
-    if (kind == MAPPED ? head[1] != 1 || bits != 8 : bits != 8 && bits != 15 && bits != 16 && bits != 24 && bits != 32)
-        return false;
-    if (head[1] ? !memchr("\x0f\x10\x18\x20", (int)map_bits, 4) || map == 0 : map != 0 || map_bits != 0) return false;
+    if (kind == MAPPED ? head[1] != 1 || bits != 8 : bits != 8 && !has_color(bits)) return false;
+    if (head[1] ? !has_color(map_bits) || map == 0 : map != 0 || map_bits != 0) return false;
     unsigned long long pixels = width * height, bytes = (bits + 7) / 8;
     unsigned long long least = type & RUNS ? (pixels + LONGEST_RUN - 1) / LONGEST_RUN * (bytes + 1) : pixels * bytes;
     if (fseeko(file, 0, SEEK_END) != 0) return false;

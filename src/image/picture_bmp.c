@@ -136,6 +136,7 @@ static status make_row(plain_file *f, bmp *b)
     double pixels = (double)width * f->layout.height;
     status s = plain_check(f, is_packed(b) ? pixels / most_of_a_byte : pixels * b->bits / 8);
     if (s != OK) return s;
+    if (b->row_bytes == 0) return plain_damaged(f);
     b->bytes = malloc(b->row_bytes);
     return b->bytes ? OK : fail(ERROR_MEMORY, "no memory to read %s", f->path);
 }
@@ -154,7 +155,7 @@ static status read_head(plain_file *f, bmp *b)
     unsigned behind = length == INFO && b->packing == BITFIELDS         ? 12
                       : length == INFO && b->packing == ALPHA_BITFIELDS ? 16
                                                                         : 0;
-    long palette = (long)(FILE_HEAD + length + behind);
+    long palette = FILE_HEAD + (long)length + (long)behind;
     unsigned claimed = length >= 36 ? plain_little32(info + 32) : 0;
     size_t entry = length == CORE ? 3 : 4;
     if (!read_palette(f, b, palette, (long)pixels, claimed, entry)) return plain_damaged(f);
@@ -187,7 +188,7 @@ static bool put_literal(plain_file *f, bmp *b, int *x, int count)
 {
     int bytes = b->packing == RLE8 ? count : (count + 1) / 2;
     uint8_t codes[256];
-    if (!plain_get(f, codes, (size_t)(bytes + bytes % 2))) return false;
+    if (!plain_get(f, codes, (size_t)bytes + (size_t)(bytes % 2))) return false;
     for (int i = 0; i < count; i++)
         put_index(f, b, x, b->packing == RLE8 ? codes[i] : i % 2 ? codes[i / 2] & 15U : codes[i / 2] >> 4);
     return true;

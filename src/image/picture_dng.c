@@ -130,8 +130,8 @@ static void find_camera(const dng *d, double camera[9], double daylight[3])
             camera[3 * i + j] = 0;
             for (int k = 0; k < 3; k++)
                 camera[3 * i + j] +=
-                    xyz[3 * k + j] *
-                    tiff_real_at(&d->t, first, second ? COLOUR_MATRIX_2 : COLOUR_MATRIX_1, (uint64_t)(3 * i + k));
+                    xyz[3 * k + j] * tiff_real_at(&d->t, first, second ? COLOUR_MATRIX_2 : COLOUR_MATRIX_1,
+                                                  3 * (uint64_t)i + (uint64_t)k);
             sum += camera[3 * i + j];
         }
         for (int j = 0; j < 3; j++)

@@ -16,6 +16,11 @@ typedef struct pnm {
     size_t row_bytes; /* 0 where they are digits */
 } pnm;
 
+static bool is_space(int c)
+{
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
 /* The next character that is no space and in no remark; EOF behind the last. */
 static int next_solid(plain_file *f)
 {
@@ -24,7 +29,7 @@ static int next_solid(plain_file *f)
         int c = getc(f->file);
         if (c == EOF) return EOF;
         if (c == '#') remark = true;
-        if (!remark && !memchr(" \t\r\n\v\f", c, 6)) return c;
+        if (!remark && !is_space(c)) return c;
         if (c == '\n' || c == '\r') remark = false;
     }
     return EOF;
@@ -41,7 +46,7 @@ static bool next_number(plain_file *f, unsigned *out)
         *out = *out * 10 + (unsigned)(c - '0');
     }
     if (c == '#') return ungetc(c, f->file) == c;
-    return c == EOF || memchr(" \t\r\n\v\f", c, 6);
+    return c == EOF || is_space(c);
 }
 
 static bool is_float(const pnm *p)
@@ -129,7 +134,7 @@ static bool read_head(plain_file *f, pnm *p)
 {
     char mark[2];
     if (!plain_get(f, mark, 2)) return false;
-    p->kind = mark[1];
+    p->kind = (unsigned char)mark[1];
     p->unit = 1;
     return p->kind == '7' ? getc(f->file) == '\n' && read_pam_head(f, p)
            : is_float(p)  ? read_float_head(f, p)

@@ -91,11 +91,16 @@ static status read_map(plain_file *f, tga *t, const uint8_t *head)
     return OK;
 }
 
+static bool has_color(int bits)
+{
+    return bits == 15 || bits == 16 || bits == 24 || bits == 32;
+}
+
 static bool is_known(const tga *t, const uint8_t *head)
 {
-    bool colour = t->bits == 15 || t->bits == 16 || t->bits == 24 || t->bits == 32;
-    if (t->kind != MAPPED) return t->kind == TRUE_COLOUR ? colour : t->kind == 3 && (t->bits == 8 || t->bits == 16);
-    return head[1] == 1 && t->bits == 8 && memchr("\x0f\x10\x18\x20", head[7], 4);
+    if (t->kind != MAPPED)
+        return t->kind == TRUE_COLOUR ? has_color(t->bits) : t->kind == 3 && (t->bits == 8 || t->bits == 16);
+    return head[1] == 1 && t->bits == 8 && has_color(head[7]);
 }
 
 static status tga_open(plain_file *f, void **state)
