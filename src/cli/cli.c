@@ -8,12 +8,15 @@
 #include <stdlib.h>
 
 #include "base/messages.h"
+#include "cli/standard_input.h"
 
 static volatile sig_atomic_t interrupted;
 
 int cli_fail(const char *command, status s)
 {
-    fprintf(messages(), "merlin %s: %s\n", command, status_message());
+    char words[1024];
+    standard_input_tell(status_message(), words, sizeof words);
+    fprintf(messages(), "merlin %s: %s\n", command, words);
     return s == ERROR_USAGE ? 2 : 1;
 }
 
@@ -26,6 +29,11 @@ int cli_usage(const char *command, const char *format, ...)
     va_end(args);
     fprintf(messages(), "merlin %s: %s (try merlin %s --help)\n", command, message, command);
     return 2;
+}
+
+int cli_refuse(const char *command, status s)
+{
+    return s == ERROR_USAGE ? cli_usage(command, "%s", status_message()) : cli_fail(command, s);
 }
 
 status cli_int(const char *option, const char *text, long low, long high, long *out)

@@ -26,6 +26,8 @@ int cmd_info(int argc, char **argv);
 int cli_fail(const char *command, status s);
 /* Prints "merlin COMMAND: message (try merlin COMMAND --help)"; returns 2. */
 int cli_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* One of both, for a command's arguments that were refused: cli_usage for ERROR_USAGE, else cli_fail. */
+int cli_refuse(const char *command, status s);
 /* Whole-text numbers within [low, high]; the message names the option. */
 status cli_int(const char *option, const char *text, long low, long high, long *out);
 status cli_float(const char *option, const char *text, double low, double high, double *out);

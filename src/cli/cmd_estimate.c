@@ -1,21 +1,25 @@
 /* merlin estimate: photographs to maps. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "base/progress.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
+#include "cli/standard_input.h"
 #include "estimate/api.h"
 #include "estimate/doubts.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
-    "       merlin estimate FOLDER   [options]\n\n"
+    "       merlin estimate FOLDER   [options]\n"
+    "       merlin estimate - -o DIR [options]     (a photograph from standard input)\n\n"
     "Takes the object of a photograph apart: maps.exr with all maps, albedo.png, normal.png (16-bit, (n + 1)/2),\n"
     "roughness.png, depth.png (near is bright), mask.png, reconstruction.png, overview.png and report.json.\n"
     "Best with photographs taken by the camera's own flash.\n\n"
@@ -45,6 +49,18 @@ typedef struct request {
     merlin_model *model;
 } request;
 
+static status take_standard_input(const request *r, int count, char **photos)
+{
+    for (int i = 0; i < count; i++) {
+        if (strcmp(photos[i], "-") != 0) continue;
+        if (count > 1) return fail(ERROR_USAGE, "a photograph from standard input comes alone");
+        if (!r->output)
+            return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+        return standard_input_take(&photos[i]);
+    }
+    return OK;
+}
+
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
@@ -62,7 +78,7 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    return *argc > 0 ? OK : fail(ERROR_USAGE, "no photograph given");
+    return *argc > 0 ? take_standard_input(r, *argc, *argv) : fail(ERROR_USAGE, "no photograph given");
 }
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
@@ -77,7 +93,7 @@ static status print_json(const photo_job *job, const merlin_maps *maps, const st
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
-    json_line_text(report, "input", job->photo);
+    json_line_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written->at, written->count);
     cJSON_AddNumberToObject(seconds, "start", laps->start);
     cJSON_AddNumberToObject(seconds, "model", laps->model);
@@ -98,10 +114,10 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
     if (r->json)
         s = print_json(job, maps, written, laps);
     else if (!r->quiet)
-        printf("%s: %s/overview.png (%.2f s)\n", job->photo, job->output, laps->total);
+        printf("%s: %s/overview.png (%.2f s)\n", standard_input_name(job->photo), job->output, laps->total);
     warnings doubts = {0};
     doubts_list(maps, &doubts);
-    if (!r->quiet) warnings_print(&doubts, "estimate", job->photo, TOLD);
+    if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
     return s;
 }
 
@@ -149,7 +165,7 @@ static status estimate_one(const request *r, const photo_job *job)
 }
 
 /* The first photograph is read and its object found while the weights are read and the network made ready. */
-static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready)
+static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready, bool *broken)
 {
     merlin_image photo;
     photo_object object;
@@ -161,6 +177,7 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     laps.model = lap(&now);
     if (opened == OK) opened = network_prepare(r->model->network, network_side(r->params.size), r->params.views);
     *ready = opened == OK;
+    *broken = !*ready;
     laps.compile = lap(&now);
     char words[1024];
     if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
@@ -173,20 +190,21 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     return fail(opened, "%s", words);
 }
 
+/* Goes on after a photograph that fails, but not without weights. */
 static int estimate_all(request *r, const photo_list *photos, const char *weights)
 {
     int code = 0;
-    bool ready = false;
+    bool ready = false, broken = false;
     for (size_t i = 0; i < photos->count; i++) {
         const photo_job *job = &photos->at[i];
-        status s = cli_interrupted() ? ERROR_STOPPED
-                   : ready           ? estimate_one(r, job)
-                                     : estimate_first(r, job, weights, &ready);
+        status s = cli_interrupted() ? ERROR_STOPPED : check_photo_and_mask(job->photo, job->mask);
+        if (s == OK) s = check_output(job->output);
+        if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, weights, &ready, &broken);
         if (s == ERROR_STOPPED)
             return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
         if (s == OK) continue;
-        int failed = cli_fail("estimate", s);
-        if (!ready) return failed;
+        cli_fail("estimate", s);
+        if (broken) return 1;
         code = 1;
     }
     return code;
@@ -196,12 +214,13 @@ int cmd_estimate(int argc, char **argv)
 {
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
-    if (parse(&argc, &argv, &r) != OK) return cli_usage("estimate", "%s", status_message());
+    status s = parse(&argc, &argv, &r);
+    if (s != OK) return cli_refuse("estimate", s);
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
     photo_list photos;
     char *weights = NULL;
-    status s = photo_list_make(argv, argc, r.mask, r.output, &photos);
+    s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     s = photo_find_model(r.weights, &weights);
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "base/warnings.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/lamps.h"
@@ -14,6 +15,7 @@
 #include "cli/photo_ahead.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
+#include "cli/standard_input.h"
 #include "cli/stereo_maps.h"
 #include "estimate/api.h"
 #include "estimate/doubts.h"
@@ -27,7 +29,8 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
     "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO is estimated first.\n"
+    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO (or -,\n"
+    "which is standard input and wants -o) is estimated first.\n"
     "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
     "counts as a frame 60 degrees wide.\n\n";
 
@@ -244,7 +247,11 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
     if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
+    s = standard_input_take(*argv);
+    if (s != OK) return s;
     r->input = photo_without_maps_name((*argv)[0]);
+    if (standard_input_is(r->input) && !r->output)
+        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
     return check(r);
 }
 
@@ -296,7 +303,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     warnings doubts = {0};
     find_doubts(job, result, &doubts);
     cJSON *report = report_begin(&doubts);
-    json_line_text(report, "input", r->input);
+    json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
     json_line_files(report, job->output, result->files.at, result->files.count);
     cJSON_AddNumberToObject(report, "lights", (double)job->lamps.count);
     cJSON_AddNumberToObject(report, "orbit", job->orbit);
@@ -315,10 +322,10 @@ static status announce(const request *r, const relight_job *job, const relight_r
 {
     warnings doubts = {0};
     find_doubts(job, result, &doubts);
-    if (!r->quiet) warnings_print(&doubts, "relight", r->input, WARNINGS_MOST);
+    if (!r->quiet) warnings_print(&doubts, "relight", standard_input_name(r->input), WARNINGS_MOST);
     if (r->json) return print_json(r, job, result, seconds);
     if (r->quiet || to_standard_output(r)) return OK;
-    printf("%s: %s (%.2f s", r->input, job->output, seconds);
+    printf("%s: %s (%.2f s", standard_input_name(r->input), job->output, seconds);
     if (fabsf(result->ev) >= 0.005f) printf(", exposure %+.2f EV", (double)result->ev);
     puts(")");
     return OK;
@@ -388,6 +395,8 @@ static status run(request *r)
     char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
     status s = output ? read_lamps(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
+    if (s == OK) s = check_photo_and_mask(r->input, r->mask);
+    if (s == OK && !to_standard_output(r)) s = check_output(output);
     if (s == OK) s = photo_find_model(r->weights, &weights);
     if (s == OK) s = relight(r, weights, output);
     free(weights);
@@ -400,14 +409,15 @@ int cmd_relight(int argc, char **argv)
     request r = {.params = merlin_params_default(), .lamps = lamp_options_new()};
     r.params.stop = cli_interrupted;
     int code = 0;
-    if (parse(&argc, &argv, &r) != OK) {
-        code = cli_usage("relight", "%s", status_message());
+    status s = parse(&argc, &argv, &r);
+    if (s != OK) {
+        code = cli_refuse("relight", s);
     } else if (r.help) {
         fputs(help, stdout);
         fputs(help_on_options, stdout);
     } else {
         cli_catch_interrupts();
-        status s = run(&r);
+        s = run(&r);
         if (s != OK) code = cli_fail("relight", s);
     }
     lamp_options_free(&r.lamps);

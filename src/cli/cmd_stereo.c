@@ -6,11 +6,13 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "cli/stage_bar.h"
+#include "cli/standard_input.h"
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
 #include "cli/stereo_photo.h"
@@ -25,7 +27,7 @@ static const char help[] =
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
     "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
     "under 50 lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
-    "again. calibrate finds light directions from pictures of a ball.\n\n"
+    "again. A PHOTO may be -, standard input. calibrate finds light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
     "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
     "                       unless DIR has a light_intensities.txt with one or three numbers a line\n"
@@ -171,7 +173,11 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
     if (*argc > 1) return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", (*argv)[1]);
+    s = standard_input_take(*argv);
+    if (s != OK) return s;
     r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
+    if (standard_input_is(r->input) && !r->output)
+        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
     return check(r);
 }
 
@@ -201,9 +207,9 @@ static status announce(const request *r, const char *output, const stereo_result
     if (r->json)
         s = json_line_print(report);
     else if (!r->quiet)
-        printf("%s: %s (%.2f s)\n", r->input, output, seconds);
+        printf("%s: %s (%.2f s)\n", standard_input_name(r->input), output, seconds);
     enum { TOLD = 3 };
-    if (!r->quiet) warnings_print(&result->doubts, "stereo", r->input, TOLD);
+    if (!r->quiet) warnings_print(&result->doubts, "stereo", standard_input_name(r->input), TOLD);
     return s;
 }
 
@@ -216,7 +222,7 @@ static status work(request *r, const char *output, cJSON *report)
     stage_bar bar = {.quiet = r->quiet};
     watch shown = {stage_bar_tell, &bar};
     r->folder.watch = r->folder.read.watch = &shown;
-    json_line_text(report, "input", r->input);
+    json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
     status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
     r->folder.watch = r->folder.read.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
@@ -252,7 +258,10 @@ static status run(request *r)
                     r->output);
     char *output = photo_output_inside(r->input, "stereo", r->output);
     cJSON *report = report_begin(NULL);
-    status s = output && report ? work(r, output, report) : fail(ERROR_MEMORY, "no memory for a report");
+    status s = output && report ? OK : fail(ERROR_MEMORY, "no memory for a report");
+    if (s == OK) s = check_photo_and_mask(r->input, r->folder.read.mask);
+    if (s == OK) s = check_output(output);
+    if (s == OK) s = work(r, output, report);
     cJSON_Delete(report);
     free(output);
     return s;
@@ -263,9 +272,10 @@ int cmd_stereo(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "calibrate") == 0) return stereo_calibrate(argc - 1, argv + 1);
     request r = {.params = merlin_params_default()};
     r.params.stop = cli_interrupted;
-    if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo", "%s", status_message());
+    status s = parse(&argc, &argv, &r);
+    if (s != OK) return cli_refuse("stereo", s);
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    status s = run(&r);
+    s = run(&r);
     return s == OK ? 0 : cli_fail("stereo", s);
 }
