@@ -1,242 +1,284 @@
 #include "base/light_list.h"
 
 #include <ctype.h>
-#include <errno.h>
-#include <stdbool.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/plain_locale.h"
+#include "base/light_table.h"
 
-enum { LINE_MAX_LENGTH = 1024, FILE_MAX_SIZE = 1 << 22 };
-static const float LARGEST = 1e6f; /* a kilometre of millimetres, squared well within a float */
-
-typedef struct reader {
-    const char *text, *end, *where;
-    int line;
-    bool lp;        /* the first line held a count */
-    long announced; /* that count */
-} reader;
+enum { FILE_MAX_SIZE = 1 << 22 };
+static const double LARGEST = 1e6; /* a kilometre of millimetres, squared well within a float */
+static const double BRIGHTEST = 1e12;
 
 void light_list_free(light_list *list)
 {
     for (size_t i = 0; list->name && i < list->count; i++)
         free(list->name[i]);
     free(list->name);
-    free(list->length);
     free(list->at);
+    free(list->intensity);
+    free(list->line);
     *list = (light_list){0};
 }
 
-status light_list_add(light_list *list, vec3 light)
+bool light_list_is_unit(const light_list *list)
 {
-    if (list->count >= LIGHT_LIST_MAX) return fail(ERROR_INPUT, "more than %d lights", LIGHT_LIST_MAX);
-    vec3 *larger = realloc(list->at, (list->count + 1) * sizeof *larger);
-    if (!larger) return fail(ERROR_MEMORY, "no memory for %zu lights", list->count + 1);
-    larger[list->count++] = light;
-    list->at = larger;
+    for (size_t i = 0; i < list->count; i++)
+        if (fabsf(vec3_length(list->at[i]) - 1) > 1e-3f) return false;
+    return true;
+}
+
+/* ---- one light ---- */
+
+void light_table_note(light_table *t, const char *format, ...)
+{
+    char *note = t->list->note;
+    size_t length = strlen(note);
+    if (length) length += (size_t)snprintf(note + length, LIGHT_LIST_NOTE - length, "; ");
+    if (length >= LIGHT_LIST_NOTE) return;
+    va_list words;
+    va_start(words, format);
+    vsnprintf(note + length, LIGHT_LIST_NOTE - length, format, words);
+    va_end(words);
+}
+
+/* Room for all that a list may have, for they are few. */
+static status make_room(light_list *list, size_t count)
+{
+    list->at = calloc(count, sizeof *list->at);
+    list->name = calloc(count, sizeof *list->name);
+    list->intensity = calloc(count, sizeof *list->intensity);
+    list->line = calloc(count, sizeof *list->line);
+    if (list->at && list->name && list->intensity && list->line) return OK;
+    return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+}
+
+static status take_number(const light_table *t, const light_words *w, size_t k, float *out)
+{
+    const text_word *word = w->number[k];
+    int length = word->length < 40 ? (int)word->length : 40;
+    if (word->kind != TEXT_NUMBER)
+        return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", t->where, w->line, length, word->at);
+    if (k < 3 && !(fabs(word->value) <= LARGEST))
+        return fail(ERROR_INPUT, "%s:%d: %.*s is out of range (±%g)", t->where, w->line, length, word->at, LARGEST);
+    if (k >= 3 && !(word->value > 0 && word->value < BRIGHTEST))
+        return fail(ERROR_INPUT, "%s:%d: an intensity must be above zero, not %.*s", t->where, w->line, length,
+                    word->at);
+    *out = (float)word->value;
     return OK;
 }
 
-/* The name of the light that was added last, and its direction's length. */
-static status add_name(light_list *list, const char *word, real length)
+static status take_name(const light_words *w, char **out)
 {
-    real *longer = realloc(list->length, list->count * sizeof *longer);
-    if (longer) {
-        list->length = longer;
-        list->length[list->count - 1] = length;
-    }
-    char **larger = longer ? realloc(list->name, list->count * sizeof *larger) : NULL;
-    if (larger) {
-        list->name = larger;
-        list->name[list->count - 1] = strdup(word);
-    }
-    if (larger && list->name[list->count - 1]) return OK;
-    list->count--;
-    return fail(ERROR_MEMORY, "no memory for %zu lights", list->count + 1);
+    *out = strndup(w->name ? w->name : "", w->name ? w->name_length : 0);
+    return *out ? OK : fail(ERROR_MEMORY, "no memory for a name");
 }
 
-/* The next line without its comment and outer blanks into line; false at the end of the text. */
-static status next_line(reader *r, char line[LINE_MAX_LENGTH], bool *found)
+status light_table_add(light_table *t, const light_words *w)
 {
-    *found = r->text < r->end;
-    if (!*found) return OK;
-    r->line++;
-    const char *stop = memchr(r->text, '\n', (size_t)(r->end - r->text));
-    const char *begin = r->text, *end = stop ? stop : r->end;
-    r->text = stop ? stop + 1 : r->end;
-    if (memchr(begin, 0, (size_t)(end - begin))) return fail(ERROR_INPUT, "%s:%d: not a text file", r->where, r->line);
-    for (const char *c = begin; c < end; c++) /* in a name it is no comment */
-        if (*c == '#' && (c == begin || strchr(" \t", c[-1]))) end = c;
-    while (begin < end && strchr(" \t\r\v\f", *begin))
-        begin++;
-    while (begin < end && strchr(" \t\r\v\f", end[-1]))
-        end--;
-    if (end - begin >= LINE_MAX_LENGTH) return fail(ERROR_INPUT, "%s:%d: the line is too long", r->where, r->line);
-    memcpy(line, begin, (size_t)(end - begin));
-    line[end - begin] = 0;
+    light_list *list = t->list;
+    float v[6] = {0, 0, 0, 1, 1, 1};
+    for (size_t k = 0; k < w->count; k++) {
+        status s = take_number(t, w, k, &v[k]);
+        if (s != OK) return s;
+    }
+    if (w->count == 4) v[4] = v[5] = v[3];
+    size_t i = list->count;
+    list->at[i] = vec3_of(v);
+    list->intensity[i] = vec3_of(v + 3);
+    list->line[i] = w->line;
+    status s = take_name(w, &list->name[i]);
+    if (s == OK) list->count++;
+    return s;
+}
+
+/* ---- what stands before the lights ---- */
+
+bool light_table_is_file(const char *name, size_t length)
+{
+    enum { LONGEST_ENDING = 5 };
+    size_t letters = 0;
+    while (letters < length && isalnum((unsigned char)name[length - 1 - letters]))
+        letters++;
+    if (letters < 2 || letters > LONGEST_ENDING || letters + 1 >= length) return false;
+    const char *ending = name + length - letters;
+    return ending[-1] == '.' && isalpha((unsigned char)ending[0]);
+}
+
+static bool is_whole(const text_word *w)
+{
+    for (size_t i = 0; i < w->length; i++)
+        if (!isdigit((unsigned char)w->at[i])) return false;
+    return w->length > 0;
+}
+
+static bool is_number_like(const text_word *w)
+{
+    return w->kind != TEXT_WORD;
+}
+
+/* Words, among which whole numbers may be that count something, but no light's numbers and no picture's name. */
+static bool is_heading(const text_row *r)
+{
+    const text_word *w = r->word;
+    if (is_number_like(&w[0])) return false;
+    size_t n = r->count;
+    if (n > 3 && is_number_like(&w[n - 1]) && is_number_like(&w[n - 2]) && is_number_like(&w[n - 3])) return false;
+    for (size_t i = 0; i < n; i++) {
+        if (is_number_like(&w[i]) && !is_whole(&w[i])) return false;
+        if (light_table_is_file(w[i].at, w[i].length)) return false;
+    }
+    return true;
+}
+
+/* A line that holds one whole number alone is the count of an .lp file. */
+static status take_count(light_table *t, const text_row *r)
+{
+    const text_word *w = r->word;
+    int length = w->length < 40 ? (int)w->length : 40;
+    if (!is_whole(w) || !(w->value >= 1))
+        return fail(ERROR_INPUT, "%s:%d: expected x y z or a count of lights, found \"%.*s\"", t->where, r->line,
+                    length, w->at);
+    if (w->value > LIGHT_LIST_MAX)
+        return fail(ERROR_INPUT, "%s:%d: %.*s lights are more than %d", t->where, r->line, length, w->at,
+                    LIGHT_LIST_MAX);
+    t->announced = (long)w->value;
     return OK;
 }
 
-/* Whole-word finite number. */
-static bool word_number(const char *word, float *out)
+/* Skips title, count, names of columns and comments; what is left are lights. */
+static status take_head(light_table *t)
 {
-    char *end;
-    errno = 0;
-    *out = strtof_l(word, &end, plain_locale());
-    return end != word && *end == 0 && isfinite(*out);
-}
-
-/* Where the last of the words that blanks alone part begins; *end moves to its end. */
-static char *last_word_between_blanks(const char *line, char **end)
-{
-    while (*end > line && strchr(" \t", (*end)[-1]))
-        --*end;
-    char *begin = *end;
-    while (begin > line && !strchr(" \t", begin[-1]))
-        begin--;
-    return begin;
-}
-
-/* A number, and in it at most one comma, between digits; *comma is NULL if there is none. */
-static bool may_have_decimal_comma(char *word, const char *end, char **comma)
-{
-    size_t length = (size_t)(end - word);
-    *comma = memchr(word, ',', length);
-    if (!length || strspn(word, "+-0123456789,eE") < length) return false;
-    if (!*comma) return true;
-    return *comma > word && isdigit((unsigned char)(*comma)[-1]) && isdigit((unsigned char)(*comma)[1]) &&
-           !memchr(*comma + 1, ',', (size_t)(end - *comma) - 1);
-}
-
-/* Programs that speak German or French write 0,5 0,25 0,75: six numbers, if every comma parted words. */
-static void replace_decimal_commas(const reader *r, char *line)
-{
-    char *comma[3], *end = line + strlen(line), *word = line;
-    for (int i = 0; i < 3; i++, end = word) {
-        word = last_word_between_blanks(line, &end);
-        if (!may_have_decimal_comma(word, end, &comma[i])) return;
+    for (; t->count; t->row++, t->count--) {
+        const text_row *r = t->row;
+        if (r->comment || is_heading(r)) {
+            if (!r->comment || !t->header || t->header->comment) t->header = r;
+        } else if (r->count == 1 && t->announced == 0) {
+            status s = take_count(t, r);
+            if (s != OK) return s;
+        } else {
+            return OK;
+        }
     }
-    if (r->lp == (word == line)) return; /* a name stands before, or nothing does */
-    for (int i = 0; i < 3; i++)
-        if (comma[i]) *comma[i] = '.';
-}
-
-static bool is_between_words(char c)
-{
-    return c && strchr(" \t\r\v\f,", c);
-}
-
-static int count_words(const char *line)
-{
-    int count = 0;
-    for (const char *c = line; *c; c++)
-        count += !is_between_words(*c) && (c == line || is_between_words(c[-1]));
-    return count;
-}
-
-static char *without_blanks_behind(char *line)
-{
-    char *end = line + strlen(line);
-    while (end > line && is_between_words(end[-1]))
-        end--;
-    *end = 0;
-    return end;
-}
-
-/* Cuts the last word off, which must be there. */
-static char *take_last_word(char *line)
-{
-    char *word = without_blanks_behind(line);
-    while (word > line && !is_between_words(word[-1]))
-        word--;
-    if (word > line) word[-1] = 0;
-    return word;
-}
-
-static status direction_to_position(const reader *r, vec3 *v, real *length)
-{
-    *length = vec3_length(*v);
-    if (!(*length > (real)1e-6)) return fail(ERROR_INPUT, "%s:%d: the direction has no length", r->where, r->line);
-    *v = vec3_add(vec3_scale(*v, 1 / *length), vec3_make(0, 0, -1));
     return OK;
 }
 
-/* Cuts the numbers off: of an .lp file's line the name is left, which may have blanks in it. */
-static status parse_light(const reader *r, char *line, vec3 *out, real *length)
+/* ---- all of them ---- */
+
+static bool has_names(const light_list *list)
 {
-    replace_decimal_commas(r, line);
-    int count = count_words(line);
-    if (r->lp ? count < 4 : count != 3)
-        return fail(ERROR_INPUT, "%s:%d: expected %s, found %d word%s", r->where, r->line,
-                    r->lp ? "a name and x y z" : "x y z", count, count == 1 ? "" : "s");
-    const char *words[3];
-    float v[3];
-    for (int i = 2; i >= 0; i--)
-        words[i] = take_last_word(line);
-    for (int i = 0; i < 3; i++) {
-        if (!word_number(words[i], &v[i]))
-            return fail(ERROR_INPUT, "%s:%d: \"%.40s\" is not a finite number", r->where, r->line, words[i]);
-        if (fabsf(v[i]) > LARGEST)
-            return fail(ERROR_INPUT, "%s:%d: %.40s is out of range (±%g)", r->where, r->line, words[i],
-                        (double)LARGEST);
-    }
-    *out = vec3_of(v);
-    return r->lp ? direction_to_position(r, out, length) : OK;
+    for (size_t i = 0; i < list->count; i++)
+        if (list->name[i][0]) return true;
+    return false;
 }
 
-/* A first line that holds one whole number is the count of an .lp file. */
-static status parse_count(reader *r, const char *word)
+static status check_names(const light_table *t)
 {
-    char *end;
-    errno = 0;
-    long value = strtol(word, &end, 10);
-    if (end == word || *end || errno || value < 1)
-        return fail(ERROR_INPUT, "%s:%d: expected x y z or a count of lights, found \"%.40s\"", r->where, r->line,
-                    word);
-    if (value > LIGHT_LIST_MAX)
-        return fail(ERROR_INPUT, "%s:%d: %ld lights are more than %d", r->where, r->line, value, LIGHT_LIST_MAX);
-    r->lp = true;
-    r->announced = value;
+    const light_list *list = t->list;
+    for (size_t i = 0; i < list->count; i++)
+        if (!list->name[i][0])
+            return fail(ERROR_INPUT, "%s:%d: no name of a picture, where other lines have one", t->where,
+                        list->line[i]);
     return OK;
 }
 
-static status parse_line(reader *r, char *line, bool first, light_list *out)
+static bool are_equally_strong(const light_list *list)
 {
-    if (first && count_words(line) == 1) return parse_count(r, line);
-    vec3 light;
-    real length = 0;
-    status s = parse_light(r, line, &light, &length);
+    for (size_t i = 0; i < list->count; i++)
+        if (vec3_length(vec3_sub(list->intensity[i], vec3_make(1, 1, 1))) > 0) return false;
+    return true;
+}
+
+static void forget_names(light_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        free(list->name[i]);
+    free(list->name);
+    list->name = NULL;
+}
+
+static status check_directions(const light_table *t)
+{
+    const light_list *list = t->list;
+    for (size_t i = 0; i < list->count; i++)
+        if (!(vec3_length(list->at[i]) > (real)1e-6))
+            return fail(ERROR_INPUT, "%s:%d: the direction has no length", t->where, list->line[i]);
+    return OK;
+}
+
+/* Names the last one, which may be where the file was cut. */
+static status check_count(const light_table *t)
+{
+    const light_list *list = t->list;
+    if (t->announced == 0 || (size_t)t->announced == list->count) return OK;
+    const char *name = list->name ? list->name[list->count - 1] : "";
+    return fail(ERROR_INPUT, "%s: the first line says %ld lights, but there are %zu%s%.80s: correct that number",
+                t->where, t->announced, list->count, *name ? ", the last one for " : "", name);
+}
+
+static status take_lights(light_table *t)
+{
+    light_list *list = t->list;
+    bool done = false;
+    status s = make_room(list, t->count > 3 ? t->count : LIGHT_LIST_MAX);
+    if (s == OK && t->header) s = light_table_by_header(t, &done);
+    if (s == OK && !done) s = light_table_by_place(t);
     if (s != OK) return s;
-    s = light_list_add(out, light);
-    without_blanks_behind(line);
-    if (s == OK && r->lp) s = add_name(out, line, length);
-    return s == OK ? OK : fail_in(s, "%s:%d", r->where, r->line);
+    if (are_equally_strong(list)) {
+        free(list->intensity);
+        list->intensity = NULL;
+    }
+    if (!has_names(list))
+        forget_names(list);
+    else if ((s = check_names(t)) != OK)
+        return s;
+    list->about_object = t->announced > 0 || file_ends_in(t->where, ".lp");
+    if (list->about_object || list->angles) s = check_directions(t);
+    return s == OK ? check_count(t) : s;
 }
 
-static status parse_lines(reader *r, light_list *out)
+/* Lines that are comments alone have no place among the lights. */
+static status without_comments(const light_table *t, text_row **out)
 {
-    char line[LINE_MAX_LENGTH];
-    bool found, first = true;
-    status s = next_line(r, line, &found);
-    for (; s == OK && found; s = next_line(r, line, &found)) {
-        if (!line[0]) continue;
-        if ((s = parse_line(r, line, first, out)) != OK) break;
-        first = false;
+    text_row *kept = malloc((t->count + 1) * sizeof *kept);
+    if (!kept) return fail(ERROR_MEMORY, "no memory for %s", t->where);
+    size_t count = 0;
+    for (size_t i = 0; i < t->count; i++)
+        if (!t->row[i].comment) kept[count++] = t->row[i];
+    *out = kept;
+    return count <= LIGHT_LIST_MAX ? OK : fail(ERROR_INPUT, "%s: more than %d lights", t->where, LIGHT_LIST_MAX);
+}
+
+static status take_rows(const text_rows *rows, const char *where, light_list *out)
+{
+    light_table t = {.where = where, .row = rows->row, .count = rows->count, .list = out};
+    status s = take_head(&t);
+    if (s == OK && t.count == 0) s = fail(ERROR_INPUT, "%s: no lights in it (expected x y z a line)", where);
+    text_row *kept = NULL;
+    if (s == OK) s = without_comments(&t, &kept);
+    if (s == OK) {
+        size_t count = 0;
+        for (size_t i = 0; i < t.count; i++)
+            count += !t.row[i].comment;
+        t.row = kept;
+        t.count = count;
+        s = take_lights(&t);
     }
-    if (s != OK) return s;
-    if (r->lp && (size_t)r->announced != out->count)
-        return fail(ERROR_INPUT, "%s: the first line says %ld lights, but there are %zu", r->where, r->announced,
-                    out->count);
-    return out->count ? OK : fail(ERROR_INPUT, "%s: no lights in it (one x y z a line)", r->where);
+    free(kept);
+    return s;
 }
 
 status light_list_parse(const char *text, size_t size, const char *where, light_list *out)
 {
     *out = (light_list){0};
-    reader r = {.text = text + file_text_mark(text, size), .end = text + size, .where = where};
-    status s = parse_lines(&r, out);
+    text_rows rows;
+    status s = text_rows_parse(text, size, where, &rows);
+    if (s != OK) return s;
+    s = take_rows(&rows, where, out);
+    text_rows_free(&rows);
     if (s != OK) light_list_free(out);
     return s;
 }

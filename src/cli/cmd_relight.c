@@ -288,6 +288,8 @@ static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
     doubts_list(job->maps, doubts);
+    for (size_t i = 0; i < job->lamps.noticed.count; i++)
+        warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
     if (result->burnt == 0) return;
     char of_several[96] = "";
     if (result->pictures > 1)

@@ -129,20 +129,43 @@ status lamp_take_color(const char *text, void *into)
     return OK;
 }
 
+/* The directions of other programs' lists would be places behind the camera. */
+static void note_list(const char *path, const light_list *list, lamp_options *lamps)
+{
+    bool behind = list->count > 1 && !list->about_object && !list->angles && light_list_is_unit(list);
+    for (size_t i = 0; i < list->count && behind; i++)
+        behind = list->at[i].z > 0;
+    if (behind)
+        warnings_add(&lamps->noticed, "lights_behind_camera",
+                     "the lights in %s are all of length 1 and behind the camera (z above 0), as directions are, and "
+                     "were taken for places: an .lp file lists directions",
+                     path);
+    if (list->note[0]) warnings_add(&lamps->noticed, "lights_list", "%s: %s", path, list->note);
+}
+
+static status add_listed(const light_list *list, size_t i, float near, lamp_options *lamps)
+{
+    const vec3 object = {0, 0, -1};
+    vec3 direction = light_list_direction(list, i);
+    lamp l = lamp_at(list->at[i]);
+    if (list->about_object || list->angles)
+        l = near > 0 ? lamp_at(vec3_fma(object, near, direction)) : lamp_toward(direction);
+    status s = add(lamps, l);
+    if (s != OK || !list->intensity) return s;
+    lamp_style *style = &lamps->style[lamps->count - 1];
+    style->color = vec3_mul(style->color, list->intensity[i]);
+    restyle(lamps);
+    return OK;
+}
+
 status lamp_read_list(const char *path, float near, lamp_options *lamps)
 {
     light_list list;
     status s = light_list_read(path, &list);
     if (s != OK) return s;
-    const vec3 object = {0, 0, -1};
-    for (size_t i = 0; i < list.count && s == OK; i++) {
-        if (!list.name) {
-            s = add(lamps, lamp_at(list.at[i]));
-            continue;
-        }
-        vec3 direction = light_list_direction(&list, i);
-        s = add(lamps, near > 0 ? lamp_at(vec3_fma(object, near, direction)) : lamp_toward(direction));
-    }
+    note_list(path, &list, lamps);
+    for (size_t i = 0; i < list.count && s == OK; i++)
+        s = add_listed(&list, i, near, lamps);
     light_list_free(&list);
     return s;
 }

@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "base/warnings.h"
 #include "optics/light.h"
 
 typedef struct lamp_style {
@@ -22,6 +23,7 @@ typedef struct lamp_options {
     lamp *at;
     lamp_style *style; /* of each */
     size_t count;
+    warnings noticed;  /* of the list that was read */
     lamp_style common; /* of those that follow, of a list's, a dome's and an orbit's */
 } lamp_options;
 
@@ -35,8 +37,8 @@ status lamp_take_direction(const char *text, void *into);
 status lamp_take_power(const char *text, void *into);
 status lamp_take_color(const char *text, void *into);
 
-/* Adds the lights of a file: places, x y z a line; or an .lp file's directions, whose lights are distant or, where near
- * is not 0, so far from (0, 0, -1), where the object is. */
+/* Adds the lights of a file, as strong as it says: places, x y z a line; or directions, of an .lp file or as angles,
+ * whose lights are distant or, where near is not 0, so far from (0, 0, -1), where the object is. */
 status lamp_read_list(const char *path, float near, lamp_options *lamps);
 /* The tint of a style. */
 vec3 lamp_tint(const lamp_style *style);

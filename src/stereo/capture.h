@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "base/vec.h"
+#include "base/warnings.h"
 #include "base/watch.h"
 #include "image/image.h"
 
@@ -53,6 +54,7 @@ typedef struct pst_capture {
     pst_lighting lighting;
     bool intensities_known;
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
+    warnings noticed;     /* by whoever read it: pst_doubts passes them on */
     pst_camera camera;
     int reduced;     /* so many of the first picture's pixels a side became one: 1 for most */
     int frames;      /* of an animation in the first picture's file, whose first is read: 1 for most */

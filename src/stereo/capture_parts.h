@@ -3,6 +3,7 @@
 #ifndef MERLIN_STEREO_CAPTURE_PARTS_H
 #define MERLIN_STEREO_CAPTURE_PARTS_H
 
+#include "base/light_list.h"
 #include "stereo/capture.h"
 
 enum { PST_MOST_PICTURES = 4096 };
@@ -21,8 +22,16 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
  * none. Free it. */
 status pst_find_ambient(const char *folder, const char *picture, char **path);
 
-/* The folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights. */
+/* Reads the folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights or,
+ * behind a picture's name, for that one's; or a light in each column. */
 status pst_read_intensities(const char *folder, pst_capture *c);
+
+/* Sets the lights of a capture that has their pictures' names. */
+status pst_set_lights(const char *path, const light_list *list, const pst_read_options *options, pst_capture *c);
+/* Reads the folder's light_intensities.txt, if there is one; refuses it beside a list that says the same. */
+status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c);
+/* Reads a list of lights, and which pictures of the folder they belong to. */
+status pst_read_light_list(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c);
 
 status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c);
 status pst_read_luces(const char *folder, pst_capture *c);

@@ -157,10 +157,13 @@ static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
     if (c->frames > 1)
         warnings_add(out, "first_frame", "%s is an animation, of whose %d pictures the first alone was read",
                      c->name[0], c->frames);
+    for (size_t i = 0; i < c->noticed.count; i++)
+        warnings_add(out, c->noticed.at[i].code, "%s", c->noticed.at[i].message);
     if (c->lights_in_order)
-        warnings_add(out, "lights_in_order",
-                     "none of the pictures that the .lp file names is there: its lights were taken in the order of the "
-                     "pictures' names");
+        warnings_add(
+            out, "lights_in_order",
+            "none of the pictures that the lights' list names is there: its lights were taken in the order of the "
+            "pictures' names");
     if (s->strengths_unsure)
         warnings_add(
             out, "strengths_unsure",

@@ -3,29 +3,48 @@
 
 #include "base/file.h"
 #include "base/light_list.h"
+#include "base/text.h"
 #include "stereo/array_file.h"
 #include "stereo/capture_parts.h"
+#include "stereo/match_lights.h"
 
 enum { TEXT_MOST = 1 << 22 };
+
+/* Puts a zero behind the line and leaves out what programs put around a name. */
+static char *take_line(char **rest)
+{
+    char *name = *rest, *end = name + strcspn(name, "\n");
+    *rest = end + (*end != 0);
+    while (name < end && strchr(" \t\"'", *name))
+        name++;
+    while (end > name && strchr(" \t\"',;", end[-1]))
+        end--;
+    *end = 0;
+    return name;
+}
+
+static status set_name(const char *path, const char *folder, const char *name, int i, pst_capture *c)
+{
+    char *found = NULL;
+    status s = pst_match_name(folder, name, &found);
+    if (s == OK && !found) s = fail(ERROR_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
+    for (int k = 0; k < i && s == OK; k++)
+        if (strcmp(c->name[k], found) == 0) s = fail(ERROR_INPUT, "%s names %.80s twice", path, found);
+    if (s == OK) s = pst_capture_set_name(c, (size_t)i, found);
+    free(found);
+    return s;
+}
 
 /* One file name a line, blanks around it left out, no folders: a list may not lead out of its folder. */
 static status take_names(char *text, const char *path, const char *folder, pst_capture *c)
 {
-    char *rest = NULL;
     int count = 0;
-    for (char *name = strtok_r(text, "\r\n", &rest); name; name = strtok_r(NULL, "\r\n", &rest)) {
-        name += strspn(name, " \t");
-        size_t length = strlen(name);
-        while (length > 0 && strchr(" \t", name[length - 1]))
-            name[--length] = 0;
+    for (char *rest = text; *rest;) {
+        const char *name = take_line(&rest);
         if (!*name) continue;
         if (strchr(name, '/')) return fail(ERROR_INPUT, "%s: \"%.80s\" is not a plain file name", path, name);
-        if (count < c->count) {
-            if (!file_is_in(folder, name))
-                return fail(ERROR_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
-            status s = pst_capture_set_name(c, (size_t)count, name);
-            if (s != OK) return s;
-        }
+        status s = count < c->count ? set_name(path, folder, name, count, c) : OK;
+        if (s != OK) return s;
         count++;
     }
     if (count == c->count) return OK;
@@ -34,54 +53,45 @@ static status take_names(char *text, const char *path, const char *folder, pst_c
 
 static status read_names(const char *path, const char *folder, pst_capture *c)
 {
-    char *text;
+    char *bytes, *text = NULL;
     size_t size;
-    status s = file_read(path, TEXT_MOST, &text, &size);
+    status s = file_read(path, TEXT_MOST, &bytes, &size);
     if (s != OK) return s;
-    s = take_names(text + file_text_mark(text, size), path, folder, c);
+    s = text_decode(bytes, size, path, &text);
+    free(bytes);
+    if (s == OK) s = take_names(text, path, folder, c);
     free(text);
     return s;
 }
 
-/* From filenames.txt; where there is none, in the order of their names, as readers of the later sets take them. */
-static status take_pictures(const char *folder, const char *lights, size_t count, pst_capture *c)
-{
-    char *path = file_join(folder, "filenames.txt");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    status s = OK;
-    if (file_exists(path)) {
-        s = pst_capture_reserve(c, count);
-        if (s == OK) s = read_names(path, folder, c);
-    } else {
-        s = pst_take_pictures(folder, false, lights, count, c);
-    }
-    free(path);
-    return s;
-}
-
-static status read_directions(const char *path, const char *folder, pst_capture *c)
+/* By filenames.txt, unless the list has names itself. */
+static status read_named(const char *directions, const char *names, const char *folder, pst_capture *c)
 {
     light_list list;
-    status s = light_list_read(path, &list);
+    status s = light_list_read(directions, &list);
     if (s != OK) return s;
-    if (list.name) s = fail(ERROR_INPUT, "%s: expected x y z a line, not an .lp file", path);
-    if (s == OK) s = take_pictures(folder, path, list.count, c);
-    for (size_t i = 0; i < list.count && s == OK; i++) {
-        c->light[i].direction = vec3_normalize(list.at[i]);
-        if (!(vec3_length(c->light[i].direction) > 0.5f))
-            s = fail(ERROR_INPUT, "%s: the direction of light %zu has no length", path, i + 1);
+    if (list.name) {
+        s = pst_match_lights(folder, directions, &list, c);
+    } else {
+        s = pst_capture_reserve(c, list.count);
+        if (s == OK) s = read_names(names, folder, c);
     }
+    if (s == OK) s = pst_set_lights(directions, &list, &(pst_read_options){0}, c);
+    if (s == OK) s = pst_read_strengths(folder, directions, list.intensity, c);
     light_list_free(&list);
     return s;
 }
 
+/* Where there is no filenames.txt, pictures are in the order of their names, as readers of the later sets take them. */
 status pst_read_diligent(const char *folder, pst_capture *c)
 {
-    char *directions = file_join(folder, "light_directions.txt");
-    if (!directions) return fail(ERROR_MEMORY, "no memory for a file name");
-    c->lighting = PST_DISTANT;
-    status s = read_directions(directions, folder, c);
-    if (s == OK) s = pst_read_intensities(folder, c);
+    char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
+    status s = directions && names ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    if (s == OK && file_exists(names))
+        s = read_named(directions, names, folder, c);
+    else if (s == OK)
+        s = pst_read_light_list(folder, directions, &(pst_read_options){0}, c);
+    free(names);
     free(directions);
     return s;
 }

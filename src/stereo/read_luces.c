@@ -2,13 +2,13 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text_rows.h"
 #include "image/read.h"
 #include "stereo/array_file.h"
 #include "stereo/capture_parts.h"
 #include "stereo/luces.h"
-#include "stereo/text_numbers.h"
 
-enum { TEXT_MOST = 1 << 22, CAMERA_NUMBERS = 7 };
+enum { TEXT_MOST = 1 << 22, CAMERA_NUMBERS = 7, NUMBERS_MOST = 16 };
 static const double LARGEST = 1e7; /* mm or pixels: ten kilometres is no desk */
 
 void luces_free(luces_params *p)
@@ -23,7 +23,29 @@ static vec3 turn(const double v[3])
     return vec3_make((real)v[0], (real)-v[1], (real)-v[2]);
 }
 
-static status check_range(const text_numbers *t)
+typedef struct numbers {
+    const char *where;
+    int line, count; /* no numbers: the line begins with something else, as headers do */
+    double value[NUMBERS_MOST];
+} numbers;
+
+static status numbers_of(const text_row *r, const char *where, numbers *out)
+{
+    *out = (numbers){.where = where, .line = r->line};
+    if (r->comment || r->word[0].kind == TEXT_WORD) return OK;
+    for (size_t i = 0; i < r->count; i++) {
+        const text_word *w = &r->word[i];
+        if (w->kind != TEXT_NUMBER)
+            return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", where, r->line,
+                        (int)(w->length < 40 ? w->length : 40), w->at);
+        if (i == NUMBERS_MOST)
+            return fail(ERROR_INPUT, "%s:%d: more than %d numbers on a line", where, r->line, NUMBERS_MOST);
+        out->value[out->count++] = w->value;
+    }
+    return OK;
+}
+
+static status check_range(const numbers *t)
 {
     for (int i = 0; i < t->count; i++)
         if (!(t->value[i] >= -LARGEST && t->value[i] <= LARGEST))
@@ -36,7 +58,7 @@ static bool is_whole(double x, double low, double high)
     return x >= low && x <= high && floor(x) == x;
 }
 
-static status parse_camera(const text_numbers *t, luces_params *p)
+static status parse_camera(const numbers *t, luces_params *p)
 {
     const double *v = t->value;
     if (t->count != CAMERA_NUMBERS)
@@ -57,7 +79,7 @@ static status parse_camera(const text_numbers *t, luces_params *p)
 
 /* position, direction, intensity (1 or 3), attenuation; the data set's own files end their lines with a 0 besides,
  * which its code does not read */
-static status parse_light(const text_numbers *t, pst_light *out)
+static status parse_light(const numbers *t, pst_light *out)
 {
     const double *v = t->value;
     if (t->count < 8 || t->count > 11)
@@ -78,34 +100,42 @@ static status parse_light(const text_numbers *t, pst_light *out)
     return OK;
 }
 
-static status parse_lines(text_numbers *t, luces_params *p)
+static status take_camera(const numbers *t, luces_params *p)
 {
-    bool found;
-    int lights = 0;
-    status s;
-    while ((s = text_numbers_next(t, &found)) == OK && found) {
-        if (t->count == 0 && lights == 0) continue;
-        if ((s = check_range(t)) != OK) return s;
-        if (!p->light) {
-            if ((s = parse_camera(t, p)) != OK) return s;
-            p->light = calloc((size_t)p->count, sizeof *p->light);
-            if (!p->light) return fail(ERROR_MEMORY, "no memory for %d lights", p->count);
-            continue;
-        }
-        if (lights < p->count && (s = parse_light(t, &p->light[lights])) != OK) return s;
-        lights++;
-    }
+    status s = parse_camera(t, p);
     if (s != OK) return s;
-    if (!p->light) return fail(ERROR_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", t->where);
-    if (lights != p->count) return fail(ERROR_INPUT, "%s: %d lights for %d images", t->where, lights, p->count);
+    p->light = calloc((size_t)p->count, sizeof *p->light);
+    return p->light ? OK : fail(ERROR_MEMORY, "no memory for %d lights", p->count);
+}
+
+static status take_rows(const text_rows *rows, const char *where, luces_params *p)
+{
+    int lights = 0;
+    for (size_t i = 0; i < rows->count; i++) {
+        numbers t;
+        status s = numbers_of(&rows->row[i], where, &t);
+        if (s == OK && t.count == 0 && lights == 0) continue;
+        if (s == OK) s = check_range(&t);
+        if (s != OK) return s;
+        if (!p->light)
+            s = take_camera(&t, p);
+        else if (lights++ < p->count)
+            s = parse_light(&t, &p->light[lights - 1]);
+        if (s != OK) return s;
+    }
+    if (!p->light) return fail(ERROR_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", where);
+    if (lights != p->count) return fail(ERROR_INPUT, "%s: %d lights for %d images", where, lights, p->count);
     return OK;
 }
 
 status luces_parse(const char *text, size_t size, const char *where, luces_params *out)
 {
     *out = (luces_params){0};
-    text_numbers t = text_numbers_at(text, size, where);
-    status s = parse_lines(&t, out);
+    text_rows rows;
+    status s = text_rows_parse(text, size, where, &rows);
+    if (s != OK) return s;
+    s = take_rows(&rows, where, out);
+    text_rows_free(&rows);
     if (s != OK) luces_free(out);
     return s;
 }

@@ -40,19 +40,29 @@ static void plain_lists_are_positions(void **state)
     light_list_free(&lights);
 }
 
-static void lp_directions_become_positions_around_the_object(void **state)
+static void lists_that_begin_with_a_count_are_about_the_object(void **state)
 {
     (void)state;
     light_list lights;
     assert_int_equal(parse("2\na.jpg 0 0 2\nb.jpg 3 0 4\n", &lights), OK);
     assert_int_equal(lights.count, 2);
-    /* straight above the object is the camera; unit lengths to float's precision */
-    assert_float_equal(lights.at[0].z, 0, 1e-6);
-    assert_float_equal(lights.at[1].x, 0.6, 1e-6);
-    assert_float_equal(lights.at[1].z, -0.2, 1e-6);
+    assert_true(lights.about_object);
+    assert_float_equal(lights.at[1].x, 3, 0);
+    assert_float_equal(light_list_direction(&lights, 1).x, 0.6, 1e-6);
     assert_float_equal(light_list_direction(&lights, 1).z, 0.8, 1e-6);
     assert_string_equal(lights.name[0], "a.jpg");
     assert_string_equal(lights.name[1], "b.jpg");
+    light_list_free(&lights);
+    assert_int_equal(parse("1\n0 0 2\n", &lights), OK);
+    assert_true(lights.about_object);
+    assert_null(lights.name);
+    light_list_free(&lights);
+    static const char lp[] = "a.jpg 0 0 2\n";
+    assert_int_equal(light_list_parse(lp, sizeof lp - 1, "dome.LP", &lights), OK);
+    assert_true(lights.about_object);
+    light_list_free(&lights);
+    assert_int_equal(parse(lp, &lights), OK);
+    assert_false(lights.about_object);
     light_list_free(&lights);
 }
 
@@ -86,7 +96,7 @@ static void numbers_may_have_decimal_commas(void **state)
     assert_float_equal(lights.at[0].x, -0.5, 0);
     assert_float_equal(lights.at[1].z, 3, 0);
     light_list_free(&lights);
-    assert_refused("0,5 ,25 1\n", "found 4 words");
+    assert_refused("0,5 ,25 1\n", "write decimal points");
     assert_refused("0,5,5 0 1\n", "found 5 words");
 }
 
@@ -151,7 +161,6 @@ static void lines_of_another_shape_are_refused(void **state)
     (void)state;
     assert_refused("0 0\n", "lights.txt:1");
     assert_refused("0 0 0\n1 2 3 4\n", "lights.txt:2");
-    assert_refused("1\n0 0 1\n", "a name and x y z");
     assert_refused("1\na 0 0 0\n", "no length");
     assert_refused("lights\n", "lights");
 }
@@ -207,7 +216,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_lists_are_positions),
-        cmocka_unit_test(lp_directions_become_positions_around_the_object),
+        cmocka_unit_test(lists_that_begin_with_a_count_are_about_the_object),
         cmocka_unit_test(names_may_have_blanks_and_signs_and_numbers),
         cmocka_unit_test(numbers_may_have_decimal_commas),
         in_scratch(programs_with_decimal_commas_read_the_same),
