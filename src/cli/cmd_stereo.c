@@ -40,8 +40,9 @@ static const char help[] =
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
     "                       near for positions, uncalibrated without lights; auto (default): near with --near,\n"
     "                       else robust; of one photograph near (default) or uncalibrated\n"
-    "      --mask FILE      white on the object (default: mask.png or *.mask.png in DIR, else what\n"
-    "                       is brighter than a dark background)\n"
+    "      --mask FILE      white on the object (default: mask.png, NAME.mask.png, NAME_mask.png or the like in DIR, "
+    "of\n"
+    "                       any picture's kind, else what is brighter than a dark background)\n"
     "      --ambient FILE   a picture without the lights, to subtract (default: ambient.* in DIR)\n"
     "      --linear         8-bit pictures hold linear values, not sRGB\n"
     "      --integrate HOW  ls (default) or edges: depth may jump\n"
@@ -210,7 +211,16 @@ static status announce(const request *r, const char *output, const stereo_result
         printf("%s: %s (%.2f s)\n", standard_input_name(r->input), output, seconds);
     enum { TOLD = 3 };
     if (!r->quiet) warnings_print(&result->doubts, "stereo", standard_input_name(r->input), TOLD);
+    if (!r->quiet) skipped_print(&result->skipped, "stereo", r->input);
     return s;
+}
+
+static void put_words(cJSON *report, const stereo_result *result)
+{
+    warnings all = result->doubts;
+    skipped_warn(&result->skipped, &all);
+    cJSON_AddItemToObject(report, "warnings", warnings_json(&all));
+    if (result->skipped.count) cJSON_AddItemToObject(report, "skipped", skipped_json(&result->skipped));
 }
 
 static status work(request *r, const char *output, cJSON *report)
@@ -233,7 +243,7 @@ static status work(request *r, const char *output, cJSON *report)
         cJSON_AddStringToObject(report, "error_map", result.error_name);
         cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
         cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
-        cJSON_AddItemToObject(report, "warnings", warnings_json(&result.doubts));
+        put_words(report, &result);
         cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
         files.folder = output;

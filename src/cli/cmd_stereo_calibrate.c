@@ -18,7 +18,7 @@ static const char help[] =
     "Finds the direction of each light from pictures of a ball, one picture a light: from the highlight on a chrome\n"
     "ball, from the shading of a matte one. The ball is searched for where there is no mask of it.\n\n"
     "      --sphere KIND  chrome or matte\n"
-    "      --mask FILE    white on the ball (default: mask.png or *.mask.png in DIR, else the ball is\n"
+    "      --mask FILE    white on the ball (default: mask.png or the like in DIR, else the ball is\n"
     "                     searched for)\n"
     "      --linear       8-bit pictures are linear already, not sRGB\n"
     "      --fov DEG      the camera's horizontal field of view (default: as seen from afar)\n"
@@ -74,7 +74,10 @@ static status parse(int *argc, char ***argv, request *r)
 
 static status print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
 {
-    cJSON *report = report_begin(&c->doubts);
+    warnings all = c->doubts;
+    skipped_warn(&c->skipped, &all);
+    cJSON *report = report_begin(&all);
+    if (c->skipped.count) cJSON_AddItemToObject(report, "skipped", skipped_json(&c->skipped));
     json_line_text(report, "input", r->input);
     json_line_files(report, r->output, written->at, written->count);
     cJSON_AddNumberToObject(report, "lights", c->count);
@@ -131,7 +134,10 @@ static status run(request *r)
     cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
     s = write_files(r, &c, &written);
     if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);
-    if (s == OK && !r->quiet) warnings_print(&c.doubts, "stereo calibrate", r->input, 3);
+    if (s == OK && !r->quiet) {
+        warnings_print(&c.doubts, "stereo calibrate", r->input, 3);
+        skipped_print(&c.skipped, "stereo calibrate", r->input);
+    }
     staged_files_free(&written);
     pst_calibration_free(&c);
     return s;

@@ -152,6 +152,8 @@ status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *rep
     if (s != OK) return s;
     cJSON_AddNumberToObject(report, "seconds_read", clock_seconds() - began);
     s = solve(f, &c, out, report);
+    out->skipped = c.skipped;
+    c.skipped = (skipped_files){0};
     pst_capture_free(&c);
     return s;
 }

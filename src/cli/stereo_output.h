@@ -4,6 +4,7 @@
 
 #include <cJSON.h>
 
+#include "base/skipped.h"
 #include "base/warnings.h"
 #include "estimate/staging.h"
 #include "stereo/capture.h"
@@ -17,6 +18,7 @@ typedef struct stereo_result {
     float error_white;               /* shown as white */
     pst_camera camera;
     warnings doubts;
+    skipped_files skipped; /* of the folder */
 } stereo_result;
 
 void stereo_result_free(stereo_result *r);

@@ -15,6 +15,7 @@ void pst_calibration_free(pst_calibration *c)
     free(c->direction);
     free(c->highlight);
     free(c->residual);
+    skipped_free(&c->skipped);
     img_free(&c->brightest);
     *c = (pst_calibration){0};
 }
@@ -353,6 +354,8 @@ status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *opt
     if (s != OK) return s;
     c.camera = options->field_of_view > 0 ? pst_camera_of(c.width, c.height, options->field_of_view) : (pst_camera){0};
     s = calibrate(folder, options, &c, out);
+    out->skipped = c.skipped;
+    c.skipped = (skipped_files){0};
     pst_capture_free(&c);
     if (s != OK) pst_calibration_free(out);
     return s;

@@ -16,7 +16,7 @@ typedef enum pst_ball { PST_CHROME, PST_MATTE } pst_ball;
 
 typedef struct pst_calibrate_options {
     pst_ball ball;
-    const char *mask;    /* of the ball; NULL: mask.png or NAME.mask.png in the folder, else the ball is searched for */
+    const char *mask;    /* of the ball; NULL: the folder's mask.png or the like, else the ball is searched for */
     float field_of_view; /* of the camera, horizontal, degrees; 0: an orthographic view */
     const watch *watch;  /* may be NULL */
     bool linear;         /* 8-bit pictures are linear already */
@@ -37,6 +37,7 @@ typedef struct pst_calibration {
     pst_circle *highlight; /* chrome: centre of each highlight, radius of a disk of its area; NULL for matte */
     float *residual;       /* matte: root mean square over the pixels used, relative to the light; NULL for chrome */
     warnings doubts;       /* circle_unsure, lights_behind */
+    skipped_files skipped; /* of the folder */
     img brightest;         /* 3 channels, linear: the pixelwise maximum, which calibration.png shows */
 } pst_calibration;
 

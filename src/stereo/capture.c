@@ -77,6 +77,7 @@ void pst_capture_free(pst_capture *c)
     free(c->picture);
     free(c->name);
     free(c->light);
+    skipped_free(&c->skipped);
     img_free(&c->mask);
     img_free(&c->normal_true);
     img_free(&c->depth_true);

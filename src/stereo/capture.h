@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/skipped.h"
 #include "base/vec.h"
 #include "base/warnings.h"
 #include "base/watch.h"
@@ -56,16 +57,17 @@ typedef struct pst_capture {
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
     warnings noticed;     /* by whoever read it: pst_doubts passes them on */
     pst_camera camera;
-    int reduced;     /* so many of the first picture's pixels a side became one: 1 for most */
-    int frames;      /* of an animation in the first picture's file, whose first is read: 1 for most */
-    img mask;        /* 1 channel; 1 on the object */
-    img normal_true; /* 3, or empty: ground truth where the layout has one */
-    img depth_true;  /* 1, or empty */
+    int reduced;           /* so many of the first picture's pixels a side became one: 1 for most */
+    int frames;            /* of an animation in the first picture's file, whose first is read: 1 for most */
+    skipped_files skipped; /* of the folder */
+    img mask;              /* 1 channel; 1 on the object */
+    img normal_true;       /* 3, or empty: ground truth where the layout has one */
+    img depth_true;        /* 1, or empty */
 } pst_capture;
 
 typedef struct pst_read_options {
-    const char *lights;  /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
-    const char *mask;    /* NULL: mask.png in the folder, NAME.mask.png, or found (pst_capture_find_mask) */
+    const char *lights; /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
+    const char *mask;   /* NULL: the folder's mask.png or the like (image/folder.h), or found (pst_capture_find_mask) */
     const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
     bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object at the
                           * distance (of unit length: 1 where it is not known), unless all have z below 0 */

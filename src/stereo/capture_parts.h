@@ -22,6 +22,10 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
  * none. Free it. */
 status pst_find_ambient(const char *folder, const char *picture, char **path);
 
+/* Fills c->skipped: what of the folder is neither a picture of the capture, nor its mask or ambient picture, each of
+ * which may be NULL, nor beside them by its name. */
+status pst_list_skipped(const char *folder, const char *mask, const char *ambient, pst_capture *c);
+
 /* Reads the folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights or,
  * behind a picture's name, for that one's; or a light in each column. */
 status pst_read_intensities(const char *folder, pst_capture *c);
@@ -50,8 +54,8 @@ status pst_read_mask(const char *folder, const pst_read_options *options, pst_ca
  * there are (0 where it did not come to that). *path is NULL if there is none. Free it. */
 status pst_find_file(const char *folder, const char *asked, const char *usual, const char *ending, char **path,
                      size_t *found);
-/* The mask's file: the one asked for, mask.png or the first *.mask.png of the folder; *path is NULL if there is none.
- * Free it. */
+/* The mask's file: the one asked for, else the folder's (img_folder_whole_mask); *path is NULL if there is none. Free
+ * it. */
 status pst_find_mask(const char *folder, const char *asked, char **path);
 
 #endif

@@ -1,21 +1,17 @@
 /* Which files of a folder are a capture's pictures. */
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/file.h"
+#include "image/folder.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
-/* Endings of a capture's pictures, and of those that are taken where there are none of the first: telephones leave
- * .jpg and .heic side by side. Raw ones come before what cameras develop, and behind what somebody developed, if that
- * is all of them. */
-static const char *const PICTURES[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", NULL};
-static const char *const DEVELOPED[] = {".png", ".tif", ".tiff", ".exr", NULL};
-static const char *const RAWS[] = {IMAGE_RAW_ENDINGS, NULL};
-static const char *const ANY[] = {IMAGE_ENDINGS, NULL};
-static const char *const OTHERS[] = {".webp", ".heic", ".heif", ".avif", ".hdr", NULL};
+/* Kinds of a capture's pictures; of the later ones are taken where there are none of the first: telephones leave .jpg
+ * and .heic side by side. Raw ones come before what cameras develop, and behind what somebody developed, if that is all
+ * of them. */
+typedef enum picture_class { RAW, USUAL, RARE, CLASSES } picture_class;
 
 static bool has_stem(const char *name, const char *stem)
 {
@@ -25,12 +21,12 @@ static bool has_stem(const char *name, const char *stem)
 
 static bool is_beside_the_capture(const char *name)
 {
-    static const char *const others[] = {"mask",  "ambient",        "normal", "normals",     "normal_gt", "albedo",
-                                         "depth", "relit",          "orbit",  "calibration", "roughness", "overview",
-                                         "error", "reconstruction", "mesh",   "maps"};
+    static const char *const others[] = {"ambient", "normal", "normals",     "normal_gt",     "albedo",   "depth",
+                                         "relit",   "orbit",  "calibration", "roughness",     "overview", "error",
+                                         "mesh",    "maps",   "mask",        "reconstruction"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (has_stem(name, others[i])) return true;
-    return file_ends_in(name, ".mask.png");
+    return false;
 }
 
 static bool is_numbered(const char *name)
@@ -39,13 +35,36 @@ static bool is_numbered(const char *name)
     return digits > 0 && name[digits] == '.';
 }
 
-/* Where to look instead: in the first folder below with pictures, if there is one. */
-static status refuse_empty(const char *folder, bool numbered)
+static picture_class class_of(const img_folder_file *file)
 {
-    char **names;
+    static const char *const rare[] = {".webp", ".heic", ".heif", ".avif", ".hdr", NULL};
+    picture_kind kind = file->format.kind;
+    if (file->is_raw) return RAW;
+    if (kind == PICTURE_PNG || kind == PICTURE_JPEG || kind == PICTURE_TIFF || kind == PICTURE_EXR) return USUAL;
+    return kind == PICTURE_UNKNOWN && !file_ends_in_any(file->name, rare) ? USUAL : RARE;
+}
+
+/* Whether somebody may have developed it, a measurement still. */
+static bool is_developed(const img_folder_file *file)
+{
+    static const char *const by_camera[] = {IMAGE_CAMERA_ENDINGS, NULL};
+    return class_of(file) == USUAL && file->format.kind != PICTURE_JPEG && !file_ends_in_any(file->name, by_camera);
+}
+
+static bool may_be_taken(const img_folder_file *file, bool numbered)
+{
+    return img_folder_is_photo(file) && !is_beside_the_capture(file->name) && (!numbered || is_numbered(file->name));
+}
+
+/* Where to look instead: in the first folder below with pictures, if there is one. */
+static status refuse_empty(const char *folder, bool numbered, const skipped_files *skipped)
+{
+    static const char *const endings[] = {IMAGE_ENDINGS, NULL};
+    char **names, left[256];
     size_t count;
-    status s = file_list_deep(folder, ANY, &names, &count);
+    status s = file_list_deep(folder, endings, &names, &count);
     if (s != OK) return s;
+    skipped_words(skipped, left, sizeof left);
     char *below = NULL, *slash = NULL;
     for (size_t i = 0; i < count && !slash; i++) {
         below = names[i] + strlen(folder);
@@ -56,61 +75,61 @@ static status refuse_empty(const char *folder, bool numbered)
         s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
                  (int)(slash - below), below);
     else
-        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files",
-                 folder, numbered ? "01.png, 02.png and on, " : "");
+        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files%s%s",
+                 folder, numbered ? "01.png, 02.png and on, " : "", *left ? "; " : "", left);
     file_list_free(names, count);
     return s;
 }
 
-/* None is no failure; then *names needs no freeing. */
-static status list_kinds(const char *folder, const char *const *endings, bool numbered, char ***names, size_t *count)
+static status refuse_all(const char *folder, bool numbered, const img_folder *f)
 {
-    status s = file_list(folder, endings, names, count);
-    if (s != OK) return s;
-    size_t kept = 0;
-    for (size_t i = 0; i < *count; i++) {
-        char *path = (*names)[i];
-        const char *name = file_name_of(path);
-        if (is_beside_the_capture(name) || (numbered && !is_numbered(name))) {
-            free(path);
-            continue;
-        }
-        memmove(path, name, strlen(name) + 1);
-        (*names)[kept++] = path;
-    }
-    *count = kept;
-    if (kept) return OK;
-    file_list_free(*names, 0);
-    *names = NULL;
-    return OK;
-}
-
-static status count_kinds(const char *folder, const char *const *endings, bool numbered, size_t *count)
-{
-    char **names;
-    status s = list_kinds(folder, endings, numbered, &names, count);
-    if (s == OK && *count) file_list_free(names, *count);
+    skipped_files skipped = {0};
+    status s = OK;
+    for (size_t i = 0; i < f->count && s == OK; i++)
+        if (!may_be_taken(&f->at[i], false) && !f->at[i].is_mask && !is_beside_the_capture(f->at[i].name))
+            s = img_folder_skip(&f->at[i], "no picture", true, &skipped);
+    if (s == OK) s = refuse_empty(folder, numbered, &skipped);
+    skipped_free(&skipped);
     return s;
 }
 
-static status list_pictures(const char *folder, bool numbered, char ***names, size_t *count)
+/* The class whose pictures are taken; CLASSES without any. */
+static picture_class choose_class(const img_folder *f, bool numbered)
 {
-    static const char *const *const kinds[] = {RAWS, PICTURES, OTHERS};
-    size_t developed = 0, raw = 0;
-    status s = count_kinds(folder, DEVELOPED, numbered, &developed);
-    if (s == OK) s = count_kinds(folder, RAWS, numbered, &raw);
+    size_t count[CLASSES] = {0}, developed = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        if (!may_be_taken(&f->at[i], numbered)) continue;
+        count[class_of(&f->at[i])]++;
+        developed += is_developed(&f->at[i]);
+    }
+    if (count[RAW] > developed) return RAW;
+    return count[USUAL] ? USUAL : count[RARE] ? RARE : CLASSES;
+}
+
+/* Those of one class move to the front, the rest keep no order; *count of them. */
+static status list_pictures(const char *folder, bool numbered, img_folder *f, size_t *count)
+{
     *count = 0;
-    for (int i = raw <= developed; i < 3 && s == OK && *count == 0; i++)
-        s = list_kinds(folder, kinds[i], numbered, names, count);
-    return s == OK && *count == 0 ? refuse_empty(folder, numbered) : s;
+    status s = img_folder_read(folder, f);
+    if (s != OK) return s;
+    picture_class taken = choose_class(f, numbered);
+    for (size_t i = 0; i < f->count; i++) {
+        if (!may_be_taken(&f->at[i], numbered) || class_of(&f->at[i]) != taken) continue;
+        img_folder_file moved = f->at[i];
+        f->at[i] = f->at[*count];
+        f->at[(*count)++] = moved;
+    }
+    if (*count == 0) s = refuse_all(folder, numbered, f);
+    if (s != OK) img_folder_free(f);
+    return s;
 }
 
 status pst_check_pictures(const char *folder)
 {
-    char **names;
+    img_folder f;
     size_t count;
-    status s = list_pictures(folder, false, &names, &count);
-    if (s == OK) file_list_free(names, count);
+    status s = list_pictures(folder, false, &f, &count);
+    if (s == OK) img_folder_free(&f);
     return s;
 }
 
@@ -122,32 +141,73 @@ static bool ends_as(const char *name, const char *other)
 
 status pst_find_ambient(const char *folder, const char *picture, char **path)
 {
-    char **names;
-    size_t count, found = SIZE_MAX;
+    img_folder f;
+    const img_folder_file *found = NULL;
     *path = NULL;
-    status s = file_list(folder, ANY, &names, &count);
+    status s = img_folder_read(folder, &f);
     if (s != OK) return s;
-    for (size_t i = 0; i < count; i++) {
-        const char *name = file_name_of(names[i]);
-        if (has_stem(name, "ambient") && (found == SIZE_MAX || ends_as(name, picture))) found = i;
-    }
-    if (found != SIZE_MAX && !(*path = strdup(names[found]))) s = fail(ERROR_MEMORY, "no memory for a file name");
-    file_list_free(names, count);
+    for (size_t i = 0; i < f.count; i++)
+        if (img_folder_is_photo(&f.at[i]) && has_stem(f.at[i].name, "ambient") &&
+            (!found || ends_as(f.at[i].name, picture)))
+            found = &f.at[i];
+    if (found && !(*path = strdup(found->path))) s = fail(ERROR_MEMORY, "no memory for a file name");
+    img_folder_free(&f);
     return s;
 }
 
 status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c)
 {
-    char **names;
+    img_folder f;
     size_t count;
-    status s = list_pictures(folder, numbered, &names, &count);
+    status s = list_pictures(folder, numbered, &f, &count);
     if (s != OK) return s;
     if (lights && count != wanted)
         s = fail(ERROR_INPUT, "%s has %zu %spictures, but %s has %zu lights; each picture needs one", folder, count,
                  numbered ? "numbered " : "", lights, wanted);
     if (s == OK) s = pst_capture_reserve(c, count);
     for (size_t i = 0; i < count && s == OK; i++)
-        s = pst_capture_set_name(c, i, names[i]);
-    file_list_free(names, count);
+        s = pst_capture_set_name(c, i, f.at[i].name);
+    img_folder_free(&f);
+    return s;
+}
+
+/* ---- what is left aside ---- */
+
+static bool is_picture_of(const pst_capture *c, const char *name)
+{
+    for (int i = 0; i < c->count; i++)
+        if (strcmp(c->name[i], name) == 0) return true;
+    return false;
+}
+
+/* Why a picture is not one of the capture's, whose pictures are of a class. */
+static const char *reason_of(const img_folder *f, const img_folder_file *file, picture_class taken)
+{
+    if (file->is_mask) return "a mask, but another is taken";
+    if (taken == RAW && img_folder_is_beside_raw(f, file)) return "beside a raw picture";
+    return class_of(file) == taken ? "not listed" : "of another kind than the pictures that are taken";
+}
+
+static picture_class class_taken(const img_folder *f, const pst_capture *c)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (f->at[i].is_picture && strcmp(f->at[i].name, c->name[0]) == 0) return class_of(&f->at[i]);
+    return CLASSES;
+}
+
+status pst_list_skipped(const char *folder, const char *mask, const char *ambient, pst_capture *c)
+{
+    img_folder f;
+    status s = img_folder_read(folder, &f);
+    if (s != OK) return s;
+    picture_class taken = class_taken(&f, c);
+    for (size_t i = 0; i < f.count && s == OK; i++) {
+        const img_folder_file *file = &f.at[i];
+        bool other = file->is_picture && !file->is_mask && is_beside_the_capture(file->name);
+        bool used = (mask && file_is_same(file->path, mask)) || (ambient && file_is_same(file->path, ambient));
+        if (used || other || is_picture_of(c, file->name)) continue;
+        s = img_folder_skip(file, reason_of(&f, file, taken), true, &c->skipped);
+    }
+    img_folder_free(&f);
     return s;
 }

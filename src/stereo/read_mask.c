@@ -1,15 +1,23 @@
 #include <stdlib.h>
+#include <string.h>
 
+#include "image/folder.h"
 #include "image/read.h"
 #include "stereo/capture_parts.h"
 
 status pst_find_mask(const char *folder, const char *asked, char **path)
 {
-    size_t others;
-    status s = pst_find_file(folder, asked, "mask.png", ".mask.png", path, &others);
-    bool found = s != OK || *path;
-    /* merlin relight's dome has it so, that other programs do not take it for a picture */
-    return found ? s : pst_find_file(folder, NULL, "mask.webp", ".mask.webp", path, &others);
+    img_folder f = {0};
+    *path = NULL;
+    if (!asked) {
+        status s = img_folder_read(folder, &f);
+        if (s != OK) return s;
+        const img_folder_file *found = img_folder_whole_mask(&f);
+        if (found) asked = found->path;
+    }
+    if (asked) *path = strdup(asked);
+    img_folder_free(&f);
+    return !asked || *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
 }
 
 static status check_mask(const char *path, pst_capture *c)
@@ -45,6 +53,7 @@ status pst_read_mask(const char *folder, const pst_read_options *options, pst_ca
     } else {
         s = find_mask(folder, c);
     }
+    if (s == OK) s = pst_list_skipped(folder, path, options->ambient, c);
     free(path);
     return s;
 }

@@ -358,13 +358,13 @@ static void results_beside_the_pictures_are_none(void **state)
     pst_capture_free(&c);
 }
 
-/* A file's kind is told by its first bytes, so that these may be PNGs. */
+/* A file's kind is told by its first bytes alone. */
 static void rarer_kinds_are_taken_where_they_are_alone(void **state)
 {
     (void)state;
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
     for (int i = 0; i < 3; i++)
-        write_flat((const char *[]){"a.heic", "b.webp", "c.HEIC"}[i], 6, 4, 3, 0.5f, IMG_LINEAR16);
+        write_text((const char *[]){"1.png", "2", "3.txt"}[i], "P2 2 2 255 90 91 92 93\n");
     pst_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
@@ -373,7 +373,70 @@ static void rarer_kinds_are_taken_where_they_are_alone(void **state)
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     assert_string_equal(c.name[0], "a.png");
+    assert_int_equal(c.skipped.count, 3);
+    assert_string_equal(c.skipped.at[1].name, "2");
+    assert_string_equal(c.skipped.at[1].why, "of another kind than the pictures that are taken");
     pst_capture_free(&c);
+}
+
+/* As the masks of many programs are called, which no picture of the capture is. */
+static void a_mask_may_have_any_usual_name(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    static const char *const names[] = {"mask.tif",      "MASK.PNG",       "Mask.jpeg",     "mask.gif",
+                                        "owl.mask.webp", "b_mask.png",     "a-Mask.bmp",    "mask_c.png",
+                                        "c_matte.png",   "b.png.mask.png", "silhouette.png"};
+    img mask;
+    assert_int_equal(img_new(&mask, 6, 4, 1), OK);
+    mask.data[7] = mask.data[8] = 1;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        assert_int_equal(img_write_png(scratch_path("mask"), &mask, IMG_LINEAR8), OK);
+        assert_int_equal(rename(scratch_path("mask"), scratch_path(names[i])), 0);
+        pst_capture c;
+        assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+        assert_int_equal(c.count, 3);
+        assert_float_equal(*img_at(&c.mask, 1, 1), 1, 0);
+        assert_float_equal(*img_at(&c.mask, 3, 3), 0, 0);
+        assert_int_equal(c.skipped.count, 0);
+        pst_capture_free(&c);
+        assert_int_equal(unlink(scratch_path(names[i])), 0);
+    }
+    img_free(&mask);
+}
+
+static void what_is_left_aside_is_listed_with_the_reason(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_flat("mask.png", 6, 4, 1, 1, IMG_LINEAR8);
+    write_flat("mask.TIFF", 6, 4, 1, 1, IMG_LINEAR8);
+    write_text("d.jxl", "\xff\x0a and more");
+    write_text("movie.mov", "no picture");
+    write_text("Thumbs.db", "no picture");
+    write_text(".hidden.png", "no picture");
+    write_flat("normal.png", 6, 4, 3, 0.5f, IMG_SRGB8);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.count, 3);
+    char words[512];
+    skipped_words(&c.skipped, words, sizeof words);
+    assert_string_equal(words,
+                        "3 files skipped: d.jxl (JPEG XL is not read), mask.TIFF (a mask, but another is taken), "
+                        "movie.mov (no picture)");
+    pst_capture_free(&c);
+    write_text("dome.lp", "2\na.png 0 0 1\nb.png 0 3 4\n");
+    assert_int_equal(unlink(scratch_path("lights.txt")), 0);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.skipped.count, 4);
+    assert_string_equal(c.skipped.at[0].name, "c.png");
+    assert_string_equal(c.skipped.at[0].why, "not listed");
+    pst_capture_free(&c);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(unlink(scratch_path((const char *[]){"a.png", "b.png", "c.png"}[i])), 0);
+    assert_int_equal(unlink(scratch_path("dome.lp")), 0);
+    write_text("lights.txt", "0 0 2\n");
+    assert_refused(&PLAIN, "raw files; 2 files skipped: d.jxl (JPEG XL is not read), movie.mov (no picture)");
 }
 
 /* A file's kind is told by its first bytes here, too. */
@@ -464,6 +527,8 @@ int main(void)
         in_scratch(a_mask_is_read_and_must_fit),
         in_scratch(results_beside_the_pictures_are_none),
         in_scratch(rarer_kinds_are_taken_where_they_are_alone),
+        in_scratch(a_mask_may_have_any_usual_name),
+        in_scratch(what_is_left_aside_is_listed_with_the_reason),
         in_scratch(raw_pictures_come_before_what_the_camera_made_of_them),
         in_scratch(black_pictures_are_called_black),
         in_scratch(what_does_not_fit_is_refused_in_one_line),

@@ -1,0 +1,43 @@
+/* Files of a folder that were left aside, each with the reason, so that a person is told of them in one line.
+ *
+ *     skipped_files left = {0};
+ *     status s = skipped_add(&left, "a.jxl", "JPEG XL is not read");
+ *     ...
+ *     skipped_warn(&left, &doubts);      "2 files skipped: a.jxl, b.jxl (JPEG XL is not read)"
+ *     cJSON_AddItemToObject(report, "skipped", skipped_json(&left));
+ *     skipped_free(&left);
+ */
+#ifndef MERLIN_BASE_SKIPPED_H
+#define MERLIN_BASE_SKIPPED_H
+
+#include <cJSON.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "base/warnings.h"
+
+typedef struct skipped_file {
+    char *name; /* in its folder */
+    char *why;  /* without a full stop */
+} skipped_file;
+
+typedef struct skipped_files {
+    skipped_file *at;
+    size_t count;
+} skipped_files;
+
+/* Adds one; both texts are copied. */
+status skipped_add(skipped_files *list, const char *name, const char *why);
+/* Moves those of `more` behind the others. */
+status skipped_append(skipped_files *list, skipped_files *more);
+/* Puts how many there are, and as many names as there is room for, into words; "" without any. */
+void skipped_words(const skipped_files *list, char *words, size_t size);
+/* Adds the warning files_skipped, if there are any. */
+void skipped_warn(const skipped_files *list, warnings *out);
+/* Prints "merlin COMMAND: FOLDER: 2 files skipped: ..." as one line to standard error, if there are any. */
+void skipped_print(const skipped_files *list, const char *command, const char *folder);
+/* Returns an array of objects with file and why; NULL if memory ran out. */
+cJSON *skipped_json(const skipped_files *list);
+void skipped_free(skipped_files *list);
+
+#endif
