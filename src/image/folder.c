@@ -20,9 +20,8 @@ static const char *const copies[] = {".thm", ".bak", ".tmp", ".part", ".crdownlo
 /* Notes that programs keep beside a picture. */
 static const char *const notes[] = {".xmp", ".aae", ".pp3", ".dop", ".thm", ".cos", ".arp", NULL};
 
-/* Data that a capture is read from, or that comes of it. */
-static const char *const data[] = {".txt", ".lp",  ".csv", ".json", ".mat", ".npz", ".npy",
-                                   ".ply", ".obj", ".mtl", ".glb",  ".md",  NULL};
+/* Data that a capture is read from, or that comes of it, beside texts. */
+static const char *const data[] = {".mat", ".npz", ".npy", ".ply", ".glb", NULL};
 
 static bool is_left_by_systems(const char *name)
 {
@@ -142,12 +141,31 @@ const img_folder_file *img_folder_whole_mask(const img_folder *f)
     return best;
 }
 
+static bool is_text(const char *path)
+{
+    char head[IMG_FORMAT_HEAD];
+    FILE *file = file_open(path);
+    if (!file) return false;
+    size_t size = fread(head, 1, sizeof head, file);
+    fclose(file);
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)head[i] < ' ' && !strchr("\t\n\f\r", head[i])) return false;
+    return true;
+}
+
+/* Whether it goes with pictures, so that it is not worth a word. */
+static bool is_beside(const img_folder_file *file, bool capture)
+{
+    if (file->is_picture || file->format.name) return false;
+    if (file_ends_in_any(file->name, notes)) return true;
+    return capture && !file_ends_in_any(file->name, copies) &&
+           (file_ends_in_any(file->name, data) || is_text(file->path));
+}
+
 status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list)
 {
     char unread[64];
-    bool is_note = !file->format.name && (file_ends_in_any(file->name, notes) ||
-                                          (capture && !file->is_picture && file_ends_in_any(file->name, data)));
-    if (is_note) return OK;
+    if (is_beside(file, capture)) return OK;
     if (!file->is_picture) {
         snprintf(unread, sizeof unread, "%s is not read", file->format.name ? file->format.name : "");
         why = file->format.name ? unread : file_ends_in_any(file->name, copies) ? "a copy" : "no picture";

@@ -47,7 +47,7 @@ const img_folder_file *img_folder_mask_of(const img_folder *f, const char *photo
 const img_folder_file *img_folder_whole_mask(const img_folder *f);
 
 /* Adds to a list a file that was left aside, for a reason; what is no picture gets its own. Files that go with pictures
- * are not worth a word: what programs note beside them, and, in a capture, lists of lights and other data. */
+ * are not worth a word: what programs note beside them, and, in a capture, texts and other data. */
 status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list);
 
 #endif
