@@ -149,7 +149,7 @@ static bool is_text(const char *path)
     size_t size = fread(head, 1, sizeof head, file);
     fclose(file);
     for (size_t i = 0; i < size; i++)
-        if ((unsigned char)head[i] < ' ' && !strchr("\t\n\f\r", head[i])) return false;
+        if ((unsigned char)head[i] < ' ' && !memchr("\t\n\f\r", head[i], 4)) return false;
     return true;
 }
 

@@ -412,7 +412,7 @@ static void what_is_left_aside_is_listed_with_the_reason(void **state)
     write_flat("mask.png", 6, 4, 1, 1, IMG_LINEAR8);
     write_flat("mask.TIFF", 6, 4, 1, 1, IMG_LINEAR8);
     write_text("d.jxl", "\xff\x0a and more");
-    write_text("movie.mov", "\1 no picture");
+    assert_int_equal(file_write(scratch_path("movie.mov"), "\0\0\0\x14", 4), OK);
     write_text("notes.txt", "no picture");
     write_text("Thumbs.db", "no picture");
     write_text(".hidden.png", "no picture");
