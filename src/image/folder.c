@@ -143,13 +143,14 @@ const img_folder_file *img_folder_whole_mask(const img_folder *f)
 
 static bool is_text(const char *path)
 {
+    static const char blanks[] = {'\t', '\n', '\f', '\r'};
     char head[IMG_FORMAT_HEAD];
     FILE *file = file_open(path);
     if (!file) return false;
     size_t size = fread(head, 1, sizeof head, file);
     fclose(file);
     for (size_t i = 0; i < size; i++)
-        if ((unsigned char)head[i] < ' ' && !memchr("\t\n\f\r", head[i], 4)) return false;
+        if ((unsigned char)head[i] < ' ' && !memchr(blanks, head[i], sizeof blanks)) return false;
     return true;
 }
 
