@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/utf8.h"
 
 /* Bytes kept free behind the names for ", ... and 1234567 more". */
@@ -115,16 +116,16 @@ static void put_text(cJSON *object, const char *key, const char *text)
     free(valid);
 }
 
-cJSON *skipped_json(const skipped_files *list)
+void skipped_json(const skipped_files *list, const char *folder, cJSON *array)
 {
-    cJSON *all = cJSON_CreateArray();
     for (size_t i = 0; i < list->count; i++) {
         cJSON *one = cJSON_CreateObject();
-        put_text(one, "file", list->at[i].name);
+        char *path = file_join(folder, list->at[i].name);
+        if (path) put_text(one, "file", path);
         put_text(one, "why", list->at[i].why);
-        cJSON_AddItemToArray(all, one);
+        cJSON_AddItemToArray(array, one);
+        free(path);
     }
-    return all;
 }
 
 void skipped_free(skipped_files *list)

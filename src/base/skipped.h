@@ -4,7 +4,7 @@
  *     status s = skipped_add(&left, "a.jxl", "JPEG XL is not read");
  *     ...
  *     skipped_warn(&left, &doubts);      "2 files skipped: a.jxl, b.jxl (JPEG XL is not read)"
- *     cJSON_AddItemToObject(report, "skipped", skipped_json(&left));
+ *     skipped_json(&left, "photos", cJSON_AddArrayToObject(report, "skipped"));
  *     skipped_free(&left);
  */
 #ifndef MERLIN_BASE_SKIPPED_H
@@ -36,8 +36,8 @@ void skipped_words(const skipped_files *list, char *words, size_t size);
 void skipped_warn(const skipped_files *list, warnings *out);
 /* Prints "merlin COMMAND: FOLDER: 2 files skipped: ..." as one line to standard error, if there are any. */
 void skipped_print(const skipped_files *list, const char *command, const char *folder);
-/* Returns an array of objects with file and why; NULL if memory ran out. */
-cJSON *skipped_json(const skipped_files *list);
+/* Adds objects with file, a path in this folder, and why to an array. */
+void skipped_json(const skipped_files *list, const char *folder, cJSON *array);
 void skipped_free(skipped_files *list);
 
 #endif

@@ -24,8 +24,10 @@ static const char help[] =
     "roughness.png, depth.png (near is bright), mask.png, reconstruction.png, overview.png and report.json.\n"
     "Best with photographs taken by the camera's own flash.\n\n"
     "      --mask FILE      a picture of the photograph's size, white on the object, black beside it; for several\n"
-    "                       photographs a folder with NAME.mask.png or NAME.png for each. Without it: in a FOLDER\n"
-    "                       NAME.mask.png, else the photograph's alpha, else the object is searched for\n"
+    "                       photographs a folder with NAME.png, NAME_mask.png or the like for each. Without it:\n"
+    "                       NAME.mask.png, NAME_mask.png, mask_NAME.png or the like beside the photograph NAME, of "
+    "any\n"
+    "                       picture's kind, else the photograph's alpha, else the object is searched for\n"
     "  -o, --output DIR     where to (default: the photograph's name without ending + .merlin); for several\n"
     "                       photographs a folder each inside DIR\n"
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
@@ -47,6 +49,8 @@ typedef struct request {
     merlin_params params;
     bool mesh, json, quiet, help;
     merlin_model *model;
+    const photo_list *photos;
+    bool *told; /* what was left aside of folders */
 } request;
 
 static status take_standard_input(const request *r, int count, char **photos)
@@ -88,13 +92,16 @@ typedef struct lap_times {
     double write, total;
 } lap_times;
 
-static status print_json(const photo_job *job, const merlin_maps *maps, const staged_files *written,
+static status print_json(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
                          const lap_times *laps)
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
     json_line_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written->at, written->count);
+    if (job->mask) json_line_text(report, "mask_file", job->mask);
+    if (!*r->told) photo_list_put(r->photos, report);
+    *r->told = true;
     cJSON_AddNumberToObject(seconds, "start", laps->start);
     cJSON_AddNumberToObject(seconds, "model", laps->model);
     cJSON_AddNumberToObject(seconds, "read", laps->read);
@@ -112,7 +119,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
     enum { TOLD = 3 };
     status s = OK;
     if (r->json)
-        s = print_json(job, maps, written, laps);
+        s = print_json(r, job, maps, written, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s)\n", standard_input_name(job->photo), job->output, laps->total);
     warnings doubts = {0};
@@ -222,6 +229,10 @@ int cmd_estimate(int argc, char **argv)
     char *weights = NULL;
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
+    if (!r.quiet) photo_list_tell(&photos, "estimate");
+    bool told = false;
+    r.photos = &photos;
+    r.told = &told;
     s = photo_find_model(r.weights, &weights);
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
     merlin_model_close(r.model);

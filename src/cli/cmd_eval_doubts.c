@@ -111,6 +111,8 @@ static status list_pictures(const request *r, pictures *p)
     status s = OK;
     if (r->right) s = photo_list_make((char *[]){(char *)r->right}, 1, NULL, NULL, &p->right);
     if (s == OK && r->wrong) s = photo_list_make((char *[]){(char *)r->wrong}, 1, NULL, NULL, &p->wrong);
+    if (!r->quiet) photo_list_tell(&p->right, "eval doubts");
+    if (!r->quiet) photo_list_tell(&p->wrong, "eval doubts");
     if (s == OK && r->data) s = sample_list(r->data, &p->samples, &p->count);
     return s;
 }

@@ -113,6 +113,7 @@ static status list_pictures(run *r, char *const *arguments, int count)
     const request *q = r->request;
     status s = OK;
     if (count > 0) s = photo_list_make(arguments, count, q->mask, NULL, &r->photos);
+    if (!q->quiet) photo_list_tell(&r->photos, "eval masks");
     if (s == OK && q->data) s = sample_list(q->data, &r->samples, &r->sample_count);
     return s;
 }

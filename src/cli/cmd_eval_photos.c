@@ -221,6 +221,7 @@ int eval_photos(int argc, char **argv)
     status s = file_check_writable(r.output);
     if (s == OK) s = photo_list_make(argv, argc, r.mask, NULL, &photos);
     if (s != OK) return cli_fail("eval photos", s);
+    if (!r.quiet) photo_list_tell(&photos, "eval photos");
     cli_catch_interrupts();
     size_t failures = 0;
     s = check_output(&r, &photos);

@@ -215,12 +215,12 @@ static status announce(const request *r, const char *output, const stereo_result
     return s;
 }
 
-static void put_words(cJSON *report, const stereo_result *result)
+static void put_words(cJSON *report, const char *input, const stereo_result *result)
 {
     warnings all = result->doubts;
     skipped_warn(&result->skipped, &all);
     cJSON_AddItemToObject(report, "warnings", warnings_json(&all));
-    if (result->skipped.count) cJSON_AddItemToObject(report, "skipped", skipped_json(&result->skipped));
+    if (result->skipped.count) skipped_json(&result->skipped, input, cJSON_AddArrayToObject(report, "skipped"));
 }
 
 static status work(request *r, const char *output, cJSON *report)
@@ -243,7 +243,7 @@ static status work(request *r, const char *output, cJSON *report)
         cJSON_AddStringToObject(report, "error_map", result.error_name);
         cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
         cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
-        put_words(report, &result);
+        put_words(report, r->input, &result);
         cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
         files.folder = output;

@@ -77,7 +77,7 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     warnings all = c->doubts;
     skipped_warn(&c->skipped, &all);
     cJSON *report = report_begin(&all);
-    if (c->skipped.count) cJSON_AddItemToObject(report, "skipped", skipped_json(&c->skipped));
+    if (c->skipped.count) skipped_json(&c->skipped, r->input, cJSON_AddArrayToObject(report, "skipped"));
     json_line_text(report, "input", r->input);
     json_line_files(report, r->output, written->at, written->count);
     cJSON_AddNumberToObject(report, "lights", c->count);

@@ -1,6 +1,7 @@
 #include "cli/photo_ahead.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "base/progress.h"
 
@@ -34,11 +35,15 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
                   merlin_maps *maps)
 {
-    photo_job job = {.photo = (char *)photo, .mask = (char *)mask};
+    char *own = NULL;
+    status s = mask ? OK : photo_own_mask(photo, &own);
+    if (s != OK) return s;
+    photo_job job = {.photo = (char *)photo, .mask = mask ? (char *)mask : own};
     merlin_image picture;
     photo_object object;
     double seconds;
-    status s = photo_read_object(&job, &picture, &object, &seconds);
+    s = photo_read_object(&job, &picture, &object, &seconds);
+    free(own);
     if (s != OK) return s;
     s = estimate_object(model, &picture, &object, params, maps);
     return s == OK ? OK : fail_in(s, "%s", photo);

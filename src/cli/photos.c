@@ -8,12 +8,9 @@
 
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/json_line.h"
+#include "cli/photo_folder.h"
 #include "estimate/network.h"
-#include "image/read.h"
-
-static const char *const endings[] = {IMAGE_ENDINGS, NULL};
-static const char *const camera_endings[] = {IMAGE_CAMERA_ENDINGS, NULL};
-static const char *const raw_endings[] = {IMAGE_RAW_ENDINGS, NULL};
 
 /* ---- names ---- */
 
@@ -53,35 +50,6 @@ const char *photo_without_maps_name(char *input)
     return input;
 }
 
-static bool is_mask_name(const char *path)
-{
-    size_t stem = stem_length(path);
-    return stem > 5 && strncmp(path + stem - 5, ".mask", 5) == 0;
-}
-
-/* What estimate and stereo write beside maps.exr. */
-static bool is_result_name(const char *path)
-{
-    static const char *const results[] = {"albedo.png",         "depth.png",    "error.png",  "maps.exr",
-                                          "mask.png",           "mesh.png",     "normal.png", "overview.png",
-                                          "reconstruction.png", "roughness.png"};
-    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
-        if (strcmp(file_name_of(path), results[i]) == 0) return true;
-    return false;
-}
-
-/* folder/NAME + suffix if that file exists, else NULL; *memory says whether NULL means no memory. */
-static char *companion(const char *folder, const char *photo, const char *suffix, bool *memory)
-{
-    const char *name = file_name_of(photo);
-    char *stem = format_name(name, stem_length(name), suffix), *path = stem ? file_join(folder, stem) : NULL;
-    free(stem);
-    *memory = path != NULL;
-    if (path && file_exists(path)) return path;
-    free(path);
-    return NULL;
-}
-
 /* ---- the list ---- */
 
 void photo_list_free(photo_list *list)
@@ -91,7 +59,12 @@ void photo_list_free(photo_list *list)
         free(list->at[i].output);
         free(list->at[i].mask);
     }
+    for (size_t i = 0; i < list->folders; i++) {
+        free(list->folder[i].path);
+        skipped_free(&list->folder[i].skipped);
+    }
     free(list->at);
+    free(list->folder);
     *list = (photo_list){0};
 }
 
@@ -100,78 +73,12 @@ static status no_memory(void)
     return fail(ERROR_MEMORY, "no memory for file names");
 }
 
-static status add(photo_list *list, const char *photo)
-{
-    photo_job *larger = realloc(list->at, (list->count + 1) * sizeof *larger);
-    if (!larger) return no_memory();
-    list->at = larger;
-    list->at[list->count] = (photo_job){.photo = strdup(photo)};
-    return list->at[list->count++].photo ? OK : no_memory();
-}
-
-/* Whether the camera left it beside a raw picture of the same name. */
-static bool is_beside_raw(char *const *names, size_t count, const char *photo)
-{
-    size_t stem = stem_length(photo);
-    if (!file_ends_in_any(photo, camera_endings)) return false;
-    for (size_t i = 0; i < count; i++)
-        if (stem_length(names[i]) == stem && strncmp(names[i], photo, stem) == 0 &&
-            file_ends_in_any(names[i], raw_endings))
-            return true;
-    return false;
-}
-
-/* Of a folder of maps nothing: estimate * finds those that it has made the last time. */
-static status add_folder(photo_list *list, const char *folder)
-{
-    char **names;
-    size_t count, photos = 0;
-    bool results = file_is_in(folder, "maps.exr");
-    status s = file_list(folder, endings, &names, &count);
-    if (s != OK) return s;
-    bool raws = false;
-    for (size_t i = 0; i < count; i++)
-        raws |= file_ends_in_any(names[i], raw_endings);
-    for (size_t i = 0; i < count && s == OK; i++) {
-        if (is_mask_name(names[i]) || (results && is_result_name(names[i]))) continue;
-        if (raws && is_beside_raw(names, count, names[i])) continue;
-        s = add(list, names[i]);
-        if (s != OK) break;
-        photo_job *job = &list->at[list->count - 1];
-        bool memory;
-        job->mask = companion(folder, job->photo, ".mask.png", &memory);
-        if (!memory) s = no_memory();
-        photos++;
-    }
-    file_list_free(names, count);
-    if (s == OK && photos == 0 && !results) return fail(ERROR_INPUT, "no photographs in the folder %s", folder);
-    return s;
-}
-
-static status find_masks(photo_list *list, const char *folder)
-{
-    for (size_t i = 0; i < list->count; i++) {
-        photo_job *job = &list->at[i];
-        bool memory;
-        char *mask = companion(folder, job->photo, ".mask.png", &memory);
-        if (!mask && memory) mask = companion(folder, job->photo, ".png", &memory);
-        if (!memory) return no_memory();
-        if (mask && file_is_same(mask, job->photo)) { /* photographs and masks in one folder: this one lacks its own */
-            free(mask);
-            mask = NULL;
-        }
-        if (!mask) return fail(ERROR_INPUT, "no mask for %s in %s", job->photo, folder);
-        free(job->mask);
-        job->mask = mask;
-    }
-    return OK;
-}
-
 static status choose_masks(photo_list *list, const char *mask, bool batch)
 {
     if (!mask) return OK;
-    if (file_is_folder(mask)) return find_masks(list, mask);
+    if (file_is_folder(mask)) return photo_folder_find_masks(list, mask);
     if (batch) return fail(ERROR_USAGE, "--mask wants a folder of masks for several photographs, not %s", mask);
+    free(list->at[0].mask);
     list->at[0].mask = strdup(mask);
     return list->at[0].mask ? OK : no_memory();
 }
@@ -225,6 +132,13 @@ static status choose_output(photo_list *list, size_t i, const char *folder)
     return fail(ERROR_USAGE, "too many photographs are called %s", job->photo);
 }
 
+/* Without a mask that was asked for it has its own. */
+static status add_photo(photo_list *list, const char *photo, const char *mask)
+{
+    status s = photo_list_add(list, photo);
+    return s == OK && !mask ? photo_own_mask(photo, &list->at[list->count - 1].mask) : s;
+}
+
 static status fill_list(char *const *arguments, int count, const char *mask, const char *output, photo_list *out)
 {
     bool batch = count > 1;
@@ -232,8 +146,9 @@ static status fill_list(char *const *arguments, int count, const char *mask, con
     for (int i = 0; i < count && s == OK; i++) {
         bool folder = file_is_folder(arguments[i]);
         batch |= folder;
-        s = folder ? add_folder(out, arguments[i]) : add(out, arguments[i]);
+        s = folder ? photo_folder_add(out, arguments[i]) : add_photo(out, arguments[i], mask);
     }
+    if (s == OK && count > 1 && !mask) photo_list_drop_masks(out);
     if (s == OK && out->count == 0)
         s = fail(ERROR_INPUT, "no photographs, but maps that were made of one in the folder %s", arguments[0]);
     if (s == OK) s = choose_masks(out, mask, batch);
@@ -253,6 +168,32 @@ status photo_list_make(char *const *arguments, int count, const char *mask, cons
     status s = fill_list(arguments, count, mask, output, out);
     if (s != OK) photo_list_free(out);
     return s;
+}
+
+void photo_list_tell(const photo_list *list, const char *command)
+{
+    for (size_t i = 0; i < list->folders; i++)
+        skipped_print(&list->folder[i].skipped, command, list->folder[i].path);
+}
+
+void photo_list_put(const photo_list *list, cJSON *report)
+{
+    warnings told = {0};
+    cJSON *all = cJSON_CreateArray();
+    for (size_t i = 0; i < list->folders; i++) {
+        skipped_warn(&list->folder[i].skipped, &told);
+        skipped_json(&list->folder[i].skipped, list->folder[i].path, all);
+    }
+    for (size_t i = 0; i < told.count; i++) {
+        cJSON *one = cJSON_CreateObject();
+        json_line_text(one, "code", told.at[i].code);
+        json_line_text(one, "message", told.at[i].message);
+        cJSON_AddItemToArray(cJSON_GetObjectItem(report, "warnings"), one);
+    }
+    if (cJSON_GetArraySize(all))
+        cJSON_AddItemToObject(report, "skipped", all);
+    else
+        cJSON_Delete(all);
 }
 
 /* ---- options ---- */

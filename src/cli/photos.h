@@ -2,9 +2,11 @@
 #ifndef MERLIN_CLI_PHOTOS_H
 #define MERLIN_CLI_PHOTOS_H
 
+#include <cJSON.h>
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/skipped.h"
 #include "base/status.h"
 #include "merlin/merlin.h"
 
@@ -13,15 +15,29 @@ typedef struct photo_job {
     char *mask; /* NULL: alpha, or the object is searched for */
 } photo_job;
 
+typedef struct photo_folder {
+    char *path;
+    skipped_files skipped;
+} photo_folder;
+
 typedef struct photo_list {
     photo_job *at;
     size_t count;
+    photo_folder *folder;
+    size_t folders;
 } photo_list;
 
 /* One photograph goes to `output`, by default its name without ending + ".merlin". Several, or a folder's, each go to a
- * folder of their own inside `output`, by default beside them. In a folder NAME.mask.png is the mask of NAME.*; `mask`
- * is one photograph's, or a folder with NAME.mask.png or NAME.png for several. */
+ * folder of their own inside `output`, by default beside them. `mask` is one photograph's, or a folder of masks for
+ * several; without it a photograph's mask is what lies beside it under one of a mask's usual names (docs/pictures.md).
+ */
 status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out);
+/* Prints one line for each folder that something was left aside of. */
+void photo_list_tell(const photo_list *list, const char *command);
+/* Adds to a photograph's report what was left aside of all folders, if anything was. */
+void photo_list_put(const photo_list *list, cJSON *report);
+/* Finds the mask that lies beside a photograph; *mask is malloc'ed, NULL if there is none. */
+status photo_own_mask(const char *photo, char **mask);
 void photo_list_free(photo_list *list);
 
 /* Where what is made of a photograph, or of a folder, goes: asked if that is not NULL, else NAME inside the folder or

@@ -41,6 +41,39 @@ static img_folder_file look_at(char *path)
     return f;
 }
 
+/* Names first: of many photographs that are named one by one each has this asked. */
+static const char *find_by_name(char *const *names, size_t count, const char *photo)
+{
+    const char *best = NULL;
+    int least = 0;
+    for (size_t i = 0; i < count; i++) {
+        const char *name = file_name_of(names[i]);
+        int rank = mask_name_has_word(name) ? mask_name_rank(name, photo, false) : 0;
+        if (rank == 0 || (best && rank >= least) || !look_at(names[i]).is_picture) continue;
+        best = name;
+        least = rank;
+    }
+    return best;
+}
+
+status img_folder_find_own_mask(const char *photo, char **mask)
+{
+    char **names, *folder = file_folder_of(photo);
+    size_t count;
+    *mask = NULL;
+    if (!folder) return fail(ERROR_MEMORY, "no memory for file names");
+    status s = file_list(folder, NULL, &names, &count);
+    if (s == OK) {
+        const char *found = find_by_name(names, count, file_name_of(photo));
+        if (found) /* spelled as the photograph is */
+            *mask = strchr(photo, '/') ? file_join(folder, found) : strdup(found);
+        if (found && !*mask) s = fail(ERROR_MEMORY, "no memory for file names");
+        file_list_free(names, count);
+    }
+    free(folder);
+    return s == ERROR_MEMORY ? s : OK; /* a folder may be closed to us whose files are not */
+}
+
 /* Whether a photograph of its name lies beside it. */
 static bool has_photo(const img_folder *f, const img_folder_file *mask)
 {

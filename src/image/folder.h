@@ -46,6 +46,10 @@ const img_folder_file *img_folder_mask_of(const img_folder *f, const char *photo
 /* Returns the mask that is no single picture's but the folder's: mask.png, else one without a picture of its name. */
 const img_folder_file *img_folder_whole_mask(const img_folder *f);
 
+/* Finds the mask that lies beside a photograph, of which nothing but the path is given; *mask is malloc'ed, NULL if
+ * there is none or its folder cannot be read. */
+status img_folder_find_own_mask(const char *photo, char **mask);
+
 /* Adds to a list a file that was left aside, for a reason; what is no picture gets its own. Files that go with pictures
  * are not worth a word: what programs note beside them, and, in a capture, texts and other data. */
 status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list);

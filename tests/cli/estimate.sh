@@ -186,9 +186,57 @@ mkdir cut
 cp "$MERLIN_SOURCE_DIR/examples/demo.png" cut
 cp disc.merlin/mask.png cut/demo.mask.png # of another size, to be told of
 refuses 1 'the mask is 64×64 pixels, the photograph 512×512' estimate cut "${small[@]}"
-succeeds 'in a FOLDER$' estimate --help
-succeeds "^ *NAME.mask.png, else the photograph's alpha," estimate --help
+succeeds "picture's kind, else the photograph's alpha, else" estimate --help
 rm -r cut
+
+echo "a mask has any usual name, beside a photograph, in its folder and in a folder of masks"
+mkdir named masks
+cp disc.hdr named/cup.hdr
+for mask in cup.mask.png CUP_mask.PNG cup-mask.tif mask_cup.png cup.hdr.mask.jpg cup_alpha.png; do
+    cp disc.merlin/mask.png "named/$mask"
+    for what in named/cup.hdr named "named/$mask named/cup.hdr"; do
+        # shellcheck disable=SC2086
+        succeeds "\"mask\":\"given\".*\"mask_file\":\"named/$mask\"" estimate $what --json "${small[@]}"
+        [ "$(wc -l <"$scratch/stdout")" = 1 ] || complain "$mask was taken for a photograph"
+        grep skipped "$scratch/stderr" && complain "$mask is used, but called skipped"
+        rm -rf out.merlin
+    done
+    mv "named/$mask" "masks/$mask"
+    succeeds "\"mask_file\":\"masks/$mask\"" estimate named --mask masks --json "${small[@]}"
+    rm "masks/$mask"
+done
+for mask in cup.PNG CUP.png cup.hdr.png Mask.png; do
+    cp disc.merlin/mask.png "masks/$mask"
+    succeeds "\"mask_file\":\"masks/$mask\"" estimate named --mask masks --json "${small[@]}"
+    rm "masks/$mask"
+done
+refuses 1 'no mask for named/cup.hdr in masks: looked for cup.mask.png, cup_mask.png, .*, cup.png, cup.hdr.png' \
+    estimate named --mask masks --json "${small[@]}"
+cp disc.merlin/mask.png named/MASK.png
+succeeds '"mask_file":"named/MASK.png"' estimate named --json "${small[@]}"
+cp disc.hdr named/dog.hdr
+succeeds '"mask":"found".*"file":"named/MASK.png","why":"a mask, but of which photograph' estimate named --json "${small[@]}"
+grep -q 'named: 1 file skipped: MASK.png (' "$scratch/stderr" || complain "MASK.png is skipped without a word"
+rm -r named masks out.merlin
+
+echo "a folder's photographs are told by content, and what is skipped is counted and named"
+mkdir mixed
+cp disc.hdr mixed/one.jfif
+cp disc.hdr mixed/two
+echo "no picture" >mixed/notes.txt
+echo "no picture" >mixed/Thumbs.db
+echo "no picture" >mixed/two.xmp
+printf '\377\012 and more' >mixed/three.jxl
+succeeds 'mixed/two: results/two/' estimate mixed --size 64 -o results
+[ "$(head -1 "$scratch/stderr")" = "merlin estimate: mixed: 2 files skipped: notes.txt (no picture), three.jxl (JPEG XL is not read)" ] ||
+    complain "of a mixed folder it said: $(cat "$scratch/stderr")"
+succeeds '"code":"files_skipped".*"file":"mixed/three.jxl","why":"JPEG XL is not read"' estimate mixed --size 64 -o results --json
+[ "$(grep -c files_skipped "$scratch/stdout")" = 1 ] || complain "skipped files are told more than once"
+estimate mixed --size 64 -o results --quiet 2>err
+[ -s err ] && complain "it is not quiet: $(cat err)"
+rm mixed/one.jfif mixed/two
+refuses 1 'no photographs in the folder mixed: 2 files skipped: notes.txt (no picture), three.jxl' estimate mixed --size 64
+rm -r mixed
 
 echo "what was made of photographs is not taken for photographs the next time"
 mkdir again
