@@ -4,10 +4,12 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/file.h"
 #include "base/progress.h"
 #include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
+#include "cli/mesh_file.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
 #include "cli/photo_mesh.h"
@@ -36,7 +38,8 @@ static const char help[] =
     "                       photograph has more than 256 pixels of the object, for finer normals; 256 is quicker\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
-    "      --mesh           write mesh.glb, too: the object's front with albedo, normals and roughness\n"
+    "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
+    "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -48,6 +51,7 @@ typedef struct request {
     const char *mask, *output, *weights;
     merlin_params params;
     bool mesh, json, quiet, help;
+    mesh_names meshes;
     merlin_model *model;
     const photo_list *photos;
     bool *told; /* what was left aside of folders */
@@ -74,7 +78,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
-        {"mesh", .flag = &r->mesh},
+        {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
@@ -82,7 +86,14 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    return *argc > 0 ? take_standard_input(r, *argc, *argv) : fail(ERROR_USAGE, "no photograph given");
+    if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
+    if (r->meshes.count && (*argc > 1 || file_is_folder((*argv)[0])))
+        return fail(
+            ERROR_USAGE,
+            "--mesh %s names the mesh of one photograph; of several --mesh alone writes a mesh.glb in each one's "
+            "folder",
+            r->meshes.at[0]);
+    return take_standard_input(r, *argc, *argv);
 }
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
@@ -136,6 +147,30 @@ static double lap(double *clock)
     return passed;
 }
 
+typedef struct mesh_work {
+    const request *request;
+    const photo_job *job;
+    const char *const *inputs;
+} mesh_work;
+
+static status write_named_mesh(const void *maps, const char *path)
+{
+    return photo_mesh_write(maps, path);
+}
+
+static status write_meshes(const void *context, const merlin_maps *maps, maps_staging *to)
+{
+    const mesh_work *w = context;
+    char path[PATH_MAX];
+    status s = w->request->mesh ? photo_mesh_write(maps, staging_path(to->at[0], "mesh.glb", path)) : OK;
+    for (int i = 0; i < w->request->meshes.count && s == OK; i++) {
+        mesh_file named = {w->request->meshes.at[i], w->job->output, w->inputs, to->at[0], write_named_mesh, maps};
+        s = mesh_file_stage(&named, &to->at[to->count]);
+        to->count += to->at[to->count] != NULL;
+    }
+    return s;
+}
+
 /* From the photograph in memory to files; photograph and object are taken over. */
 static status take_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
                          lap_times *laps)
@@ -143,11 +178,13 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     double began = clock_seconds(), clock = began;
     merlin_maps maps = {0};
     staged_files written = {0};
+    const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
+    mesh_work meshes = {r, job, inputs};
     maps_output to = {.folder = job->output,
-                      .inputs = (const char *const[STAGING_MOST_INPUTS]){job->photo, job->mask},
+                      .inputs = inputs,
                       .stop = cli_interrupted,
-                      .more = r->mesh ? photo_mesh_write : NULL,
-                      .more_name = "mesh.glb",
+                      .more = write_meshes,
+                      .context = &meshes,
                       .written = &written};
     status s = estimate_object(r->model, photo, object, &r->params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);

@@ -18,7 +18,6 @@
 #include "cli/stereo_photo.h"
 #include "estimate/report.h"
 #include "stereo/albedo_scale.h"
-#include "stereo/mesh_write.h"
 
 static const char help[] =
     "usage: merlin stereo DIR [options]\n"
@@ -99,15 +98,6 @@ static status take_integration(const char *name, void *into)
     return OK;
 }
 
-static status take_mesh(const char *path, void *into)
-{
-    stereo_files *files = into;
-    if (files->mesh_count == STEREO_MOST_MESHES)
-        return fail(ERROR_USAGE, "--mesh may be given %d times", STEREO_MOST_MESHES);
-    files->mesh[files->mesh_count++] = path;
-    return pst_mesh_check_name(path);
-}
-
 /* Without lights beside them: relight --dome may have written its pictures there too. */
 static bool holds_maps(const char *folder)
 {
@@ -159,7 +149,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"ambient", .text = &r->folder.read.ambient},
         {"linear", .flag = &r->folder.read.linear},
         {"integrate", .take = take_integration, .into = &r->folder},
-        {"mesh", .take = take_mesh, .into = &r->files},
+        {"mesh", .take = mesh_take_name, .into = &r->files.mesh},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},

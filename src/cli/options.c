@@ -45,6 +45,11 @@ static void join(const cli_option *own, cli_option *all)
     all[n] = (cli_option){0};
 }
 
+static int arguments_of(const cli_option *o)
+{
+    return o->is_value ? optional_argument : o->flag ? no_argument : required_argument;
+}
+
 /* Letters that take values are followed by a colon; the one in front has a missing value told from a wrong option. */
 static void describe(const cli_option *options, struct option *longs, char *letters)
 {
@@ -52,8 +57,7 @@ static void describe(const cli_option *options, struct option *longs, char *lett
     *letters++ = ':';
     for (; options[n].name; n++) {
         const cli_option *o = &options[n];
-        longs[n] = (struct option){
-            .name = o->name, .has_arg = o->flag ? no_argument : required_argument, .val = FIRST_LONG + (int)n};
+        longs[n] = (struct option){.name = o->name, .has_arg = arguments_of(o), .val = FIRST_LONG + (int)n};
         if (!o->letter) continue;
         *letters++ = o->letter;
         if (!o->flag) *letters++ = ':';
@@ -142,7 +146,7 @@ static status take_picture(const cli_option *o, const char *value)
 
 static status take(const cli_option *o, const char *value)
 {
-    if (o->take) return o->take(value, o->into);
+    if (o->take && value) return o->take(value, o->into);
     if (o->folder) return take_folder(o, value);
     if (o->picture) return take_picture(o, value);
     if (o->flag)
@@ -152,6 +156,13 @@ static status take(const cli_option *o, const char *value)
     else
         return take_number(o, value);
     return OK;
+}
+
+/* The value that getopt_long has found, or the next word, which it leaves aside where a value may be missing. */
+static const char *value_of(const cli_option *o, int argc, char *const *argv)
+{
+    bool next = o->is_value && !optarg && optind < argc && o->is_value(argv[optind]);
+    return next ? argv[optind++] : optarg;
 }
 
 status cli_read_options(int *argc, char ***argv, const cli_option *own)
@@ -166,8 +177,9 @@ status cli_read_options(int *argc, char ***argv, const cli_option *own)
     for (int value; (value = getopt_long(*argc, *argv, letters, longs, NULL)) != -1;) {
         if (value == ':' || value == '?') return refuse(options, value, *argv);
         const cli_option *option = find(options, value);
-        if (optarg && !*optarg) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
-        status s = take(option, optarg);
+        const char *given = value_of(option, *argc, *argv);
+        if (given && !*given) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
+        status s = take(option, given);
         if (s != OK) return s;
     }
     *argc -= optind;

@@ -35,6 +35,7 @@ typedef struct cli_option {
     long low, high;
     status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
     void *into;
+    bool (*is_value)(const char *word); /* beside flag and take: the value may be missing, or be the next word */
 } cli_option;
 
 enum { CLI_MOST_OPTIONS = 40 }; /* with those of every command */

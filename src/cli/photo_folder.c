@@ -62,9 +62,18 @@ static status read_folder(const char *folder, img_folder *f, bool *results)
     return OK;
 }
 
+/* An OBJ that --mesh named has brought it along. */
+static bool is_texture(const img_folder *f, const img_folder_file *file)
+{
+    size_t stem = strlen(file->name) - strlen(".png");
+    for (size_t i = 0; i < f->count && file_ends_in(file->name, ".png"); i++)
+        if (file_ends_in(f->at[i].name, ".mtl") && strncmp(f->at[i].name, file->name, stem + 1) == 0) return true;
+    return false;
+}
+
 static bool is_photo(const img_folder *f, const img_folder_file *file)
 {
-    return img_folder_is_photo(file) && !img_folder_is_beside_raw(f, file);
+    return img_folder_is_photo(file) && !img_folder_is_beside_raw(f, file) && !is_texture(f, file);
 }
 
 static bool is_used(const photo_list *list, size_t first, const char *mask)
@@ -76,7 +85,7 @@ static bool is_used(const photo_list *list, size_t first, const char *mask)
 
 static const char *reason_of(const img_folder *f, const img_folder_file *file, size_t photos)
 {
-    if (!file->is_mask) return "beside a raw picture";
+    if (!file->is_mask) return img_folder_is_beside_raw(f, file) ? "beside a raw picture" : "a mesh's texture";
     if (mask_name_is_whole(file->name) && photos > 1) return "a mask, but of which photograph? Call it NAME.mask.png";
     for (size_t i = 0; i < f->count; i++)
         if (is_photo(f, &f->at[i]) && mask_name_rank(file->name, f->at[i].name, false))

@@ -1,5 +1,6 @@
 #include "cli/photo_mesh.h"
 
+#include "base/file.h"
 #include "estimate/api.h"
 #include "estimate/fill.h"
 #include "stereo/mesh_write.h"
@@ -21,8 +22,10 @@ status photo_mesh_write(const merlin_maps *maps, const char *path)
     if (s == OK) s = maps_albedo(maps, least(maps->crop.side, TEXTURE_SIDE), &texture);
     /* or a texture seen small would mix the zeros beside the object, a mirror, into its outline */
     if (s == OK) s = fill_outside(&shape.roughness, &shape.mask);
-    pst_mesh_source source = {&shape.depth, &shape.mask,      &shape.normal,
-                              &texture,     &shape.roughness, pst_camera_of(side, side, SURFACE_FOV)};
+    bool by_vertex = file_ends_in(path, ".ply");
+    pst_mesh_source source = {&shape.depth,     &shape.mask,
+                              &shape.normal,    by_vertex ? &shape.albedo : &texture,
+                              &shape.roughness, pst_camera_of(side, side, SURFACE_FOV)};
     if (s == OK) s = pst_mesh_write(path, &source);
     surface_free(&shape);
     img_free(&texture);

@@ -7,8 +7,8 @@
 #include "base/status.h"
 #include "merlin/merlin.h"
 
-/* path ends in .glb. The front alone: a photograph knows nothing of the back. Camera space, the object about
- * (0, 0, -1). */
+/* path ends in .glb, .obj or .ply. The front alone: a photograph knows nothing of the back. Camera space, the object
+ * about (0, 0, -1). */
 status photo_mesh_write(const merlin_maps *maps, const char *path);
 
 #endif

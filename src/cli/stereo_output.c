@@ -166,54 +166,33 @@ static status write_one(void *context, size_t i)
 
 static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
 {
-    writing w = {files, t, r, files->mesh_count ? MESHES : 0};
+    writing w = {files, t, r, files->mesh.count ? MESHES : 0};
     status s = parallel_try(OUTPUTS - w.first, write_one, &w);
     char path[PATH_MAX];
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }
 
-/* The texture of an OBJ is a picture of the mesh's name: it must not take a map's place, nor lie among the pictures
- * that are solved, where it would replace one of them or be one more the next time. */
-static status check_texture(const stereo_files *files, const staging *maps, const char *mesh, const char *folder)
+static status write_named_mesh(const void *result, const char *path)
 {
-    const char *name = file_name_of(mesh), *input = files->inputs[0];
-    char texture[NAME_MAX + 1], aside[PATH_MAX];
-    if (!file_ends_in(name, ".obj")) return OK;
-    snprintf(texture, sizeof texture, "%.*s.png", (int)strlen(name) - 4, name);
-    if (file_is_same(folder, files->folder) && file_exists(staging_path(maps, texture, aside)))
-        return fail(ERROR_OUTPUT, "cannot write %s: its texture would replace the map %s; choose another name", mesh,
-                    texture);
-    if (file_is_folder(input) && file_is_same(folder, input) &&
-        (file_is_in(input, texture) || !file_is_in(input, "maps.exr")))
-        return fail(ERROR_OUTPUT, "cannot write %s: its texture %s would lie among what is read; choose another folder",
-                    mesh, texture);
-    return OK;
+    return write_mesh(result, path);
 }
 
-/* A mesh with a name of its own is made aside in the folder where it is wanted, for it may bring other files along. */
 static status stage_mesh(const stereo_files *files, const staging *maps, const char *path, const stereo_result *r,
                          staging **out)
 {
-    *out = NULL;
-    if (file_is_folder(path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", path);
-    char *folder = file_folder_of(path);
-    status s = folder ? staging_begin(folder, files->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
-    s = s == OK ? check_texture(files, maps, path, folder) : fail_in(s, "cannot write %s", path);
-    free(folder);
-    if (s != OK) return s;
-    char aside[PATH_MAX];
-    return write_mesh(r, staging_path(*out, file_name_of(path), aside));
+    mesh_file named = {path, files->folder, files->inputs, maps, write_named_mesh, r};
+    return mesh_file_stage(&named, out);
 }
 
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
 {
-    staging *t[1 + STEREO_MOST_MESHES] = {NULL};
+    staging *t[1 + MESH_MOST_FILES] = {NULL};
     int count = 1;
     status s = staging_begin(files->folder, files->inputs, &t[0]);
     if (s != OK) return s;
     s = write_all(files, t[0], r, report);
-    for (int i = 0; i < files->mesh_count && s == OK; i++) {
-        s = stage_mesh(files, t[0], files->mesh[i], r, &t[count]);
+    for (int i = 0; i < files->mesh.count && s == OK; i++) {
+        s = stage_mesh(files, t[0], files->mesh.at[i], r, &t[count]);
         count += t[count] != NULL;
     }
     if (s == OK) return staging_commit_all(t, count, written);

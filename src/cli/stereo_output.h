@@ -6,10 +6,9 @@
 
 #include "base/skipped.h"
 #include "base/warnings.h"
+#include "cli/mesh_file.h"
 #include "estimate/staging.h"
 #include "stereo/capture.h"
-
-enum { STEREO_MOST_MESHES = 8 };
 
 typedef struct stereo_result {
     img normal, albedo, depth, mask; /* 3, 3, 1, 1 channels; albedo in [0, 1] */
@@ -25,9 +24,8 @@ void stereo_result_free(stereo_result *r);
 
 typedef struct stereo_files {
     const char *folder;
-    const char *const *inputs;            /* as in staging_begin */
-    const char *mesh[STEREO_MOST_MESHES]; /* none: mesh.ply, mesh.obj and mesh.glb in the folder */
-    int mesh_count;
+    const char *const *inputs; /* as in staging_begin */
+    mesh_names mesh;           /* none: mesh.ply, mesh.obj and mesh.glb in the folder */
     int (*stop)(void);
 } stereo_files;
 

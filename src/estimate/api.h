@@ -88,10 +88,11 @@ status stage_relight(network *n, const stage *s, const lamp *light, img *out);
 /* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
 typedef struct maps_output {
     const char *folder;
-    const char *const *inputs;                                 /* as in staging_begin */
-    int (*stop)(void);                                         /* asked between files */
-    status (*more)(const merlin_maps *maps, const char *path); /* writes another file beside the others, */
-    const char *more_name;                                     /* called so */
+    const char *const *inputs; /* as in staging_begin */
+    int (*stop)(void);         /* asked between files */
+    /* writes other files beside the maps, or elsewhere, and adds where */
+    status (*more)(const void *context, const merlin_maps *maps, maps_staging *to);
+    const void *context;
     staged_files *written;
 } maps_output;
 status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to);

@@ -118,22 +118,25 @@ static status write_one(void *context, size_t i)
 }
 
 /* A mesh is no part of merlin_maps_write, but of the same all or none. */
-static status write_more(const batch *b)
+static status write_more(const batch *b, maps_staging *all)
 {
-    char path[PATH_MAX];
-    if (!b->output->more) return OK;
-    return b->output->more(b->job.maps, staging_path(b->staging, b->output->more_name, path));
+    return b->output->more ? b->output->more(b->output->context, b->job.maps, all) : OK;
 }
 
 static status write_through(batch *b)
 {
     const maps_output *o = b->output;
-    status s = staging_begin(o->folder, o->inputs, &b->staging);
+    maps_staging all = {.count = 1};
+    status s = staging_begin(o->folder, o->inputs, &all.at[0]);
     if (s != OK) return s;
+    b->staging = all.at[0];
     s = parallel_try(OUTPUTS, write_one, b);
-    if (s == OK) s = write_more(b);
+    if (s == OK) s = write_more(b, &all);
     if (s == OK && stopped(b)) s = fail(ERROR_STOPPED, "stopped");
-    return s == OK ? staging_commit(b->staging, o->written) : staging_abort(b->staging, s);
+    if (s == OK) return staging_commit_all(all.at, all.count, o->written);
+    while (all.count > 0)
+        s = staging_abort(all.at[--all.count], s);
+    return s;
 }
 
 status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to)

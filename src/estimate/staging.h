@@ -35,6 +35,13 @@ void staged_files_free(staged_files *files);
 status staging_commit(staging *t, staged_files *written);
 /* Those of several folders at once: nothing is moved if anything is in the way of any. */
 status staging_commit_all(staging *const *t, int count, staged_files *written);
+/* Files beside a folder of maps that are committed with it: the first is the maps'. */
+enum { MAPS_MOST_ELSEWHERE = 8 };
+typedef struct maps_staging {
+    staging *at[1 + MAPS_MOST_ELSEWHERE];
+    int count;
+} maps_staging;
+
 /* Removes what was written, and the folders that staging_begin made; frees t. Returns s, its message naming the folder
  * instead of the hidden one. */
 status staging_abort(staging *t, status s);

@@ -219,6 +219,32 @@ succeeds '"mask":"found".*"file":"named/MASK.png","why":"a mask, but of which ph
 grep -q 'named: 1 file skipped: MASK.png (' "$scratch/stderr" || complain "MASK.png is skipped without a word"
 rm -r named masks out.merlin
 
+echo "--mesh takes a name, or none"
+mkdir meshes-named
+cp disc.hdr meshes-named/disc.hdr
+cd meshes-named || exit 1
+succeeds '"files":\["./a.glb","./a.mtl","./a.obj","./a.ply","./a.png","out.merlin/albedo.png"' estimate --mesh a.obj --mesh a.ply disc.hdr --mesh=a.glb --json "${small[@]}"
+present a.obj a.mtl a.png a.ply a.glb out.merlin/maps.exr
+absent out.merlin/mesh.glb
+"$MERLIN" render --mesh a.obj --count 1 --size 64 --no-env -o rendered --quiet || complain "a.obj cannot be read"
+"$MERLIN" render --mesh a.ply --count 1 --size 64 --no-env -o rendered-ply --quiet || complain "a.ply cannot be read"
+succeeds 'disc.hdr' estimate --mesh disc.hdr "${small[@]}"
+present out.merlin/mesh.glb
+rm -rf out.merlin rendered*
+succeeds 'disc.hdr' estimate . "${small[@]}"
+grep -q "5 files skipped: a.glb, a.mtl, a.obj, a.ply (no picture), a.png (a mesh's texture)" "$scratch/stderr" || complain "a mesh's texture: $(head -1 "$scratch/stderr")"
+rm -r out.merlin a.*
+refuses 2 'a mesh.s name ends in' estimate disc.hdr --mesh a.stl
+refuses 2 'one photograph' estimate disc.hdr disc.hdr --mesh a.obj
+refuses 2 'one photograph' estimate . --mesh a.obj
+refuses 2 '--mesh wants a value' estimate disc.hdr --mesh=
+cp disc.hdr disc.png # by its content a Radiance picture
+refuses 1 'disc.png: it is what was read' estimate disc.png --mesh disc.obj "${small[@]}"
+refuses 1 'no-folder' estimate disc.hdr --mesh /dev/null/no-folder/a.obj "${small[@]}"
+absent out.merlin a.obj disc.obj
+cd ..
+rm -r meshes-named
+
 echo "a folder's photographs are told by content, and what is skipped is counted and named"
 mkdir mixed
 cp disc.hdr mixed/one.jfif

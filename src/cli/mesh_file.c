@@ -1,0 +1,54 @@
+#include "cli/mesh_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "stereo/mesh_write.h"
+
+status mesh_take_name(const char *path, void *into)
+{
+    mesh_names *names = into;
+    if (names->count == MESH_MOST_FILES) return fail(ERROR_USAGE, "--mesh may be given %d times", MESH_MOST_FILES);
+    names->at[names->count++] = path;
+    return pst_mesh_check_name(path);
+}
+
+bool mesh_is_name(const char *word)
+{
+    static const char *const endings[] = {".ply", ".obj", ".glb", ".gltf", ".stl",   ".off",
+                                          ".fbx", ".dae", ".3mf", ".usdz", ".blend", NULL};
+    return file_ends_in_any(word, endings);
+}
+
+/* The texture of an OBJ is a picture of the mesh's name: it must not take a map's place, nor lie among the pictures
+ * that are solved, where it would replace one of them or be one more the next time. */
+static status check_texture(const mesh_file *m, const char *folder)
+{
+    const char *name = file_name_of(m->path), *input = m->inputs[0];
+    char texture[NAME_MAX + 1], aside[PATH_MAX];
+    if (!file_ends_in(name, ".obj")) return OK;
+    snprintf(texture, sizeof texture, "%.*s.png", (int)strlen(name) - 4, name);
+    if (file_is_same(folder, m->folder) && file_exists(staging_path(m->maps, texture, aside)))
+        return fail(ERROR_OUTPUT, "cannot write %s: its texture would replace the map %s; choose another name", m->path,
+                    texture);
+    if (file_is_folder(input) && file_is_same(folder, input) &&
+        (file_is_in(input, texture) || !file_is_in(input, "maps.exr")))
+        return fail(ERROR_OUTPUT, "cannot write %s: its texture %s would lie among what is read; choose another folder",
+                    m->path, texture);
+    return OK;
+}
+
+status mesh_file_stage(const mesh_file *m, staging **out)
+{
+    *out = NULL;
+    if (file_is_folder(m->path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", m->path);
+    char *folder = file_folder_of(m->path);
+    status s = folder ? staging_begin(folder, m->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
+    s = s == OK ? check_texture(m, folder) : fail_in(s, "cannot write %s", m->path);
+    free(folder);
+    if (s != OK) return s;
+    char aside[PATH_MAX];
+    return m->write(m->what, staging_path(*out, file_name_of(m->path), aside));
+}
