@@ -91,7 +91,15 @@ static status parse(int argc, char **argv, request *r)
 
 static status print_json(const request *r, const render_stats *stats, double samples, double rays)
 {
-    cJSON *report = report_begin(&(warnings){0});
+    warnings told = {0};
+    skipped_warn(&stats->skipped_maps, &told);
+    skipped_warn(&stats->skipped_materials, &told);
+    cJSON *report = report_begin(&told);
+    if (told.count) {
+        cJSON *all = cJSON_AddArrayToObject(report, "skipped");
+        skipped_json(&stats->skipped_maps, r->options.environment_folder, all);
+        skipped_json(&stats->skipped_materials, r->options.material_folder, all);
+    }
     json_line_text(report, "output", r->options.folder);
     cJSON_AddNumberToObject(report, "rendered", (double)stats->rendered);
     cJSON_AddNumberToObject(report, "kept", (double)stats->kept);
@@ -125,6 +133,11 @@ int cmd_render(int argc, char **argv)
     cli_catch_interrupts();
     render_stats stats;
     status s = render_samples(&r.options, &stats);
+    if (s == OK && !r.options.quiet) {
+        skipped_print(&stats.skipped_maps, "render", r.options.environment_folder);
+        skipped_print(&stats.skipped_materials, "render", r.options.material_folder);
+    }
     if (s == OK) s = report(&r, &stats);
+    render_stats_free(&stats);
     return s == OK ? 0 : cli_fail("render", s);
 }

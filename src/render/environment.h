@@ -11,6 +11,7 @@
 
 #include "base/lanes.h"
 #include "base/rng.h"
+#include "base/skipped.h"
 #include "image/image.h"
 
 /* Size of procedural maps, and of those from files once shrunk. */
@@ -43,10 +44,11 @@ typedef struct environment_rays {
 void environment_sample(const environment *env, const float u1[LANES], const float u2[LANES], int count,
                         environment_rays *out);
 
-/* Every picture of a folder that can serve as a map (HDR, EXR and the like), shrunk to what lighting needs. */
+/* Every picture of a folder, told by content, shrunk to what lighting needs. */
 typedef struct environment_folder {
     img *maps;
     size_t count;
+    skipped_files skipped;
 } environment_folder;
 status environment_folder_read(const char *path, environment_folder *out);
 void environment_folder_free(environment_folder *folder);

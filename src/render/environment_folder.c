@@ -1,6 +1,6 @@
 #include <stdlib.h>
 
-#include "base/file.h"
+#include "image/folder.h"
 #include "image/read.h"
 #include "image/resize.h"
 #include "render/environment.h"
@@ -20,21 +20,26 @@ static status read_map(const char *path, img *out)
     return OK;
 }
 
+static status refuse_empty(const char *path, const skipped_files *skipped)
+{
+    char left[256];
+    skipped_words(skipped, left, sizeof left);
+    return fail(ERROR_INPUT, "%s: no environment maps (HDR, EXR, ...) in this folder%s%s", path, *left ? "; " : "",
+                left);
+}
+
 status environment_folder_read(const char *path, environment_folder *out)
 {
-    static const char *const endings[] = {".hdr", ".exr", ".tif", ".tiff", ".png", ".jpg", ".jpeg", NULL};
-    char **names;
-    size_t count;
+    img_folder f;
     *out = (environment_folder){0};
-    status s = file_list(path, endings, &names, &count);
+    status s = img_folder_read(path, &f);
     if (s != OK) return s;
-    if (count == 0) s = fail(ERROR_INPUT, "%s: no environment maps (.hdr, .exr, ...) in this folder", path);
-    if (s == OK && !(out->maps = calloc(count, sizeof *out->maps))) s = fail(ERROR_MEMORY, "out of memory for maps");
-    for (size_t i = 0; s == OK && i < count; i++) {
-        s = read_map(names[i], &out->maps[i]);
-        out->count = i + 1;
-    }
-    file_list_free(names, count);
+    if (!(out->maps = calloc(f.count + 1, sizeof *out->maps))) s = fail(ERROR_MEMORY, "out of memory for maps");
+    for (size_t i = 0; s == OK && i < f.count; i++)
+        s = f.at[i].is_picture ? read_map(f.at[i].path, &out->maps[out->count++])
+                               : img_folder_skip(&f.at[i], "no picture", false, &out->skipped);
+    if (s == OK && out->count == 0) s = refuse_empty(path, &out->skipped);
+    img_folder_free(&f);
     if (s != OK) environment_folder_free(out);
     return s;
 }
@@ -44,5 +49,6 @@ void environment_folder_free(environment_folder *folder)
     for (size_t i = 0; i < folder->count; i++)
         img_free(&folder->maps[i]);
     free(folder->maps);
+    skipped_free(&folder->skipped);
     *folder = (environment_folder){0};
 }

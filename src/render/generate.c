@@ -253,6 +253,12 @@ static status check_mesh(const run *r)
     return s;
 }
 
+void render_stats_free(render_stats *stats)
+{
+    skipped_free(&stats->skipped_maps);
+    skipped_free(&stats->skipped_materials);
+}
+
 status render_samples(const render_options *options, render_stats *stats)
 {
     run r;
@@ -260,6 +266,9 @@ status render_samples(const render_options *options, render_stats *stats)
     status s = open_run(options, &r);
     if (s != OK) return s;
     r.stats = stats;
+    stats->skipped_maps = r.maps.skipped;
+    stats->skipped_materials = r.textures.skipped;
+    r.maps.skipped = r.textures.skipped = (skipped_files){0};
     if (options->folder) s = check_mesh(&r);
     if (s == OK && options->folder) s = claim_folder(options);
     if (s == OK) {

@@ -15,6 +15,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/skipped.h"
 #include "render/render.h"
 
 typedef struct render_options {
@@ -34,13 +35,16 @@ typedef struct render_stats {
     size_t rendered, kept; /* kept: were there already */
     uint64_t rays;
     double seconds;
+    skipped_files skipped_maps, skipped_materials; /* of the folders of both; for render_stats_free */
 } render_stats;
+void render_stats_free(render_stats *stats);
 
 /* 128 pixels, 60 degrees, 4 × 4 strata, 8 paths, environment on; no folder, count 0. */
 render_options render_options_default(void);
 
 /* Stops at the first failure, or with ERROR_STOPPED when interrupted; finished samples stay. stats is filled either
  * way. */
+/* After a failure, too, *stats is for render_stats_free. */
 status render_samples(const render_options *options, render_stats *stats);
 
 /* One sample of such a set, in memory. */

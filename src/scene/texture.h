@@ -9,6 +9,7 @@
 #ifndef MERLIN_SCENE_TEXTURE_H
 #define MERLIN_SCENE_TEXTURE_H
 
+#include "base/skipped.h"
 #include "image/image.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -23,6 +24,7 @@ typedef struct scn_texture {
 typedef struct scn_textures {
     scn_texture *texture;
     size_t count;
+    skipped_files skipped; /* pictures of formats that are not read */
 } scn_textures;
 
 /* How a texture lies in the material's solid space: on three planes across each other, blended by the surface's

@@ -1,9 +1,11 @@
 /* Which files of a folder make which material, and their reading. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/file.h"
+#include "image/kind.h"
 #include "image/read.h"
 #include "image/resize.h"
 #include "scene/number.h"
@@ -190,16 +192,39 @@ static status read_materials(source *all, size_t count, const char *folder, scn_
     return s;
 }
 
-status scn_textures_read(const char *folder, scn_textures *out)
+/* Pictures by content, and what is called like one, so that reading it tells what is wrong. */
+static status keep_pictures(char **names, size_t *count, const char *folder, skipped_files *skipped)
 {
     static const char *const endings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".exr", NULL};
+    size_t kept = 0;
+    status s = OK;
+    for (size_t i = 0; i < *count; i++) {
+        img_format f = img_format_of(names[i]);
+        bool named = strchr(file_name_of(names[i]), '.');
+        if (named && (f.is_read || (!f.name && file_ends_in_any(names[i], endings)))) {
+            names[kept++] = names[i];
+            continue;
+        }
+        char why[64];
+        snprintf(why, sizeof why, "%s is not read", f.name ? f.name : "it");
+        if (s == OK && f.name && !f.is_read)
+            s = skipped_add(skipped, names[i] + strlen(folder) + strspn(names[i] + strlen(folder), "/"), why);
+        free(names[i]);
+    }
+    *count = kept;
+    return s;
+}
+
+status scn_textures_read(const char *folder, scn_textures *out)
+{
     *out = (scn_textures){0};
     char **names;
     size_t count;
-    status s = file_list_deep(folder, endings, &names, &count);
+    status s = file_list_deep(folder, NULL, &names, &count);
     if (s != OK) return s;
+    s = keep_pictures(names, &count, folder, &out->skipped);
     source *all = calloc(count + 1, sizeof *all);
-    if (!all) s = fail(ERROR_MEMORY, "out of memory for the names in %s", folder);
+    if (s == OK && !all) s = fail(ERROR_MEMORY, "out of memory for the names in %s", folder);
     for (size_t i = 0; s == OK && i < count; i++)
         all[i] = classify(names[i]);
     if (s == OK) s = read_materials(all, count, folder, out);
@@ -214,5 +239,6 @@ void scn_textures_free(scn_textures *textures)
     for (size_t i = 0; i < textures->count; i++)
         free_texture(&textures->texture[i]);
     free(textures->texture);
+    skipped_free(&textures->skipped);
     *textures = (scn_textures){0};
 }

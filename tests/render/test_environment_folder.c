@@ -1,6 +1,7 @@
 /* --env-dir: environments from a folder of the user's. */
 #include <string.h>
 
+#include "base/file.h"
 #include "image/exr.h"
 #include "render/environment.h"
 
@@ -70,6 +71,21 @@ static void a_negative_value_is_black_and_takes_nothing_from_those_beside_it(voi
     environment_folder_free(&folder);
 }
 
+static void maps_are_told_by_content_and_others_are_listed(void **state)
+{
+    (void)state;
+    write_map("a", 64, 32, 1);
+    write_map("b.jfif", 64, 32, 1);
+    assert_int_equal(file_write(scratch_path("c.jxl"), "\xff\x0a and more", 11), OK);
+    environment_folder folder;
+    assert_int_equal(environment_folder_read(scratch, &folder), OK);
+    assert_int_equal(folder.count, 2);
+    assert_int_equal(folder.skipped.count, 1);
+    assert_string_equal(folder.skipped.at[0].name, "c.jxl");
+    assert_string_equal(folder.skipped.at[0].why, "JPEG XL is not read");
+    environment_folder_free(&folder);
+}
+
 static void a_folder_without_maps_is_refused(void **state)
 {
     (void)state;
@@ -84,6 +100,7 @@ int main(void)
         in_scratch(maps_come_in_the_order_of_their_names_and_of_one_size),
         in_scratch(a_map_that_is_no_latitude_longitude_picture_is_refused_by_name),
         in_scratch(a_negative_value_is_black_and_takes_nothing_from_those_beside_it),
+        in_scratch(maps_are_told_by_content_and_others_are_listed),
         in_scratch(a_folder_without_maps_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -137,6 +137,19 @@ static void normal_maps_become_slopes(void **state)
     scn_textures_free(&t);
 }
 
+static void materials_are_told_by_content_and_others_are_listed(void **state)
+{
+    (void)state;
+    put("brick_albedo.jpe", 1, 1, 1);
+    assert_int_equal(file_write(scratch_path("tile_albedo.jxl"), "\xff\x0a and more", 11), OK);
+    scn_textures t;
+    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    assert_int_equal(t.count, 1);
+    assert_int_equal(t.skipped.count, 1);
+    assert_string_equal(t.skipped.at[0].name, "tile_albedo.jxl");
+    scn_textures_free(&t);
+}
+
 static void folder_without_materials_is_refused(void **state)
 {
     (void)state;
@@ -190,6 +203,7 @@ int main(void)
         in_scratch(files_called_by_their_map_alone_are_their_folder_s_material),
         cmocka_unit_test(tiles_that_are_not_square_keep_their_shape),
         in_scratch(normal_maps_become_slopes),
+        in_scratch(materials_are_told_by_content_and_others_are_listed),
         in_scratch(folder_without_materials_is_refused),
         in_scratch(objects_wear_the_folder),
     };
