@@ -1,5 +1,6 @@
 #include "cli/photo_folder.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "cli/standard_input.h"
 #include "image/folder.h"
 #include "image/mask_names.h"
+#include "image/read.h"
 
 /* Tells whether estimate and stereo write it beside maps.exr. */
 static bool is_result_name(const char *name)
@@ -106,6 +108,38 @@ static status list_skipped(const photo_list *list, size_t first, const img_folde
     return s;
 }
 
+/* Length of the first part of a path below a folder, with its slash; 0 of what lies in the folder itself. */
+static size_t below(const char *path, const char *folder, const char **name)
+{
+    *name = path + strlen(folder);
+    *name += strspn(*name, "/");
+    const char *slash = strchr(*name, '/');
+    return slash ? (size_t)(slash - *name) + 1 : 0;
+}
+
+/* Adds the folders in it that hold pictures, but not maps of earlier times or the masks. */
+static status list_folders(const char *folder, const char *masks, skipped_files *skipped)
+{
+    static const char *const endings[] = {IMAGE_ENDINGS, NULL};
+    char **paths, last[NAME_MAX + 2] = "";
+    size_t count;
+    status s = file_list_deep(folder, endings, &paths, &count);
+    if (s != OK) return s;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        const char *name;
+        size_t length = below(paths[i], folder, &name);
+        if (length == 0 || length >= sizeof last || strncmp(name, last, length) == 0) continue;
+        snprintf(last, sizeof last, "%.*s", (int)length, name);
+        char *inner = file_folder_of(paths[i]);
+        if (!inner) s = no_memory();
+        if (inner && !file_is_in(inner, "maps.exr") && !(masks && file_is_same(inner, masks)))
+            s = skipped_add(skipped, last, "a folder of its own");
+        free(inner);
+    }
+    file_list_free(paths, count);
+    return s;
+}
+
 static status add_photos(photo_list *list, const img_folder *f)
 {
     size_t first = list->count;
@@ -141,7 +175,7 @@ static status add_to_folders(photo_list *list, const char *folder, skipped_files
     return skipped_append(&added->skipped, skipped);
 }
 
-status photo_folder_add(photo_list *list, const char *folder)
+status photo_folder_add(photo_list *list, const char *folder, const char *masks)
 {
     img_folder f;
     bool results;
@@ -151,6 +185,7 @@ status photo_folder_add(photo_list *list, const char *folder)
     if (s != OK) return s;
     s = add_photos(list, &f);
     if (s == OK) s = list_skipped(list, first, &f, &skipped);
+    if (s == OK) s = list_folders(folder, masks, &skipped);
     if (s == OK && list->count == first && !results) s = refuse_empty(folder, &skipped);
     if (s == OK) s = add_to_folders(list, folder, &skipped);
     skipped_free(&skipped);

@@ -9,8 +9,8 @@
 status photo_list_add(photo_list *list, const char *photo);
 
 /* Adds the folder's photographs with their masks, and what was left aside to list->folder. Of a folder of maps alone
- * nothing is added: estimate * finds those that it has made the last time. */
-status photo_folder_add(photo_list *list, const char *folder);
+ * nothing is added: estimate * finds those that it has made the last time. masks: a folder of them, or NULL. */
+status photo_folder_add(photo_list *list, const char *folder, const char *masks);
 
 /* Gives each photograph its mask from a folder of masks; ERROR_INPUT, with the names looked for, if one lacks it. */
 status photo_folder_find_masks(photo_list *list, const char *folder);

@@ -146,7 +146,7 @@ static status fill_list(char *const *arguments, int count, const char *mask, con
     for (int i = 0; i < count && s == OK; i++) {
         bool folder = file_is_folder(arguments[i]);
         batch |= folder;
-        s = folder ? photo_folder_add(out, arguments[i]) : add_photo(out, arguments[i], mask);
+        s = folder ? photo_folder_add(out, arguments[i], mask) : add_photo(out, arguments[i], mask);
     }
     if (s == OK && count > 1 && !mask) photo_list_drop_masks(out);
     if (s == OK && out->count == 0)

@@ -245,6 +245,15 @@ absent out.merlin a.obj disc.obj
 cd ..
 rm -r meshes-named
 
+echo "the other commands that take a photograph find its mask, too"
+mkdir other
+cp disc.hdr other/cup.hdr
+radiance other/cup_mask.hdr 16 6
+refuses 1 'the mask is 16×16 pixels, the photograph 64×64' "$MERLIN" stereo other/cup.hdr --size 64 --model weights.safetensors
+refuses 1 'the mask is 16×16 pixels, the photograph 64×64' "$MERLIN" relight other/cup.hdr --light 0,0,0 --model weights.safetensors
+refuses 1 'the mask is 16×16 pixels, the photograph 64×64' estimate other/cup.hdr --size 64
+rm -r other
+
 echo "a folder's photographs are told by content, and what is skipped is counted and named"
 mkdir mixed
 cp disc.hdr mixed/one.jfif
@@ -258,6 +267,15 @@ succeeds 'mixed/two: results/two/' estimate mixed --size 64 -o results
     complain "of a mixed folder it said: $(cat "$scratch/stderr")"
 succeeds '"code":"files_skipped".*"file":"mixed/three.jxl","why":"JPEG XL is not read"' estimate mixed --size 64 -o results --json
 [ "$(grep -c files_skipped "$scratch/stdout")" = 1 ] || complain "skipped files are told more than once"
+mkdir -p mixed/more mixed/one.merlin mixed/masks
+cp disc.hdr mixed/more
+cp disc.hdr mixed/one.merlin/maps.exr
+cp disc.merlin/mask.png mixed/masks/one.png
+cp disc.merlin/mask.png mixed/masks/two.png
+succeeds 'mixed/two: ' estimate mixed --mask mixed/masks --size 64 -o results
+[ "$(head -1 "$scratch/stderr")" = "merlin estimate: mixed: 3 files skipped: notes.txt (no picture), three.jxl (JPEG XL is not read), more/ (a folder of its own)" ] ||
+    complain "of a mixed folder with folders it said: $(head -1 "$scratch/stderr")"
+rm -r mixed/more mixed/one.merlin mixed/masks
 estimate mixed --size 64 -o results --quiet 2>err
 [ -s err ] && complain "it is not quiet: $(cat err)"
 rm mixed/one.jfif mixed/two
