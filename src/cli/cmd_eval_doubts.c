@@ -27,7 +27,8 @@ static const char help[] =
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no progress\n"
     "  -h, --help           this text\n\n"
-    "In a folder NAME.mask.png is the mask of NAME.*. Goes on after a photograph that fails, and then exits with 1.\n";
+    "Masks beside photographs are taken as in merlin estimate. Goes on after a photograph that fails, and then exits "
+    "with 1.\n";
 
 typedef struct request {
     const char *right, *wrong, *data, *weights;

@@ -21,7 +21,7 @@ static const char help[] =
     "      --model W        weights, a file or a shipped name; once for each column of tiles, before and after say, at "
     "most 4\n"
     "  -o, --output F.png   the picture\n"
-    "      --mask M         as in merlin estimate; in a folder NAME.mask.png is the mask of NAME.*\n"
+    "      --mask M         as in merlin estimate (default: those beside the photographs)\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"

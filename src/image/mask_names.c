@@ -120,10 +120,9 @@ bool mask_name_is_whole(const char *name)
     return is_strong(find_word(stem_of(name)));
 }
 
-/* The last part of a name behind a separator of a form. */
-static int last_word(const char *name, int form)
+/* The last part of a stem, if it is behind a separator of a form. */
+static int last_word(part stem, int form)
 {
-    part stem = stem_of(name);
     for (size_t i = stem.length; i > 1; i--) {
         int found = form_of(stem.at[i - 1]);
         if (!found) continue;
@@ -134,16 +133,23 @@ static int last_word(const char *name, int form)
 
 bool mask_name_is_sure(const char *name)
 {
-    return last_word(name, BY_DOT) == 0;
+    return last_word(stem_of(name), BY_DOT) == 0;
+}
+
+static bool is_likely(part stem)
+{
+    size_t first = 0;
+    for (int form = BY_DOT; form <= BY_SPACE; form++)
+        if (is_strong(last_word(stem, form))) return true;
+    while (first < stem.length && !form_of(stem.at[first]))
+        first++;
+    return is_strong(find_word((part){stem.at, first}));
 }
 
 bool mask_name_is_likely(const char *name)
 {
-    for (int form = BY_DOT; form <= BY_SPACE; form++)
-        if (is_strong(last_word(name, form))) return true;
     part stem = stem_of(name);
-    size_t first = strcspn(name, "._- ");
-    return first < stem.length && is_strong(find_word((part){name, first}));
+    return is_likely(stem) || is_likely(without_number(stem));
 }
 
 bool mask_name_has_word(const char *name)

@@ -17,7 +17,8 @@ int mask_name_rank(const char *name, const char *photo, bool apart);
 bool mask_name_is_whole(const char *name);
 /* Tells whether one can be nothing but a mask, whatever lies beside it: cup.mask.png. */
 bool mask_name_is_sure(const char *name);
-/* Tells whether one says mask, though it may also be what a photograph shows: cup_mask.png, carnival-mask.jpg. */
+/* Tells whether one says mask, though it may also be what a photograph shows: cup_mask.png, carnival-mask.jpg,
+ * mask1.png. */
 bool mask_name_is_likely(const char *name);
 /* Tells whether any word for a mask is in it, without which none of the others holds, but apart. */
 bool mask_name_has_word(const char *name);

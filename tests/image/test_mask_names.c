@@ -71,6 +71,9 @@ static void some_names_say_mask_whatever_lies_beside_them(void **state)
     assert_false(mask_name_is_sure("mask.png"));
     assert_true(mask_name_is_likely("cup_mask.png"));
     assert_true(mask_name_is_likely("mask_cup.png"));
+    assert_true(mask_name_is_likely("mask1.png"));
+    assert_true(mask_name_is_likely("cup-mask_02.png"));
+    assert_false(mask_name_is_likely("masked1.png"));
     assert_false(mask_name_is_likely("cup_alpha.png"));
     assert_false(mask_name_is_likely("unmasked.png"));
 }
