@@ -43,8 +43,8 @@ typedef struct merlin_capture_files {
     const char *mask;    /* NULL: the folder's mask.png or *.mask.png, else what is brighter than black and than a dark
                           * edge of the pictures */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png or the like, if any */
-    int near_lights;     /* 1: the list holds positions in the camera's space; an .lp file's are about the object, which
-                          * wants the distance (of unit length: 1 by default), unless all have z below 0 */
+    int near_lights;     /* 1: the list holds positions in the camera's space; an .lp file's are about the object, how
+                          * far from the camera the pictures tell if it is not known, unless all have z below 0 */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
     float field_of_view; /* horizontal, degrees; 0: not known */

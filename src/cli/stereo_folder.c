@@ -6,6 +6,7 @@
 #include "cli/json_line.h"
 #include "eval/surface_error.h"
 #include "stereo/doubts.h"
+#include "stereo/place_lights.h"
 
 static const float RESIDUAL_WHITE = 0.25f;
 
@@ -151,7 +152,9 @@ status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *rep
     status s = pst_capture_read(f->folder, &f->read, &c);
     if (s != OK) return s;
     cJSON_AddNumberToObject(report, "seconds_read", clock_seconds() - began);
-    s = solve(f, &c, out, report);
+    bool any = f->method == PST_AUTO || f->method == PST_NEAR_LIGHTS;
+    if (c.about_object && any) s = pst_place_lights(&c, f->watch);
+    if (s == OK) s = solve(f, &c, out, report);
     out->skipped = c.skipped;
     c.skipped = (skipped_files){0};
     pst_capture_free(&c);

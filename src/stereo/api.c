@@ -8,6 +8,7 @@
 #include "image/public.h"
 #include "stereo/albedo_scale.h"
 #include "stereo/mesh_write.h"
+#include "stereo/place_lights.h"
 #include "stereo/solve.h"
 
 static_assert((int)MERLIN_DISTANT_LIGHTS == (int)PST_DISTANT && (int)MERLIN_NEAR_LIGHTS == (int)PST_NEAR &&
@@ -54,8 +55,9 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
                                       .field_of_view = files->field_of_view,
                                       .distance = files->distance};
     s = pst_capture_read(folder, &options, &c->inside);
+    if (s == OK && options.near && c->inside.about_object) s = pst_place_lights(&c->inside, NULL);
     if (s != OK)
-        free(c);
+        merlin_capture_free(c);
     else
         *out = c;
     return result_of(s);

@@ -54,6 +54,7 @@ typedef struct pst_capture {
     char **name;                        /* count file names, for reports */
     pst_lighting lighting;
     bool intensities_known;
+    bool about_object;    /* what the positions are, until pst_place_lights brings them into the camera's space */
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
     warnings noticed;     /* by whoever read it: pst_doubts passes them on */
     pst_camera camera;
@@ -69,8 +70,8 @@ typedef struct pst_read_options {
     const char *lights; /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
     const char *mask;   /* NULL: the folder's mask.png or the like (image/folder.h), or found (pst_capture_find_mask) */
     const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
-    bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object at the
-                          * distance (of unit length: 1 where it is not known), unless all have z below 0 */
+    bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object, unless
+                          * all have z below 0 */
     bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
     bool linear;         /* 8-bit pictures are linear already */
     float field_of_view; /* horizontal, degrees; 0: from the layout, else 60 when near */

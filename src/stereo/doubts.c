@@ -159,6 +159,10 @@ static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
                      c->name[0], c->frames);
     for (size_t i = 0; i < c->noticed.count; i++)
         warnings_add(out, c->noticed.at[i].code, "%s", c->noticed.at[i].message);
+    if (c->about_object)
+        warnings_add(out, "lights_have_places",
+                     "the lights are listed as places about the object and were taken for directions: --near heeds "
+                     "places");
     if (c->lights_in_order)
         warnings_add(
             out, "lights_in_order",

@@ -59,38 +59,33 @@ static bool are_places(const light_list *list)
     return false;
 }
 
-/* Adds the origin of an .lp file's positions, in the camera's space: the object, which a dome stands round. Lights
- * behind it would light nothing that is seen, so that where all z are negative the camera must be meant. */
-static status find_origin(const char *path, const light_list *list, float distance, vec3 *origin)
+/* Returns whether some light is before (side 1) or behind (side -1) what stands at z = 0. */
+static bool has_some(const light_list *list, real side)
 {
-    size_t before = 0;
-    *origin = vec3_make(0, 0, 0);
     for (size_t i = 0; i < list->count; i++)
-        before += list->at[i].z > (real)1e-4 * vec3_length(list->at[i]);
-    if (before == 0) return OK;
-    bool units = !are_places(list);
-    if (distance > 0 || units) *origin = vec3_make(0, 0, distance > 0 ? -distance : -1);
-    if (before < list->count && !units)
-        return fail(ERROR_INPUT,
-                    "%s has lights before and behind z = 0, so that its positions may be about the object or from the "
-                    "camera; list them from the camera, as x y z a line in a .txt file",
-                    path);
-    if (vec3_length(*origin) > 0) return OK;
+        if (side * list->at[i].z > (real)1e-4 * vec3_length(list->at[i])) return true;
+    return false;
+}
+
+/* Finds whether an .lp file's positions are about the object, which a dome stands round. Lights behind it would light
+ * nothing that is seen, so that where all z are negative the camera must be meant. */
+static status find_frame(const char *path, const light_list *list, bool *about)
+{
+    *about = has_some(list, 1);
+    if (!*about || !has_some(list, -1) || !are_places(list)) return OK;
     return fail(ERROR_INPUT,
-                "%s lists positions about the object, as an .lp file does: say how far the camera is by --distance, or "
-                "list them from the camera in a .txt file, or take them for distant lights without --near",
+                "%s has lights before and behind z = 0, so that its positions may be about the object or from the "
+                "camera; list them from the camera, as x y z a line in a .txt file",
                 path);
 }
 
-static status set_positions(const char *path, const light_list *list, float distance, pst_capture *c)
+static status set_positions(const char *path, const light_list *list, pst_capture *c)
 {
-    vec3 origin = {0, 0, 0};
     if (list->angles || (!list->about_object && are_directions(list)))
         return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
-    status s = list->about_object ? find_origin(path, list, distance, &origin) : OK;
-    for (size_t i = 0; i < list->count && s == OK; i++)
-        c->light[i].position = vec3_add(list->at[i], origin);
-    return s;
+    for (size_t i = 0; i < list->count; i++)
+        c->light[i].position = list->at[i];
+    return list->about_object ? find_frame(path, list, &c->about_object) : OK;
 }
 
 static void note_places(const char *path, const light_list *list, pst_capture *c)
@@ -114,7 +109,11 @@ static status set_directions(const char *path, const light_list *list, pst_captu
         if (!(vec3_length(c->light[i].direction) > 0.5f))
             return fail(ERROR_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
     }
-    if (are_places(list)) note_places(path, list, c);
+    if (!are_places(list)) return OK;
+    c->about_object = list->about_object && has_some(list, 1) && !has_some(list, -1);
+    for (size_t i = 0; i < list->count && c->about_object; i++)
+        c->light[i].position = list->at[i];
+    if (!c->about_object) note_places(path, list, c);
     return OK;
 }
 
@@ -125,7 +124,7 @@ status pst_set_lights(const char *path, const light_list *list, const pst_read_o
     for (size_t i = 0; i < list->count && list->intensity; i++)
         vec3_put(list->intensity[i], c->light[i].intensity);
     if (list->note[0]) warnings_add(&c->noticed, "lights_list", "%s: %s", path, list->note);
-    return options->near ? set_positions(path, list, options->distance, c) : set_directions(path, list, c);
+    return options->near ? set_positions(path, list, c) : set_directions(path, list, c);
 }
 
 status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c)

@@ -205,12 +205,12 @@ static void near_lights_of_an_lp_file_are_where_it_says(void **state)
     assert_float_equal(c.light[1].position.z, -40, 1e-5);
     assert_float_equal(c.light[2].position.y, 0.5, 1e-6);
     pst_capture_free(&c);
-    /* a dome's, rounded as some write them, go round what is at (0, 0, -1) */
+    /* a dome's, rounded as some write them, go round the object (pst_place_lights) */
     write_text("dome.lp", "3\na.png 0 0 1\nb.png 0.29 0 0.96\nc.png 1 0 0\n");
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_float_equal(c.light[0].position.z, 0, 1e-6);
+    assert_true(c.about_object);
+    assert_float_equal(c.light[0].position.z, 1, 1e-6);
     assert_float_equal(c.light[2].position.x, 1, 1e-6);
-    assert_float_equal(c.light[2].position.z, -1, 1e-6);
     pst_capture_free(&c);
 }
 
@@ -222,29 +222,23 @@ static void near_lights_of_an_lp_file_before_the_object_are_about_it(void **stat
     pst_read_options options = {.near = true};
     pst_capture c;
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 250\nc.png 0 50 300\n");
-    assert_refused(&options, "about the object");
     options.distance = 600;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
+    assert_true(c.about_object);
+    assert_float_equal(c.camera.mean_distance, 600, 1e-3);
     assert_float_equal(c.light[0].position.x, 300, 1e-3);
-    assert_float_equal(c.light[0].position.z, -200, 1e-3);
-    assert_float_equal(c.light[1].position.z, -350, 1e-3);
+    assert_float_equal(c.light[0].position.z, 400, 1e-3);
+    assert_float_equal(c.light[1].position.z, 250, 1e-3);
     pst_capture_free(&c);
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 -250\nc.png 0 50 300\n");
     assert_refused(&options, "before and behind");
-    /* a dome's directions have its radius for their unit */
-    write_text("dome.lp", "3\na.png 0 0 1\nb.png 0.28 0 0.96\nc.png 1 0 0\n");
-    options.distance = 2.5F;
-    assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_float_equal(c.light[0].position.z, -1.5, 1e-6);
-    assert_float_equal(c.light[2].position.x, 1, 1e-6);
-    assert_float_equal(c.light[2].position.z, -2.5, 1e-6);
-    pst_capture_free(&c);
     /* as distant lights they are directions whatever their frame */
     options = (pst_read_options){0};
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 250\nc.png 0 50 300\n");
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
     assert_float_equal(c.light[0].direction.x, 0.6, 1e-6);
     assert_float_equal(c.light[0].direction.z, 0.8, 1e-6);
+    assert_true(c.about_object);
     pst_capture_free(&c);
 }
 

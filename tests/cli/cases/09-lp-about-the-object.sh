@@ -1,14 +1,18 @@
 #!/usr/bin/env bash
-# The frame of an .lp is the object's: with --near its positions want the camera's distance, without it they are directions.
+# The frame of an .lp is the object's: how far the camera is from it the pictures tell, with --near and without.
 # shellcheck source=tests/cli/support/cases.bash
 source "$(dirname "$0")/../support/cases.bash"
 case_begin 09-lp-about-the-object
 
 succeeds right "$MERLIN" stereo camera --near --fov 25 -o right
-refuses 1 'about the object.*--distance.*without --near' "$MERLIN" stereo . --near --fov 25 -o a
+succeeds a "$MERLIN" stereo . --near --fov 25 -o a
+normals_within 0.1 right a
 succeeds b "$MERLIN" stereo . --near --fov 25 --distance 600 -o b
-normals_within 0.5 right b
+normals_within 0.1 right b
 succeeds far "$MERLIN" stereo . --fov 25 -o far
-normals_within 1.3 right far
+normals_within 0.1 right far
+grep -q 'taken for near ones: the camera then is 600 from there' "$scratch/stderr" || complain "$(cat "$scratch/stderr")"
+succeeds plain "$MERLIN" stereo . -o plain
+normals_within 0.5 right plain
 
 finish
