@@ -14,7 +14,7 @@ pictures=(dome/*.png)
 # what fitters by least squares make of JPEGs without gloss
 succeeds matte "$MERLIN" relight maps --dome 50 --lp --matte --format jpg -o matte
 succeeds fitted "$MERLIN" stereo matte --method ls -o fitted
-normals_within 1.2 maps fitted # JPEG and 8 bits in shadow leave 0.9
+normals_within 1 maps fitted
 
 succeeds beside "$MERLIN" relight maps --dome 50 --near -o beside
 succeeds near "$MERLIN" stereo beside --near --fov 63 -o near
