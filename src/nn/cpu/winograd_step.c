@@ -95,7 +95,7 @@ static status backward(nn_step *step)
 {
     const state *own = step->state;
     const nn_tensor dy = prepare(step);
-    float *room = (float *)((char *)step->backward_space + conv_prepared_bytes(step));
+    void *room = (char *)step->backward_space + conv_prepared_bytes(step);
     winograd g = own->shape;
     g.to = step->compute;
     winograd_gradient(&g, step->in[0].data, dy.data, step->params.weight->gradient, room);
