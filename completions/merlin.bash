@@ -41,7 +41,7 @@ _merlin() {
     *)
         if [[ $current == -* ]]; then
             mapfile -t COMPREPLY < <(compgen -W "$("$merlin" "${words[@]}" --help 2>/dev/null |
-                grep -oE '^ +(-[a-z], )?--[a-z-]+(, --[a-z-]+| [A-Z]+, --[a-z-]+)*' | grep -oE -e '--[a-z-]+')" -- "$current")
+                grep -oE '^ +(-[a-z], )?--[a-z-]+(, --[a-z-]+| [A-Z,]+, --[a-z-]+)*' | grep -oE -e '--[a-z-]+')" -- "$current")
         else
             mapfile -t COMPREPLY < <(compgen -f -- "$current")
             COMPREPLY+=("${more[@]}")

@@ -97,6 +97,19 @@ typedef struct merlin_shot {
 /* By the EXIF of a JPEG, PNG, WebP, HEIC, TIFF or raw picture, and the file's head; unknown without. */
 merlin_status merlin_shot_read(const char *path, merlin_shot *out);
 
+/* Help for the search for the object, where there is no mask: coordinates in whole pixels of the photograph, from its
+ * upper left corner. */
+enum { MERLIN_MOST_POINTS = 16 };
+typedef struct merlin_hint {
+    int point_count;
+    struct {
+        int x, y;
+    } point[MERLIN_MOST_POINTS]; /* pixels of the object */
+    struct {
+        int x, y, width, height;
+    } box; /* holds all of the object, the tighter the better; width 0: none */
+} merlin_hint;
+
 typedef struct merlin_params {
     int size;  /* side of the square the network sees: a multiple of 32, from 64 to 512. It was trained at 256; of
                 * more it takes fine normals alone, if the photograph shows the object so large */
@@ -106,6 +119,7 @@ typedef struct merlin_params {
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
     merlin_shot shot;  /* of the photograph, for the doubts in its maps alone */
+    merlin_hint hint;  /* where the object is, if it is searched for; MERLIN_WRONG_USE with a mask */
 } merlin_params;
 
 merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never stopped */
@@ -121,7 +135,7 @@ typedef struct merlin_timing {
 typedef enum merlin_doubt {
     MERLIN_DOUBT_NO_OBJECT = 1 << 0,       /* the object found, or the mask given, fills the photograph */
     MERLIN_DOUBT_BURNT_OUT = 1 << 1,       /* burnt_out is a tenth or more */
-    MERLIN_DOUBT_OBJECT_UNSURE = 1 << 2,   /* mask_confidence is below 0.6 */
+    MERLIN_DOUBT_OBJECT_UNSURE = 1 << 2,   /* mask_confidence is below 0.5 */
     MERLIN_DOUBT_LIGHT_ELSEWHERE = 1 << 3, /* light_elsewhere says that it was not lit by a flash at the lens */
     MERLIN_DOUBT_NO_FLASH = 1 << 4,        /* params.shot says that no flash fired */
     MERLIN_DOUBT_HOLLOW = 1 << 5,          /* along the outline the normals turn inward, as of a bowl */
@@ -155,7 +169,7 @@ typedef struct merlin_maps {
     merlin_mask_source mask_source;
     int has_environment;     /* the model knows of surroundings beside the flash: */
     float environment[9][3]; /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
-    float mask_confidence;   /* 1 for a given mask; how far to trust a found one, in [0, 1] (below 0.6: check it) */
+    float mask_confidence;   /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
     char model[64];
     merlin_timing timing;
     unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */

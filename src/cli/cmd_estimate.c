@@ -12,6 +12,7 @@
 #include "cli/mesh_file.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_hint.h"
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
 #include "cli/standard_input.h"
@@ -30,6 +31,10 @@ static const char help[] =
     "                       NAME.mask.png, NAME_mask.png, mask_NAME.png or the like beside the photograph NAME, of "
     "any\n"
     "                       picture's kind, else the photograph's alpha, else the object is searched for\n"
+    "      --point X,Y      a pixel of the object, counted from the upper left corner of the upright photograph: helps "
+    "the\n"
+    "                       search for it where there is no mask; may be given again\n"
+    "      --box X,Y,W,H    a box around the object, upper left corner and size in pixels, for the same\n"
     "  -o, --output DIR     where to (default: the photograph's name without ending + .merlin); for several\n"
     "                       photographs a folder each inside DIR\n"
     "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
@@ -73,6 +78,8 @@ static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
         {"mask", .text = &r->mask},
+        {"point", .take = photo_take_point, .into = &r->params.hint},
+        {"box", .take = photo_take_box, .into = &r->params.hint},
         {"output", 'o', .folder = &r->output},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
@@ -93,7 +100,8 @@ static status parse(int *argc, char ***argv, request *r)
             "--mesh %s names the mesh of one photograph; of several --mesh alone writes a mesh.glb in each one's "
             "folder",
             r->meshes.at[0]);
-    return take_standard_input(r, *argc, *argv);
+    s = photo_check_hint(&r->params.hint, r->mask, *argc > 1 || file_is_folder((*argv)[0]));
+    return s != OK ? s : take_standard_input(r, *argc, *argv);
 }
 
 /* What the report of a photograph's folder cannot know yet, in seconds. */
@@ -270,6 +278,7 @@ int cmd_estimate(int argc, char **argv)
     bool told = false;
     r.photos = &photos;
     r.told = &told;
+    if (photo_hint_given(&r.params.hint)) photo_use_hint(&photos.at[0], &r.params.hint);
     s = photo_find_model(r.weights, &weights);
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
     merlin_model_close(r.model);

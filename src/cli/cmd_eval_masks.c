@@ -81,7 +81,7 @@ static status add_photo(run *r, const photo_job *job)
     s = read_mask(job, &alpha, &mask);
     img picture = img_of(&photo), known = img_of(&mask);
     if (s == OK && mask.data) {
-        mask_truth truth = {file_name_of(job->photo), MASK_PHOTO, &picture, &known};
+        mask_truth truth = {file_name_of(job->photo), MASK_PHOTO, &picture, &known, NULL};
         s = mask_table_add(&r->table, &truth);
     }
     merlin_image_free(&photo);

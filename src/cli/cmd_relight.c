@@ -13,6 +13,7 @@
 #include "cli/lamps.h"
 #include "cli/options.h"
 #include "cli/photo_ahead.h"
+#include "cli/photo_hint.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
 #include "cli/standard_input.h"
@@ -72,7 +73,7 @@ static const char help_on_options[] =
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin); - writes\n"
     "                       one picture to standard output\n"
     "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
-    "      --mask FILE, --size N, --views N\n"
+    "      --mask FILE, --point X,Y, --box X,Y,W,H, --size N, --views N\n"
     "                       for a PHOTO, as in merlin estimate\n"
     "      --photo-exposure EV|auto\n"
     "                       for a PHOTO, --exposure of merlin estimate\n"
@@ -192,8 +193,11 @@ static status check_way(request *r)
 
 static status check_photo(const request *r)
 {
-    if (!file_is_folder(r->input) || (!r->mask && !photo_params_given(&r->params))) return OK;
-    return fail(ERROR_USAGE, "--mask, --size, --views and --photo-exposure are for a photograph; %s holds maps already",
+    if (!file_is_folder(r->input)) return photo_check_hint(&r->params.hint, r->mask, false);
+    if (!r->mask && !photo_params_given(&r->params)) return OK;
+    return fail(ERROR_USAGE,
+                "--mask, --point, --box, --size, --views and --photo-exposure are for a photograph; %s holds maps "
+                "already",
                 r->input);
 }
 
@@ -233,6 +237,8 @@ static status parse(int *argc, char ***argv, request *r)
         {"matte", .flag = &r->matte},
         {"frame", .integer = &r->frame, .low = 32, .high = 1024},
         {"mask", .text = &r->mask},
+        {"point", .take = photo_take_point, .into = &r->params.hint},
+        {"box", .take = photo_take_box, .into = &r->params.hint},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"photo-exposure", .take = photo_take_exposure, .into = &r->params},

@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
+#include "cli/photo_hint.h"
 #include "cli/photos.h"
 #include "cli/stage_bar.h"
 #include "cli/standard_input.h"
@@ -49,7 +50,7 @@ static const char help[] =
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
     "output)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
-    "      --model W, --size N, --views N, --exposure EV\n"
+    "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
     "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
     "      --json           the report on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
@@ -134,8 +135,9 @@ static status check(request *r)
                     pst_method_name(r->folder.method));
     if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
-        return fail(ERROR_USAGE, "--model, --size, --views and --exposure are for one photograph, not for a folder");
-    return OK;
+        return fail(ERROR_USAGE,
+                    "--model, --size, --views, --exposure, --point and --box are for one photograph, not for a folder");
+    return photo_check_hint(&r->params.hint, o->mask, false);
 }
 
 static status parse(int *argc, char ***argv, request *r)
@@ -147,6 +149,8 @@ static status parse(int *argc, char ***argv, request *r)
         {"distance", .take = take_distance, .into = &r->folder.read.distance},
         {"method", .take = take_method, .into = &r->folder.method},
         {"mask", .text = &r->folder.read.mask},
+        {"point", .take = photo_take_point, .into = &r->params.hint},
+        {"box", .take = photo_take_box, .into = &r->params.hint},
         {"ambient", .text = &r->folder.read.ambient},
         {"linear", .flag = &r->folder.read.linear},
         {"integrate", .take = take_integration, .into = &r->folder},

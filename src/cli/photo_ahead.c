@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/progress.h"
+#include "cli/photo_hint.h"
 
 /* mask: the job's, else alpha; without data if neither. */
 static status read_both(const photo_job *job, merlin_image *photo, merlin_image *mask)
@@ -23,7 +24,7 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
     status s = read_both(job, photo, &mask);
     *read_seconds = clock_seconds() - began;
     if (s == OK) {
-        s = photo_object_choose(photo, &mask, object);
+        s = photo_object_choose(photo, &mask, job->hint, object);
         (void)merlin_shot_read(job->photo, &object->shot);
         if (s != OK) s = fail_in(s, "%s", job->photo);
     }
@@ -35,10 +36,11 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
                   merlin_maps *maps)
 {
+    const merlin_hint *hint = params && photo_hint_given(&params->hint) ? &params->hint : NULL;
     char *own = NULL;
-    status s = mask ? OK : photo_own_mask(photo, &own);
+    status s = mask || hint ? OK : photo_own_mask(photo, &own);
     if (s != OK) return s;
-    photo_job job = {.photo = (char *)photo, .mask = mask ? (char *)mask : own};
+    photo_job job = {.photo = (char *)photo, .mask = mask ? (char *)mask : own, .hint = hint};
     merlin_image picture;
     photo_object object;
     double seconds;

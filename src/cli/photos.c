@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/photo_folder.h"
+#include "cli/photo_hint.h"
 #include "estimate/network.h"
 
 /* ---- names ---- */
@@ -51,6 +52,13 @@ const char *photo_without_maps_name(char *input)
 }
 
 /* ---- the list ---- */
+
+void photo_use_hint(photo_job *job, const merlin_hint *hint)
+{
+    free(job->mask);
+    job->mask = NULL;
+    job->hint = hint;
+}
 
 void photo_list_free(photo_list *list)
 {
@@ -261,12 +269,14 @@ status photo_take_exposure(const char *text, void *into)
 bool photo_params_given(const merlin_params *params)
 {
     merlin_params usual = merlin_params_default();
-    return params->size != usual.size || params->views != usual.views || params->auto_exposure != usual.auto_exposure;
+    return params->size != usual.size || params->views != usual.views || params->auto_exposure != usual.auto_exposure ||
+           photo_hint_given(&params->hint);
 }
 
 status photo_check_maps(const char *folder, const char *mask, const merlin_params *params)
 {
     if (!mask && !photo_params_given(params)) return OK;
-    return fail(ERROR_USAGE, "--mask, --size, --views and --exposure are for a photograph; %s holds maps already",
+    return fail(ERROR_USAGE,
+                "--mask, --point, --box, --size, --views and --exposure are for a photograph; %s holds maps already",
                 folder);
 }

@@ -12,7 +12,8 @@
 
 typedef struct photo_job {
     char *photo, *output;
-    char *mask; /* NULL: alpha, or the object is searched for */
+    char *mask;              /* NULL: alpha, or the object is searched for, */
+    const merlin_hint *hint; /* by this, or NULL; borrowed */
 } photo_job;
 
 typedef struct photo_folder {
@@ -38,6 +39,8 @@ void photo_list_tell(const photo_list *list, const char *command);
 void photo_list_put(const photo_list *list, cJSON *report);
 /* Finds the mask that lies beside a photograph; *mask is malloc'ed, NULL if there is none. */
 status photo_own_mask(const char *photo, char **mask);
+/* Has the object searched for by a hint, which is borrowed, in place of taking the mask that lies beside it. */
+void photo_use_hint(photo_job *job, const merlin_hint *hint);
 void photo_list_free(photo_list *list);
 
 /* Where what is made of a photograph, or of a folder, goes: asked if that is not NULL, else NAME inside the folder or
@@ -55,7 +58,7 @@ status photo_find_model(const char *asked, char **path);
 /* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */
 status photo_take_size(const char *text, void *into);
 status photo_take_exposure(const char *text, void *into);
-/* Whether --size, --views or --exposure ask for anything but the defaults. */
+/* Whether --size, --views, --exposure, --point or --box ask for anything but the defaults. */
 bool photo_params_given(const merlin_params *params);
 /* ERROR_USAGE where these options go with a folder of maps, which is not estimated again; mask may be NULL. */
 status photo_check_maps(const char *folder, const char *mask, const merlin_params *params);

@@ -46,9 +46,10 @@ typedef struct photo_object {
 } photo_object;
 
 /* merlin_estimate in two steps, so that the object can be searched for while the model is still being read. given may
- * be NULL or empty; estimate_object takes the mask and the photograph over, whatever it returns, and frees them as soon
- * as it can. */
-status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out);
+ * be NULL or empty, hint NULL; estimate_object takes the mask and the photograph over, whatever it returns, and frees
+ * them as soon as it can. */
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, const merlin_hint *hint,
+                           photo_object *out);
 void photo_object_free(photo_object *object);
 status estimate_object(merlin_model *model, merlin_image *photo, photo_object *object, const merlin_params *params,
                        merlin_maps *maps);

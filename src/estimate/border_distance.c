@@ -166,14 +166,20 @@ static status add_barriers(const img *color, const uint8_t *seed, img *out)
     return OK;
 }
 
+status barrier_distance(const img *color, const uint8_t *seed, img *out)
+{
+    status s = img_new(out, color->width, color->height, 1);
+    if (s == OK) s = add_barriers(color, seed, out);
+    if (s != OK) img_free(out);
+    return s;
+}
+
 status border_distance(const img *color, const uint8_t *ring, img *out)
 {
     uint8_t *seed = calloc((size_t)color->width * (size_t)color->height, 1);
-    status s = img_new(out, color->width, color->height, 1);
-    if (s == OK && !seed) s = no_memory();
-    if (s == OK) s = choose_seeds(color, ring, seed);
-    if (s == OK) s = add_barriers(color, seed, out);
+    *out = (img){0};
+    status s = seed ? choose_seeds(color, ring, seed) : no_memory();
+    if (s == OK) s = barrier_distance(color, seed, out);
     free(seed);
-    if (s != OK) img_free(out);
     return s;
 }

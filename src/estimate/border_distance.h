@@ -18,4 +18,7 @@
  * that the picture cuts off at one side is none. */
 status border_distance(const img *color, const uint8_t *ring, img *out);
 
+/* The same from pixels that are 1 in seed, whatever their colours. */
+status barrier_distance(const img *color, const uint8_t *seed, img *out);
+
 #endif

@@ -241,7 +241,9 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
             "%.0f %% of the object is burnt out, where albedo and roughness are guesses: photograph it darker",
             100 * (double)maps->burnt_out);
     case MERLIN_DOUBT_OBJECT_UNSURE:
-        return snprintf(text, room, "the object was found with little confidence (%.2f): check the mask, or give one",
+        return snprintf(text, room,
+                        "it is not sure which part is the object (confidence %.2f): check mask.png; --point X,Y or "
+                        "--box X,Y,W,H helps the search, --mask FILE does without",
                         (double)maps->mask_confidence);
     case MERLIN_DOUBT_LENS_NARROW:
     case MERLIN_DOUBT_LENS_WIDE:

@@ -76,14 +76,15 @@ static status check_params(const merlin_params *p)
     return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
 }
 
-status photo_object_choose(const merlin_image *photo, const merlin_image *given, photo_object *out)
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, const merlin_hint *hint,
+                           photo_object *out)
 {
     double began = clock_seconds();
     img picture = img_of(photo), mask = {0};
     *out = (photo_object){0};
     if (given) mask = img_of(given);
     status s = check_photo(&picture);
-    if (s == OK) s = mask_choose(&picture, &mask, &out->mask, &out->choice);
+    if (s == OK) s = mask_choose(&picture, &mask, hint, &out->mask, &out->choice);
     if (s == OK) s = crop_around(&out->mask, &out->crop);
     if (s != OK) photo_object_free(out);
     out->seconds = clock_seconds() - began;
@@ -328,7 +329,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     status s = api_needs(__func__, model && photo && maps);
     if (s != OK) return result_of(s);
     photo_object object;
-    s = photo_object_choose(photo, mask, &object);
+    s = photo_object_choose(photo, mask, params ? &params->hint : NULL, &object);
     if (params) object.shot = params->shot;
     if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
     if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);

@@ -93,7 +93,7 @@ static status add_picture(doubt_table *t, merlin_model *model, const sample *s, 
         picture.data[i] = fminf(picture.data[i] * scale, 1);
     doubt_photo photo = {.name = name, .kind = kind, .picture = image_of(&picture)};
     merlin_image mask = image_of(&s->mask);
-    st = photo_object_choose(&photo.picture, &mask, &photo.object);
+    st = photo_object_choose(&photo.picture, &mask, NULL, &photo.object);
     if (st == OK) return doubt_table_add(t, model, &photo);
     img_free(&picture);
     return st;

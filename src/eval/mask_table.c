@@ -27,7 +27,7 @@ static status search(const mask_truth *truth, mask_row *row)
     mask_choice choice;
     *row = (mask_row){.kind = truth->kind};
     snprintf(row->name, sizeof row->name, "%s", truth->name);
-    status s = mask_choose(truth->photo, NULL, &mask, &choice);
+    status s = mask_choose(truth->photo, NULL, truth->hint, &mask, &choice);
     row->found = s == OK;
     if (row->found) row->iou = overlap(&mask, truth->mask);
     if (row->found) row->confidence = (double)choice.confidence;
@@ -80,7 +80,7 @@ static status search_composites(void *context, size_t i)
         composite c;
         st = composite_make(&s, b->seed, (composite_kind)kind, &c);
         if (st != OK) break;
-        mask_truth truth = {file_name_of(b->paths[i]), kind, &c.photo, &c.mask};
+        mask_truth truth = {file_name_of(b->paths[i]), kind, &c.photo, &c.mask, NULL};
         st = search(&truth, &b->row[i * COMPOSITE_KINDS + (size_t)kind]);
         composite_free(&c);
     }

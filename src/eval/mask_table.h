@@ -14,6 +14,7 @@
 
 #include "base/progress.h"
 #include "eval/composite.h"
+#include "merlin/merlin.h"
 
 /* Intersection over union from which a mask counts as right. */
 #define MASK_IS_RIGHT 0.97
@@ -38,6 +39,7 @@ typedef struct mask_truth {
     const char *name;
     int kind;
     const img *photo, *mask;
+    const merlin_hint *hint; /* NULL: none */
 } mask_truth;
 
 status mask_table_add(mask_table *t, const mask_truth *truth);

@@ -18,7 +18,7 @@ in_source() { # COMMAND: the names in its table, and those of the table that all
 in_help() { # COMMAND
     local words
     read -ra words <<<"$1"
-    merlin "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(( [A-Z]+)?, --[a-z-]+)*' | grep -oE -e '--[a-z-]+' | sort -u
+    merlin "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(( [A-Z,]+)?, --[a-z-]+)*' | grep -oE -e '--[a-z-]+' | sort -u
 }
 # shellcheck source=completions/merlin.bash
 source "$completions/merlin.bash"

@@ -57,7 +57,7 @@ static void what_the_mask_shows_is_told(void **state)
     assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_CUT);
     merlin_maps_free(&maps);
     make(&maps, 40, 30, 80, 60); /* 1200 pixels */
-    maps.mask_confidence = 0.5f;
+    maps.mask_confidence = 0.45f;
     assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_SMALL | MERLIN_DOUBT_OBJECT_UNSURE);
     merlin_maps_free(&maps);
 }

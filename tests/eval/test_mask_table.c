@@ -36,8 +36,9 @@ static void overlaps_are_those_with_the_known_mask(void **state)
     mask_counts c;
     make_disc(&photo, &mask, &half);
     assert_int_equal(img_new(&other, 95, 96, 1), OK);
-    const mask_truth whole = {"whole", MASK_PHOTO, &photo, &mask}, upper = {"upper", MASK_PHOTO, &photo, &half};
-    const mask_truth wrong = {"wrong", MASK_PHOTO, &photo, &other};
+    const mask_truth whole = {"whole", MASK_PHOTO, &photo, &mask, NULL},
+                     upper = {"upper", MASK_PHOTO, &photo, &half, NULL};
+    const mask_truth wrong = {"wrong", MASK_PHOTO, &photo, &other, NULL};
     assert_int_equal(mask_table_add(&t, &whole), OK);
     assert_int_equal(mask_table_add(&t, &upper), OK);
     assert_int_equal(mask_table_add(&t, &wrong), ERROR_INPUT);
@@ -63,7 +64,7 @@ static void nothing_found_overlaps_nothing(void **state)
     mask_table t = {0};
     make_disc(&photo, &mask, &half);
     memset(photo.data, 0, img_value_count(&photo) * sizeof *photo.data);
-    const mask_truth black = {"black", MASK_PHOTO, &photo, &mask};
+    const mask_truth black = {"black", MASK_PHOTO, &photo, &mask, NULL};
     assert_int_equal(mask_table_add(&t, &black), OK);
     assert_false(t.row[0].found);
     assert_true(t.row[0].iou == 0 && t.row[0].confidence == 0);
