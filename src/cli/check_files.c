@@ -3,11 +3,16 @@
 #include "base/file.h"
 #include "estimate/staging.h"
 
+status check_named(const char *what, const char *path)
+{
+    if (!path || file_exists(path)) return OK;
+    return fail(ERROR_INPUT, "there is no %s %s", what, path);
+}
+
 status check_photo_and_mask(const char *photo, const char *mask)
 {
-    if (!file_exists(photo)) return fail(ERROR_INPUT, "there is no photograph %s", photo);
-    if (mask && !file_exists(mask)) return fail(ERROR_INPUT, "there is no mask %s", mask);
-    return OK;
+    status s = check_named("photograph", photo);
+    return s == OK ? check_named("mask", mask) : s;
 }
 
 status check_output(const char *folder)

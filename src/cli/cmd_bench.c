@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
@@ -129,8 +130,8 @@ static status run_with_model(const request *r)
 {
     char *path;
     status s = photo_find_model(r->model, &path);
-    if (s != OK) return s;
-    s = run(r, path);
+    if (s == OK) s = check_named("weights file", path);
+    if (s == OK) s = run(r, path);
     free(path);
     return s;
 }

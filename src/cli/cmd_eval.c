@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/json_line.h"
@@ -147,6 +148,7 @@ static int run_evaluation(request *r)
     eval_report report;
     char *weights;
     status s = photo_find_model(r->options.weights, &weights);
+    if (s == OK) s = check_named("file of means", r->options.means);
     r->options.weights = weights;
     if (s == OK) s = eval_run(&r->options, &report);
     free(weights);

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/json_line.h"
@@ -109,8 +110,9 @@ typedef struct pictures {
 static status list_pictures(const request *r, pictures *p)
 {
     *p = (pictures){0};
-    status s = OK;
-    if (r->right) s = photo_list_make((char *[]){(char *)r->right}, 1, NULL, NULL, &p->right);
+    status s = check_named("photograph or folder", r->right);
+    if (s == OK) s = check_named("photograph or folder", r->wrong);
+    if (s == OK && r->right) s = photo_list_make((char *[]){(char *)r->right}, 1, NULL, NULL, &p->right);
     if (s == OK && r->wrong) s = photo_list_make((char *[]){(char *)r->wrong}, 1, NULL, NULL, &p->wrong);
     if (!r->quiet) photo_list_tell(&p->right, "eval doubts");
     if (!r->quiet) photo_list_tell(&p->wrong, "eval doubts");

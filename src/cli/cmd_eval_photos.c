@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/eval_commands.h"
 #include "cli/options.h"
@@ -134,6 +135,12 @@ static void leave_out_bad(comparison *c, size_t photo, status s)
     cli_fail("eval photos", s);
 }
 
+static void leave_out_missing(comparison *c)
+{
+    for (size_t i = 0; i < c->photos->count; i++)
+        leave_out_bad(c, i, check_photo_and_mask(c->photos->at[i].photo, c->photos->at[i].mask));
+}
+
 static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
@@ -179,8 +186,11 @@ static status compare(const request *r, const photo_list *photos, size_t *failur
     comparison c;
     status s = comparison_new(r, photos, &c);
     if (s == OK) {
-        progress_begin(&c.progress, "taking apart", "photographs", 0, photos->count * (size_t)r->model_count, r->quiet);
-        for (int model = 0; model < r->model_count && s == OK; model++)
+        leave_out_missing(&c);
+        bool any = c.failures < photos->count;
+        progress_begin(&c.progress, "taking apart", "photographs", 0, photos->count * (size_t)r->model_count,
+                       r->quiet || !any);
+        for (int model = 0; any && model < r->model_count && s == OK; model++)
             s = run_model(&c, model);
         progress_end(&c.progress);
     }
@@ -190,7 +200,7 @@ static status compare(const request *r, const photo_list *photos, size_t *failur
     return s;
 }
 
-static status check_output(const request *r, const photo_list *photos)
+static status check_apart(const request *r, const photo_list *photos)
 {
     for (size_t i = 0; i < photos->count; i++)
         if (file_is_same(r->output, photos->at[i].photo) ||
@@ -206,7 +216,7 @@ static status check_models(const request *r)
     for (int i = 0; i < r->model_count && s == OK; i++) {
         char *weights;
         s = photo_find_model(r->models[i], &weights);
-        if (s == OK && !file_exists(weights)) s = fail(ERROR_INPUT, "there is no weights file %s", weights);
+        if (s == OK) s = check_named("weights file", weights);
         free(weights);
     }
     return s;
@@ -224,7 +234,7 @@ int eval_photos(int argc, char **argv)
     if (!r.quiet) photo_list_tell(&photos, "eval photos");
     cli_catch_interrupts();
     size_t failures = 0;
-    s = check_output(&r, &photos);
+    s = check_apart(&r, &photos);
     if (s == OK) s = check_models(&r);
     if (s == OK) s = compare(&r, &photos, &failures);
     photo_list_free(&photos);

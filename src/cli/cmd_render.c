@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
@@ -123,6 +124,14 @@ static status report(const request *r, const render_stats *stats)
     return OK;
 }
 
+/* Before the environments of a folder are read, which takes seconds. */
+static status check_inputs(const render_options *o)
+{
+    status s = check_named("mesh", o->mesh);
+    if (s == OK) s = check_named("folder of environments", o->environment_folder);
+    return s == OK ? check_named("folder of materials", o->material_folder) : s;
+}
+
 int cmd_render(int argc, char **argv)
 {
     request r = {.options = render_options_default()};
@@ -131,8 +140,9 @@ int cmd_render(int argc, char **argv)
     if (parse(argc, argv, &r) != OK) return cli_usage("render", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    render_stats stats;
-    status s = render_samples(&r.options, &stats);
+    render_stats stats = {0};
+    status s = check_inputs(&r.options);
+    if (s == OK) s = render_samples(&r.options, &stats);
     if (s == OK && !r.options.quiet) {
         skipped_print(&stats.skipped_maps, "render", r.options.environment_folder);
         skipped_print(&stats.skipped_materials, "render", r.options.material_folder);

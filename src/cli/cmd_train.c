@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cli/check_files.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/photos.h"
@@ -77,7 +78,7 @@ static status find_weights(const char **name, char **path)
 {
     status s = photo_find_model(*name, path);
     if (s == OK) *name = *path;
-    return s;
+    return s == OK ? check_named("weights file", *path) : s;
 }
 
 static status train(request *r)
@@ -87,6 +88,7 @@ static status train(request *r)
     status s = o->init ? find_weights(&o->init, &init) : OK;
     for (size_t i = 0; s == OK && r->shared[i]; i++)
         s = find_weights(&r->shared[i], &shared[i]);
+    if (s == OK) s = check_named("configuration", o->config);
     if (s == OK) s = trn_train(o);
     free(init);
     for (size_t i = 0; i < MOST_SHARED; i++)

@@ -159,7 +159,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
     if (s == OK && !lights)
         return fail(ERROR_INPUT,
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
-                    "holds them, or use method uncalibrated",
+                    "holds them, or give --method uncalibrated, which finds them",
                     folder);
     if (s == OK) s = pst_read_light_list(folder, lights, options, c);
     free(lights);

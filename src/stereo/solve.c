@@ -90,11 +90,11 @@ static status check_method(const pst_capture *c, pst_method m)
     bool distant = m == PST_LS || m == PST_ROBUST || m == PST_SEMI;
     if (distant && c->lighting != PST_DISTANT)
         return fail(ERROR_USAGE, "method %s needs light directions, which this capture does not have; use %s",
-                    pst_method_name(m), c->lighting == PST_NEAR ? "near" : "uncalibrated");
+                    pst_method_name(m), c->lighting == PST_NEAR ? "near" : "--method uncalibrated");
     if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
         return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
                     c->lighting == PST_DISTANT ? "robust, or say that its lights are near if its list holds positions"
-                                               : "uncalibrated");
+                                               : "--method uncalibrated");
     if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
         return fail(ERROR_USAGE, "method near needs the camera's focal length");
     if (c->count < 3)
