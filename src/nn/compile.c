@@ -22,6 +22,14 @@ static int backward_time(const compilation *c, int step)
     return 2 * c->low.step_count - 1 - step;
 }
 
+/* The value that a step's k-th input is. */
+static value *input_of(const compilation *c, int step, int k)
+{
+    const lowered_step *from = &c->low.steps[step];
+    const value *head = &c->low.values[from->head];
+    return &c->low.values[k < head->node->inputs ? head->in[k] : from->beside];
+}
+
 static status fill_step(compilation *c, int index)
 {
     const lowered_step *from = &c->low.steps[index];
@@ -34,7 +42,7 @@ static status fill_step(compilation *c, int index)
                       .train = train,
                       .momentum = NN_NORM_MOMENTUM,
                       .relu = from->relu,
-                      .inputs = head->node->inputs,
+                      .inputs = head->node->inputs + (from->beside >= 0),
                       .out = result->tensor,
                       .out_gradient = result->tensor,
                       .context = c->program->context};
@@ -46,7 +54,7 @@ static status fill_step(compilation *c, int index)
     step->name = strdup(name);
     if (!step->name) return fail(ERROR_MEMORY, "no memory for a step");
     for (int k = 0; k < step->inputs; k++) {
-        const value *x = &values[head->in[k]];
+        const value *x = input_of(c, index, k);
         step->in[k] = step->in_gradient[k] = x->tensor;
         step->wants[k] = x->differentiable && lower_passes_gradient(head->node, k);
     }
@@ -122,7 +130,7 @@ static void use_values(compilation *c, int i)
     value *values = c->low.values, *result = &values[from->result];
     int back = backward_time(c, i);
     for (int k = 0; k < step->inputs; k++) {
-        value *x = &values[values[from->head].in[k]];
+        value *x = input_of(c, i, k);
         use_buffer(c, &x->buffer, tensor_bytes(&x->tensor), i);
         if (!step->backs) continue;
         if (backward_needs_input(step->op)) use_buffer(c, &x->buffer, 0, back);
@@ -189,7 +197,7 @@ static status bind_step(compilation *c, int i)
     const lowered_step *from = &c->low.steps[i];
     const value *values = c->low.values, *result = &values[from->result];
     for (int k = 0; k < step->inputs; k++) {
-        const value *x = &values[values[from->head].in[k]];
+        const value *x = input_of(c, i, k);
         step->in[k].data = address(c, x->buffer);
         step->in_gradient[k].data = step->backs && step->wants[k] ? address(c, x->gradient_buffer) : NULL;
     }

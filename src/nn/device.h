@@ -29,7 +29,7 @@ struct nn_step {
     bool train, relu; /* relu: applied to the result */
     bool backs;       /* has a backward pass */
     float momentum;   /* of batch norm's running statistics */
-    int inputs;
+    int inputs;       /* of a convolution that is not trained 2 where the second is added to the result, before relu */
     nn_tensor in[NN_MAX_INPUTS], out;
     nn_tensor in_gradient[NN_MAX_INPUTS], out_gradient; /* data NULL: none is wanted */
     bool wants[NN_MAX_INPUTS];                          /* which inputs' gradients are wanted (before data is known) */

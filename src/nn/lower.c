@@ -99,6 +99,17 @@ static int sole_consumer(const lowering *l, int i, nn_op op)
     return l->values[v->consumer].node->op == op ? v->consumer : -1;
 }
 
+/* Returns the node that adds the value of one before this convolution to its result, and which one; or -1. */
+static int sum_behind(const lowering *l, const lowered_step *step, int *beside)
+{
+    int sum = sole_consumer(l, step->result, OP_ADD);
+    if (sum < 0) return -1;
+    const value *v = &l->values[sum];
+    *beside = v->in[0] == step->result ? v->in[1] : v->in[0];
+    bool is_there = *beside < step->head, is_alike = l->values[*beside].tensor.type == l->options.type;
+    return is_there && is_alike && v->tensor.type == l->options.type ? sum : -1;
+}
+
 /* Extends a step that starts at a convolution or batch norm by what can be computed with it. */
 static void fuse(const lowering *l, lowered_step *step)
 {
@@ -107,6 +118,8 @@ static void fuse(const lowering *l, lowered_step *step)
     if (op_is_conv(op) && !train) {
         step->norm = sole_consumer(l, step->result, OP_NORM);
         if (step->norm >= 0) step->result = step->norm;
+        int beside, sum = sum_behind(l, step, &beside);
+        if (sum >= 0) step->result = sum, step->beside = beside;
     }
     if (op_is_conv(op) || op == OP_NORM) {
         int relu = sole_consumer(l, step->result, OP_RELU);
@@ -126,7 +139,7 @@ static void make_steps(lowering *l)
         value *v = &l->values[i];
         if (!v->live || v->covered || v->node->op == OP_INPUT) continue;
         lowered_step *step = &l->steps[l->step_count++];
-        *step = (lowered_step){.head = i, .norm = -1, .result = i};
+        *step = (lowered_step){.head = i, .norm = -1, .result = i, .beside = -1};
         fuse(l, step);
         for (int k = i; k != step->result; k = l->values[k].consumer)
             l->values[l->values[k].consumer].covered = true;

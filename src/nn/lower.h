@@ -23,6 +23,7 @@ typedef struct value {
 /* One step before the device has seen it: the nodes it covers. */
 typedef struct lowered_step {
     int head, norm, result; /* first node; folded batch norm or -1; the node whose value is written */
+    int beside;             /* the node whose value a convolution adds to its own, or -1 */
     bool relu;
 } lowered_step;
 

@@ -40,7 +40,7 @@ dnnl_data_type_t dnn_type(nn_type type);
 /* Returns the channels-last shape of a tensor in a type. */
 dnn_shape dnn_activation(const nn_tensor *t, nn_type type);
 
-enum { DNN_MAX_ARGUMENTS = 6 };
+enum { DNN_MAX_ARGUMENTS = 6, DNN_ARG_BESIDE = DNNL_ARG_ATTR_MULTIPLE_POST_OP(0) | DNNL_ARG_SRC_1 };
 
 /* A primitive and what it is called with; owns both. Zero-initialized is empty. */
 typedef struct dnn_call {
@@ -54,9 +54,10 @@ typedef struct dnn_call {
 /* A convolution or one of its gradients: source, weights, bias and target are then those of what kind computes. */
 typedef struct dnn_convolution {
     dnnl_prop_kind_t kind;
-    dnn_shape source, weights, bias, target;
+    dnn_shape source, weights, bias, target, beside;
     bool has_bias;
-    bool relu;            /* behind it, forward alone */
+    bool has_beside;      /* forward alone: a tensor is added, DNN_ARG_BESIDE */
+    bool relu;            /* behind all of it, forward alone */
     const char *avoided;  /* part of the name of an implementation that is not to be taken, or NULL */
     const dnn_call *hint; /* a forward description, of gradients */
     dnnl_dims_t strides, before, behind;

@@ -56,6 +56,8 @@ static status describe_forward(nn_step *step, conv *state)
     dnn_convolution wanted = convolution_of(step, step->train ? dnnl_forward_training : dnnl_forward_inference);
     wanted.target = dnn_activation(&step->out, step->out.type);
     wanted.has_bias = state->has_bias;
+    wanted.has_beside = step->inputs > 1;
+    if (wanted.has_beside) wanted.beside = dnn_activation(&step->in[1], step->in[1].type);
     wanted.relu = step->relu;
     return dnn_describe(&state->forward, step->context, &wanted);
 }
@@ -140,6 +142,12 @@ static float *bias_data(const nn_step *step)
     return state->folded_bias ? state->folded_bias : step->params.bias->value;
 }
 
+static status bind_beside(const nn_step *step, dnn_call *call)
+{
+    dnn_shape beside = dnn_activation(&step->in[1], step->in[1].type);
+    return dnn_argument_of(call, step->context, DNN_ARG_BESIDE, &beside, step->in[1].data);
+}
+
 static status bind_forward(nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
@@ -151,6 +159,7 @@ static status bind_forward(nn_step *step, conv *state)
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
     if (s == OK && state->has_bias) s = dnn_argument_of(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
     if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DST, &y, step->out.data);
+    if (s == OK && step->inputs > 1) s = bind_beside(step, call);
     return s == OK ? dnn_make(call, step->forward_space, context) : s;
 }
 

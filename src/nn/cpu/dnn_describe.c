@@ -4,7 +4,7 @@
 #include "nn/cpu/dnn.h"
 
 typedef struct memories {
-    dnnl_memory_desc_t source, weights, bias, target;
+    dnnl_memory_desc_t source, weights, bias, target, beside;
 } memories;
 
 #if DNNL_VERSION_MAJOR < 3
@@ -141,14 +141,16 @@ static void end_walk(walk *w)
 
 #endif
 
-static status make_attributes(dnnl_primitive_attr_t *attributes, bool relu)
+static status make_attributes(dnnl_primitive_attr_t *attributes, const memories *m, const dnn_convolution *wanted)
 {
     dnnl_post_ops_t post = NULL;
     dnnl_status_t code = dnnl_primitive_attr_create(attributes);
     if (code == dnnl_success) code = dnnl_primitive_attr_set_scratchpad_mode(*attributes, dnnl_scratchpad_mode_user);
-    if (code == dnnl_success && relu) {
+    if (code == dnnl_success && (wanted->relu || wanted->has_beside)) {
         code = dnnl_post_ops_create(&post);
-        if (code == dnnl_success) code = append_relu(post);
+        if (code == dnnl_success && wanted->has_beside)
+            code = dnnl_post_ops_append_binary(post, dnnl_binary_add, dnn_layout_of(&m->beside));
+        if (code == dnnl_success && wanted->relu) code = append_relu(post);
         if (code == dnnl_success) code = dnnl_primitive_attr_set_post_ops(*attributes, post);
         if (post) dnnl_post_ops_destroy(post);
     }
@@ -182,13 +184,14 @@ status dnn_describe(dnn_call *call, const dnn_context *context, const dnn_convol
     memories m;
     memset(&m, 0, sizeof m);
     dnnl_primitive_attr_t attributes = NULL;
-    status s = make_attributes(&attributes, wanted->relu);
-    if (s == OK) s = dnn_memory_init(&m.source, &wanted->source);
+    status s = dnn_memory_init(&m.source, &wanted->source);
     if (s == OK) s = dnn_memory_init(&m.weights, &wanted->weights);
     if (s == OK && wanted->has_bias) s = dnn_memory_init(&m.bias, &wanted->bias);
     if (s == OK) s = dnn_memory_init(&m.target, &wanted->target);
+    if (s == OK && wanted->has_beside) s = dnn_memory_init(&m.beside, &wanted->beside);
+    if (s == OK) s = make_attributes(&attributes, &m, wanted);
     if (s == OK) s = describe_first(call, context, wanted, &m, attributes);
-    dnnl_memory_desc_t *all[] = {&m.source, &m.weights, &m.bias, &m.target};
+    dnnl_memory_desc_t *all[] = {&m.source, &m.weights, &m.bias, &m.target, &m.beside};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         dnn_memory_free(all[i]);
     if (attributes) dnnl_primitive_attr_destroy(attributes);

@@ -59,7 +59,8 @@ static status refresh(nn_step *step)
 static status forward(nn_step *step)
 {
     const state *own = step->state;
-    winograd_after after = {.bias = own->folded_bias, .relu = step->relu};
+    const void *beside = step->inputs > 1 ? step->in[1].data : NULL;
+    winograd_after after = {.bias = own->folded_bias, .beside = beside, .relu = step->relu};
     if (!after.bias && step->params.bias) after.bias = step->params.bias->value;
     winograd_convolve(&own->shape, step->in[0].data, own->weights, &after, step->out.data, step->forward_space);
     return OK;
