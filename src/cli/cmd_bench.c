@@ -12,6 +12,7 @@
 #include "cli/options.h"
 #include "cli/photos.h"
 #include "eval/bench.h"
+#include "eval/bench_layers.h"
 #include "eval/bench_stereo.h"
 #include "model/model.h"
 #include "train/checkpoint.h"
@@ -25,7 +26,8 @@ static const char help[] =
     "      --batch N       pictures in a training step (default 16)\n"
     "      --stereo        photometric stereo by least squares instead: 8 and 32 pictures of 12 megapixels, against\n"
     "                      the rate at which this machine copies memory\n"
-    "      --profile FILE  write what each of the network's layers takes, forward, backward and in either precision\n"
+    "      --layers        where the network's time goes instead: every layer's GFLOP, milliseconds and share of the\n"
+    "                      peak, slowest first, of inference and training in either precision\n"
     "      --quick         fewer runs, smaller pictures\n"
     "      --json          report on standard output as JSON\n"
     "  -t, --threads N     how many threads work (default: one a processor)\n"
@@ -34,8 +36,8 @@ static const char help[] =
 
 typedef struct request {
     bench_options options;
-    const char *model, *config, *profile;
-    bool stereo, json, help;
+    const char *model, *config;
+    bool stereo, layers, json, help;
 } request;
 
 static status parse(int argc, char **argv, request *r)
@@ -44,7 +46,7 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->model},
         {"config", .text = &r->config},
         {"batch", .integer = &r->options.batch, .low = 1, .high = 256},
-        {"profile", .text = &r->profile},
+        {"layers", .flag = &r->layers},
         {"quick", .flag = &r->options.quick},
         {"stereo", .flag = &r->stereo},
         {"json", .flag = &r->json},
@@ -55,8 +57,8 @@ static status parse(int argc, char **argv, request *r)
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
     if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
-    if (r->stereo && (r->model || r->config || r->options.batch || r->profile))
-        return fail(ERROR_USAGE, "--stereo goes without --model, --config, --batch and --profile");
+    if (r->stereo && (r->model || r->config || r->options.batch || r->layers))
+        return fail(ERROR_USAGE, "--stereo goes without --model, --config, --batch and --layers");
     if (r->model && r->config) return fail(ERROR_USAGE, "--model and --config exclude each other");
     return OK;
 }
@@ -80,28 +82,27 @@ static status write_random_weights(const char *config_path, const char *path)
     return s;
 }
 
-/* The profile is put into place when all of it is there. */
-static status run_profiled(const request *r, bench_options *options, bench_report *report)
+static status run_layers(const request *r, const char *weights)
 {
-    char *text = NULL;
-    size_t size = 0;
-    status s = file_check_writable(r->profile);
-    if (s != OK) return s;
-    options->profile = open_memstream(&text, &size);
-    if (!options->profile) return fail(ERROR_MEMORY, "no memory for a profile");
-    s = bench_run(options, report);
-    if (fclose(options->profile) != 0 && s == OK) s = fail(ERROR_MEMORY, "no memory for a profile");
-    if (s == OK) s = file_write(r->profile, text, size);
-    free(text);
+    const bench_options *o = &r->options;
+    bench_layers layers;
+    status s =
+        bench_layers_measure(&(bench_layers_options){weights, o->batch, o->quick, o->quiet, o->stopped}, &layers);
+    if (s == OK && r->json)
+        s = json_report_print(bench_layers_json(&layers));
+    else if (s == OK)
+        bench_layers_print(&layers, stdout);
+    bench_layers_free(&layers);
     return s;
 }
 
 static status run(const request *r, const char *weights)
 {
+    if (r->layers) return run_layers(r, weights);
     bench_options options = r->options;
     options.weights = weights;
     bench_report report;
-    status s = r->profile ? run_profiled(r, &options, &report) : bench_run(&options, &report);
+    status s = bench_run(&options, &report);
     if (s != OK) return s;
     if (r->json) return json_report_print(bench_report_json(&report));
     bench_print_table(&report, stdout);

@@ -28,9 +28,6 @@ typedef struct bench_network {
     size_t resident_bytes; /* the most that this process held while it ran; 0 if the system does not tell */
 } bench_network;
 
-/* The machine's peak for training, the harmonic mean of the three directions; for inference it is forward's. */
-double bench_training_peak(const nn_peak *peak);
-
 typedef struct bench_report {
     char model[64];
     int threads, batch;
@@ -52,7 +49,6 @@ typedef struct bench_options {
     int batch;           /* of training; 0: 16 */
     bool quick;          /* fewer runs */
     bool quiet;
-    FILE *profile;        /* takes every layer's time, a line each; NULL: nobody asks */
     int (*stopped)(void); /* polled between measurements; NULL: never */
 } bench_options;
 

@@ -2,8 +2,7 @@
 
 #include "estimate/report.h"
 #include "eval/bench.h"
-
-static const char *const type_names[BENCH_TYPES] = {[NN_FLOAT32] = "float32", [NN_BFLOAT16] = "bfloat16"};
+#include "eval/bench_network.h"
 
 /* What docs/evaluation.md asks for. */
 static const double least_inference_share = 0.55, least_training_share = 0.55, most_estimate_seconds = 0.25;
@@ -38,9 +37,11 @@ static void print_networks(const bench_report *r, FILE *stream)
             "of peak", "planned", "resident", "goal", "holds");
     for (int t = 0; t < BENCH_TYPES; t++)
         if (r->measured[t])
-            print_network(stream, "inference, one of 256x256", type_names[t], &r->inference[t], least_inference_share);
+            print_network(stream, "inference, one of 256x256", bench_type_name((nn_type)t), &r->inference[t],
+                          least_inference_share);
     for (int t = 0; t < BENCH_TYPES; t++)
-        if (r->measured[t]) print_network(stream, training, type_names[t], &r->training[t], least_training_share);
+        if (r->measured[t])
+            print_network(stream, training, bench_type_name((nn_type)t), &r->training[t], least_training_share);
 }
 
 static void print_estimate(const bench_estimation *e, FILE *stream)
@@ -71,10 +72,10 @@ void bench_print_table(const bench_report *r, FILE *stream)
     for (int t = 0; t < BENCH_TYPES; t++) {
         const nn_peak *p = &r->peak[t];
         if (r->measured[t])
-            fprintf(stream, "%-34s%12.0f%15.0f%18.0f%15.0f\n", type_names[t], p->forward * 1e-9,
-                    p->backward_data * 1e-9, p->backward_weights * 1e-9, bench_training_peak(p) * 1e-9);
+            fprintf(stream, "%-34s%12.0f%15.0f%18.0f%15.0f\n", bench_type_name((nn_type)t), p->forward * 1e-9,
+                    p->backward_data * 1e-9, p->backward_weights * 1e-9, bench_peak_for(p, NN_TRAIN) * 1e-9);
         else
-            fprintf(stream, "%-34s%12s\n", type_names[t], "-");
+            fprintf(stream, "%-34s%12s\n", bench_type_name((nn_type)t), "-");
     }
     print_networks(r, stream);
     print_estimate(&r->estimate, stream);
@@ -98,11 +99,11 @@ static void add_network(cJSON *parent, const char *key, const bench_network *n, 
 
 static void add_type(cJSON *parent, const bench_report *r, int t)
 {
-    cJSON *o = cJSON_AddObjectToObject(parent, type_names[t]);
+    cJSON *o = cJSON_AddObjectToObject(parent, bench_type_name((nn_type)t));
     cJSON_AddNumberToObject(o, "peak_forward", r->peak[t].forward * 1e-9);
     cJSON_AddNumberToObject(o, "peak_backward_data", r->peak[t].backward_data * 1e-9);
     cJSON_AddNumberToObject(o, "peak_backward_weights", r->peak[t].backward_weights * 1e-9);
-    cJSON_AddNumberToObject(o, "peak_training", bench_training_peak(&r->peak[t]) * 1e-9);
+    cJSON_AddNumberToObject(o, "peak_training", bench_peak_for(&r->peak[t], NN_TRAIN) * 1e-9);
     add_network(o, "inference_256", &r->inference[t], least_inference_share);
     add_network(o, "training_128", &r->training[t], least_training_share);
 }

@@ -1,6 +1,5 @@
 /* What a program costs, where its time goes, and what the machine can do. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/progress.h"
@@ -24,47 +23,52 @@ nn_cost nn_program_cost(const nn_program *p)
 
 typedef status (*step_call)(nn_step *step);
 
-static status profile_step(nn_step *step, const char *pass, step_call call, double flops, int runs, FILE *file)
+typedef struct layer_watch {
+    int runs;
+    nn_layer_seen *seen;
+    void *context;
+} layer_watch;
+
+static status measure_step(nn_step *step, const char *pass, step_call call, double flops, const layer_watch *w)
 {
-    double seconds = INFINITY; /* the best: others may be using the machine */
-    for (int r = 0; r < runs; r++) {
+    double seconds = INFINITY;
+    for (int r = 0; r < w->runs; r++) {
         double start = clock_seconds();
         status s = call(step);
         if (s != OK) return fail_in(s, "%s", step->name);
         seconds = fmin(seconds, clock_seconds() - start);
     }
     const nn_tensor *t = op_is_loss(step->op) ? &step->in[0] : &step->out;
-    int written = fprintf(file, "%-8s %-18s %-32s %4dx%dx%dx%-4d %9.3f ms %8.1f GFLOP/s\n", pass, op_name(step->op),
-                          step->name, t->n, t->h, t->w, t->c, seconds * 1e3, flops / seconds * 1e-9);
-    return written > 0 ? OK : fail(ERROR_OUTPUT, "cannot write the profile");
+    nn_layer layer = {pass, op_name(step->op), step->name, t->n, t->h, t->w, t->c, seconds, flops};
+    return w->seen(w->context, &layer);
 }
 
-static status profile_steps(nn_program *p, int runs, FILE *file)
+static status measure_steps(nn_program *p, const layer_watch *w)
 {
     status s = OK;
     for (int i = 0; s == OK && i < p->step_count; i++) {
         nn_step *step = &p->steps[i];
-        s = profile_step(step, "forward", step->run->forward, step->forward_flops, runs, file);
+        s = measure_step(step, "forward", step->run->forward, step->forward_flops, w);
     }
     for (int i = 0; s == OK && i < p->step_count; i++) {
         nn_step *step = &p->steps[i];
-        if (step->run->refresh) s = profile_step(step, "refresh", step->run->refresh, 0, runs, file);
+        if (step->run->refresh) s = measure_step(step, "refresh", step->run->refresh, 0, w);
     }
     for (int i = p->step_count - 1; s == OK && i >= 0; i--) {
         nn_step *step = &p->steps[i];
-        if (step->backs) s = profile_step(step, "backward", step->run->backward, step->backward_flops, runs, file);
+        if (step->backs) s = measure_step(step, "backward", step->run->backward, step->backward_flops, w);
     }
     return s;
 }
 
-status nn_profile(nn_program *p, int runs, void *file)
+status nn_measure_layers(nn_program *p, int runs, nn_layer_seen *seen, void *context)
 {
-    if (runs < 1) return fail(ERROR_USAGE, "a profile of %d runs", runs);
+    if (runs < 1) return fail(ERROR_USAGE, "layers measured by %d runs", runs);
     status s = nn_forward(p);
     if (s != OK) return s;
     p->forwarded = false; /* what forward left is not kept for a backward */
     p->device->begin(p->context);
-    s = profile_steps(p, runs, file);
+    s = measure_steps(p, &(layer_watch){runs, seen, context});
     p->device->end(p->context);
     return s;
 }

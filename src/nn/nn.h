@@ -191,9 +191,19 @@ typedef struct nn_cost {
     size_t parameter_count;
 } nn_cost;
 nn_cost nn_program_cost(const nn_program *p);
-/* One line per step with the best of its times over `runs` runs, to a FILE; for finding what is slow. Changes running
+/* One step's work in one pass. Strings live as long as the program. */
+typedef struct nn_layer {
+    const char *pass;      /* "forward", "refresh" (its parameters' copies made anew) or "backward" */
+    const char *operation; /* "conv2d" */
+    const char *name;
+    int n, h, w, c; /* of the result; of a loss, of what it is a loss of */
+    double seconds; /* the best of the runs: others may be using the machine */
+    double flops;   /* of convolutions and fully connected layers, 2 per multiply-add */
+} nn_layer;
+typedef status nn_layer_seen(void *context, const nn_layer *layer);
+/* Tells what every step takes, for finding what is slow; a status other than OK from `seen` ends it. Changes running
  * statistics and gradients. */
-status nn_profile(nn_program *p, int runs, void *file);
+status nn_measure_layers(nn_program *p, int runs, nn_layer_seen *seen, void *context);
 
 /* Peak rate in FLOP/s of this machine's convolutions, measured now: 64→64, 3×3, 128×128, batch 8. */
 typedef struct nn_peak {

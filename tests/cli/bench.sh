@@ -6,20 +6,31 @@ make_tiny_model
 make_bad_weights
 export OMP_WAIT_POLICY=passive # other tests may run beside this one
 
-if "$MERLIN" bench --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" --profile "$scratch/profile.txt" \
-    >"$scratch/bench.json"; then
+if "$MERLIN" bench --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" >"$scratch/bench.json"; then
     for figure in copy_bytes_per_second peak_forward peak_training inference_256 seconds gflop_per_second planned_bytes \
         share_of_peak training_128 estimate_256 parts network write resident_bytes light_seconds stage_seconds samples_per_second rays_per_second; do
         grep -q -E "\"$figure\":[[:space:]]*([{]|[1-9]|0[.]0*[1-9])" "$scratch/bench.json" ||
             complain "the report has no $figure above zero"
     done
-    for line in "^inference, 1 of 256x256, float32$" "^training, 2 of 128x128, float32$" \
-        "^forward +conv2d +encoder.level0.a.conv .* [0-9.]+ ms +[0-9.]+ GFLOP/s$" "^backward +conv2d +material.head "; do
-        grep -q -E "$line" "$scratch/profile.txt" || complain "the profile has no line $line"
-    done
 else
     complain "bench failed"
 fi
+
+if "$MERLIN" bench --layers --quick --batch 2 --quiet --model "$scratch/weights.safetensors" >"$scratch/layers.txt"; then
+    for line in "^inference, 1 of 256x256, float32: [0-9.]+ ms in [0-9]+ steps, peak [0-9]+ GFLOP/s$" \
+        "^training step, 2 of 128x128, float32: " \
+        "^forward +conv2d +encoder.level0.a.conv +1x[0-9]+x[0-9]+x[0-9]+ +[0-9.]+ +[0-9.]+ % +[0-9.]+ +[0-9]+ +[0-9]+ %$" \
+        "^backward +conv2d +material.head "; do
+        grep -q -E "$line" "$scratch/layers.txt" || complain "the layers have no line $line"
+    done
+    # the slowest first, within each run
+    awk '/^(inference|training)/ {last = 1e9} /^(forward|refresh|backward)/ {if ($5 > last) exit 1; last = $5}' \
+        "$scratch/layers.txt" || complain "the layers are not in the order of their times"
+else
+    complain "bench --layers failed"
+fi
+"$MERLIN" bench --layers --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" >"$scratch/layers.json" &&
+    grep -q '"share_of_peak"' "$scratch/layers.json" || complain "bench --layers has no JSON"
 
 if "$MERLIN" bench --stereo --quick --quiet --json >"$scratch/stereo.json"; then
     mapfile -t working < <(grep -o '"working_bytes":[[:space:]]*[0-9]*' "$scratch/stereo.json" | grep -o '[0-9]*$')
@@ -31,8 +42,7 @@ else
     complain "bench --stereo failed"
 fi
 refuses 2 "goes without" "$MERLIN" bench --stereo --batch 4
-refuses 2 "goes without" "$MERLIN" bench --stereo --profile "$scratch/p.txt"
-refuses 1 "missing/p.txt" "$MERLIN" bench --quick --quiet --profile "$scratch/missing/p.txt"
+refuses 2 "goes without" "$MERLIN" bench --stereo --layers
 refuses 2 "--batch wants" "$MERLIN" bench --batch 0
 refuses 2 "exclude each other" "$MERLIN" bench --model a --config b
 refuses 2 "unexpected argument" "$MERLIN" bench more
