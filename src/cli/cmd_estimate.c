@@ -16,6 +16,7 @@
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
 #include "cli/standard_input.h"
+#include "cli/written.h"
 #include "estimate/api.h"
 #include "estimate/doubts.h"
 
@@ -117,7 +118,7 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
     json_line_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
-    json_line_files(report, job->output, written->at, written->count);
+    json_line_files(report, job->output, written);
     if (job->mask) json_line_text(report, "mask_file", job->mask);
     if (!*r->told) photo_list_put(r->photos, report);
     *r->told = true;
@@ -136,11 +137,13 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
                        const lap_times *laps)
 {
     enum { TOLD = 3 };
+    char amount[WRITTEN_WORDS];
     status s = OK;
     if (r->json)
         s = print_json(r, job, maps, written, laps);
     else if (!r->quiet)
-        printf("%s: %s/overview.png (%.2f s)\n", standard_input_name(job->photo), job->output, laps->total);
+        printf("%s: %s/overview.png (%.2f s, %s)\n", standard_input_name(job->photo), job->output, laps->total,
+               written_words(written, amount));
     warnings doubts = {0};
     doubts_list(maps, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);

@@ -18,6 +18,7 @@
 #include "cli/relight_output.h"
 #include "cli/standard_input.h"
 #include "cli/stereo_maps.h"
+#include "cli/written.h"
 #include "estimate/api.h"
 #include "estimate/doubts.h"
 #include "estimate/report.h"
@@ -312,7 +313,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     find_doubts(job, result, &doubts);
     cJSON *report = report_begin(&doubts);
     json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
-    json_line_files(report, job->output, result->files.at, result->files.count);
+    json_line_files(report, job->output, &result->files);
     cJSON_AddNumberToObject(report, "lights", (double)job->lamps.count);
     cJSON_AddNumberToObject(report, "orbit", job->orbit);
     cJSON_AddNumberToObject(report, "dome", job->dome.count);
@@ -333,9 +334,10 @@ static status announce(const request *r, const relight_job *job, const relight_r
     if (!r->quiet) warnings_print(&doubts, "relight", standard_input_name(r->input), WARNINGS_MOST);
     if (r->json) return print_json(r, job, result, seconds);
     if (r->quiet || to_standard_output(r)) return OK;
+    char amount[WRITTEN_WORDS];
     printf("%s: %s (%.2f s", standard_input_name(r->input), job->output, seconds);
     if (fabsf(result->ev) >= 0.005f) printf(", exposure %+.2f EV", (double)result->ev);
-    puts(")");
+    printf(", %s)\n", written_words(&result->files, amount));
     return OK;
 }
 

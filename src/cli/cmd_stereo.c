@@ -17,6 +17,7 @@
 #include "cli/stereo_commands.h"
 #include "cli/stereo_folder.h"
 #include "cli/stereo_photo.h"
+#include "cli/written.h"
 #include "estimate/report.h"
 #include "stereo/albedo_scale.h"
 
@@ -197,13 +198,14 @@ static status from_photo(const request *r, stereo_result *out, cJSON *report)
 }
 
 static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
-                       double seconds)
+                       const staged_files *written, double seconds)
 {
+    char amount[WRITTEN_WORDS];
     status s = OK;
     if (r->json)
         s = json_line_print(report);
     else if (!r->quiet)
-        printf("%s: %s (%.2f s)\n", standard_input_name(r->input), output, seconds);
+        printf("%s: %s (%.2f s, %s)\n", standard_input_name(r->input), output, seconds, written_words(written, amount));
     enum { TOLD = 3 };
     if (!r->quiet) warnings_print(&result->doubts, "stereo", standard_input_name(r->input), TOLD);
     if (!r->quiet) skipped_print(&result->skipped, "stereo", r->input);
@@ -245,9 +247,9 @@ static status work(request *r, const char *output, cJSON *report)
         files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
         files.stop = cli_interrupted;
         s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
-        json_line_files(report, output, written.at, written.count);
+        json_line_files(report, output, &written);
     }
-    if (s == OK) s = announce(r, output, &result, report, clock_seconds() - began);
+    if (s == OK) s = announce(r, output, &result, report, &written, clock_seconds() - began);
     staged_files_free(&written);
     stereo_result_free(&result);
     return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;

@@ -79,7 +79,7 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     cJSON *report = report_begin(&all);
     if (c->skipped.count) skipped_json(&c->skipped, r->input, cJSON_AddArrayToObject(report, "skipped"));
     json_line_text(report, "input", r->input);
-    json_line_files(report, r->output, written->at, written->count);
+    json_line_files(report, r->output, written);
     cJSON_AddNumberToObject(report, "lights", c->count);
     cJSON_AddStringToObject(report, "sphere", c->ball == PST_CHROME ? "chrome" : "matte");
     cJSON_AddItemToObject(report, "circle",

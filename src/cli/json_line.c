@@ -18,12 +18,13 @@ void json_line_text(cJSON *object, const char *key, const char *text)
     cJSON_AddItemToObject(object, key, string_of(text));
 }
 
-void json_line_files(cJSON *object, const char *folder, char *const *files, size_t count)
+void json_line_files(cJSON *object, const char *folder, const staged_files *written)
 {
     json_line_text(object, "output", folder);
     cJSON *list = cJSON_AddArrayToObject(object, "files");
-    for (size_t i = 0; i < count; i++)
-        cJSON_AddItemToArray(list, string_of(files[i]));
+    for (size_t i = 0; i < written->count; i++)
+        cJSON_AddItemToArray(list, string_of(written->at[i]));
+    cJSON_AddNumberToObject(object, "bytes", (double)written->bytes);
 }
 
 status json_report_print(char *text)

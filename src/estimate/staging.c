@@ -130,6 +130,14 @@ static int compare_names(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
+static status add_size(staged_files *files, const char *path)
+{
+    struct stat found;
+    if (stat(path, &found) != 0) return fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    files->bytes += (uint64_t)found.st_size;
+    return OK;
+}
+
 static status add_written(staged_files *files, const char *path)
 {
     char **larger = realloc(files->at, (files->count + 1) * sizeof *larger);
@@ -148,12 +156,14 @@ void staged_files_free(staged_files *files)
 
 /* ---- into place ---- */
 
-static status check(const staging *t, const char *to, staged_files *written)
+static status check(const staging *t, const char *from, const char *to, staged_files *written)
 {
     if (file_is_folder(to)) return fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
     if (is_input(t, to))
         return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another name or folder", to);
-    return written ? add_written(written, to) : OK;
+    if (!written) return OK;
+    status s = add_size(written, from);
+    return s == OK ? add_written(written, to) : s;
 }
 
 static status move(const char *from, const char *to)
@@ -165,7 +175,7 @@ static status check_or_move(const staging *t, const char *name, bool only_check,
 {
     char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
     status s = !from || !to ? fail(ERROR_MEMORY, "no memory for a file name")
-               : only_check ? check(t, to, written)
+               : only_check ? check(t, from, to, written)
                             : move(from, to);
     free(from);
     free(to);

@@ -12,6 +12,7 @@
 
 #include <limits.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/status.h"
 
@@ -27,6 +28,7 @@ const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]
 typedef struct staged_files {
     char **at;
     size_t count;
+    uint64_t bytes; /* their sizes' sum */
 } staged_files;
 void staged_files_free(staged_files *files);
 

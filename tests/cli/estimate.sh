@@ -18,6 +18,8 @@ echo "a photograph becomes a folder of maps"
 succeeds disc.merlin/overview.png estimate disc.hdr --size 64
 [ "$(ls -A disc.merlin | sort | tr '\n' ' ')" = "$names " ] || complain "disc.merlin has $(ls -A disc.merlin)"
 for name in $names; do present "disc.merlin/$name"; done
+bytes=$(cat disc.merlin/* | wc -c)
+grep -qF " s, 9 files, $(((bytes + 500) / 1000)) kB)" "$scratch/stdout" || complain "not $bytes bytes: $(cat "$scratch/stdout")"
 grep -q '"mask":.*"found"' disc.merlin/report.json || complain "report.json does not say how the mask came about"
 
 echo "--json prints a report, --quiet nothing, --help explains"

@@ -2,6 +2,7 @@
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <vips/vips.h>
 
 #include "image/animation.h"
@@ -20,6 +21,32 @@ static img make(int width, int height, int channels)
     for (size_t i = 0; i < count; i++)
         image.data[i] = (float)(i % 97) / 96;
     return image;
+}
+
+/* Of a row of noise that is longer than what the compressor remembers, and of a picture that several threads filter. */
+static void rows_that_repeat_cost_next_to_nothing_in_a_png(void **state)
+{
+    (void)state;
+    enum { WIDTH = 6000, HEIGHT = 40, ROW = 3 * WIDTH };
+    img image, back = {0};
+    assert_int_equal(img_new(&image, WIDTH, HEIGHT, 3), OK);
+    uint32_t seed = 1;
+    for (int i = 0; i < ROW; i++)
+        image.data[i] = (float)((seed = seed * 1664525u + 1013904223u) >> 16) / 65535;
+    for (int y = 1; y < HEIGHT; y++)
+        memcpy(image.data + (size_t)y * ROW, image.data, ROW * sizeof *image.data);
+    const char *path = scratch_path("rows.png");
+    struct stat file;
+    int bits = 0;
+    assert_int_equal(img_write_png(path, &image, IMG_LINEAR16), OK);
+    assert_int_equal(stat(path, &file), 0);
+    assert_in_range(file.st_size, 2 * ROW, 2 * ROW + 2 * ROW / 10);
+    assert_int_equal(img_read_samples(path, false, &back, &bits), OK);
+    assert_int_equal(bits, 16);
+    for (size_t i = 0; i < img_value_count(&image); i++)
+        assert_true(fabsf(back.data[i] - image.data[i]) < 1e-6f);
+    img_free(&image);
+    img_free(&back);
 }
 
 static void srgb_formula_inverts_itself(void **state)
@@ -273,6 +300,7 @@ static int start(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_that_repeat_cost_next_to_nothing_in_a_png),
         cmocka_unit_test(srgb_formula_inverts_itself),
         cmocka_unit_test(codes_are_the_nearest),
         cmocka_unit_test(pictures_name_their_colour_space),

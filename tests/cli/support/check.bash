@@ -38,13 +38,17 @@ refuses() {
     [[ ! -s $scratch/stdout ]] || complain "$* wrote to standard output: $(head -2 "$scratch/stdout")"
 }
 
-# lists_its_files FOLDER NAME...: the JSON that succeeds has just got says that FOLDER is the output, and these the files.
+# lists_its_files FOLDER NAME...: the JSON that succeeds has just got says that FOLDER is the output, these the files, and
+# how many bytes they have.
 lists_its_files() {
-    local folder=$1 files=
+    local folder=$1 files= bytes=0
     shift
-    for name in "$@"; do files+="${files:+,}\"$folder/$name\""; done
-    grep -qF "\"output\":\"$folder\",\"files\":[$files]" "$scratch/stdout" ||
-        complain "no output $folder with files $* in: $(cat "$scratch/stdout")"
+    for name in "$@"; do
+        files+="${files:+,}\"$folder/$name\""
+        bytes=$((bytes + $(stat -c %s "$folder/$name")))
+    done
+    grep -qF "\"output\":\"$folder\",\"files\":[$files],\"bytes\":$bytes," "$scratch/stdout" ||
+        complain "no output $folder with files $* of $bytes bytes in: $(cat "$scratch/stdout")"
 }
 
 # Four tiny samples in $scratch/samples and weights of a tiny model in $scratch/weights.safetensors.
