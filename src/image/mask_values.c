@@ -56,8 +56,12 @@ static bool is_same(const float *a, const float *b, int channels)
 static size_t hash(const float *sample, int channels)
 {
     uint64_t h = 0;
-    for (int c = 0; c < channels; c++)
-        h = (h ^ (uint64_t)(sample[c] * 16777216)) * 0x9e3779b97f4a7c15u;
+    for (int c = 0; c < channels; c++) {
+        float same_zero = sample[c] + 0.0f; /* -0 equals 0, whose bits differ */
+        uint32_t bits;
+        memcpy(&bits, &same_zero, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+    }
     return (size_t)(h >> 40) % SLOTS;
 }
 

@@ -201,6 +201,20 @@ static void floats_beyond_white_have_a_unit_of_their_own(void **state)
     assert_selects_object(scratch_path("labels.exr"), true);
 }
 
+static void alpha_of_any_numbers_is_taken(void **state)
+{
+    (void)state;
+    static const float outside[] = {-64, -0.0f, -3e38f, 0.25f}, inside[] = {1, 2, 1e30f, 3e38f};
+    float grey[PIXELS] = {0}, values[PIXELS];
+    for (size_t k = 0; k < sizeof outside / sizeof outside[0]; k++) {
+        for (int i = 0; i < PIXELS; i++)
+            values[i] = is_object(i) ? inside[k] : outside[k];
+        const exr_channel channels[] = {{"Y", grey, 1, true}, {"A", values, 1, true}};
+        assert_int_equal(exr_write(scratch_path("cut.exr"), SIDE, SIDE, channels, 2, NULL, 0), OK);
+        assert_selects_object(scratch_path("cut.exr"), true);
+    }
+}
+
 static void one_value_stays_what_it_is(void **state)
 {
     (void)state;
@@ -244,6 +258,7 @@ int main(void)
         cmocka_unit_test(more_areas_than_two_are_refused_by_their_values),
         cmocka_unit_test(values_that_are_neither_two_nor_half_white_are_refused),
         cmocka_unit_test(floats_beyond_white_have_a_unit_of_their_own),
+        cmocka_unit_test(alpha_of_any_numbers_is_taken),
         cmocka_unit_test(one_value_stays_what_it_is),
         cmocka_unit_test(a_map_of_numbers_is_no_mask),
     };
