@@ -92,7 +92,7 @@ static status place(merlin_maps *maps, float focal)
     maps->crop.x = c.x;
     maps->crop.y = c.y;
     maps->crop.side = c.side;
-    float pitch = camera_pixel_size(&(camera){c.side, c.side, MODEL_FOV});
+    float pitch = camera_pixel_size(&(camera){.width = c.side, .height = c.side, .fov = MODEL_FOV});
     place_depth(maps, focal, pitch);
     s = normalize_albedo(maps);
     if (s != OK) return s;

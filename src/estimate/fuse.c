@@ -200,7 +200,7 @@ status fuse_depth(const img *normal, const img *mask, float fov, img *depth)
     fusion f;
     status s = fusion_new(mask, &f);
     if (s != OK) return s;
-    camera view = {mask->width, mask->height, fov};
+    camera view = {.width = mask->width, .height = mask->height, .fov = fov};
     for (size_t i = 0; i < f.count; i++)
         f.u[i] = mask->data[i] >= 0.5f ? logf(depth->data[i]) : 0;
     joining all = {&f, normal, mask, &view};

@@ -123,7 +123,7 @@ static bool march_begin(const shadow_caster *c, float x, float y, const lamp *l,
 {
     corners around = corners_of(&c->depth, x, y);
     float depth = value_at(&c->depth, &around, 0);
-    camera view = {c->depth.width, c->depth.height, c->fov};
+    camera view = {.width = c->depth.width, .height = c->depth.height, .fov = c->fov};
     vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = way_to(c, p, l);
     float part = part_with_occluders(c, p, to_light);
     if (!(part > 0)) return false;

@@ -264,7 +264,7 @@ static void shade_rows(void *context, size_t begin, size_t end)
 {
     const lighting *job = context;
     const surface *s = job->s;
-    const camera view = {s->mask.width, s->mask.height, SURFACE_FOV};
+    const camera view = {.width = s->mask.width, .height = s->mask.height, .fov = SURFACE_FOV};
     shading row = {s->albedo.data,
                    s->normal.data,
                    s->roughness.data,

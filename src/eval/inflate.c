@@ -16,7 +16,7 @@ status eval_inflate(const img *image, const img *mask, const eval_means *means, 
         eval_maps_free(out);
         return s;
     }
-    camera view = {mask->width, mask->height, fov};
+    camera view = {.width = mask->width, .height = mask->height, .fov = fov};
     float size = camera_pixel_size(&view) * means->depth, middle = (float)eval_mean(&height, mask);
     for (size_t i = 0, n = (size_t)mask->width * (size_t)mask->height; i < n; i++) {
         float depth = means->depth - size * (height.data[i] - middle);

@@ -122,7 +122,7 @@ status eval_render(const eval_maps *maps, const img *mask, float fov, float powe
 {
     status s = img_new(out, mask->width, mask->height, 3);
     if (s != OK) return s;
-    render_work w = {maps, mask, {mask->width, mask->height, fov}, power, light, out};
+    render_work w = {maps, mask, {.width = mask->width, .height = mask->height, .fov = fov}, power, light, out};
     parallel_for((size_t)mask->height, render_row, &w);
     return OK;
 }

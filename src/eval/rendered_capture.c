@@ -135,7 +135,7 @@ static vec3 radiance(rendering *r, const scn_surface *at, vec3 view, const pst_l
 
 static void camera_ray_of(const rendered *how, float x, float y, vec3 *origin, vec3 *direction)
 {
-    camera eye = {how->size, how->size, how->fov};
+    camera eye = {.width = how->size, .height = how->size, .fov = how->fov};
     float pixel = 1.1f / (float)how->size, middle = 0.5f * (float)how->size;
     *origin = how->fov > 0 ? vec3_make(0, 0, 0) : vec3_make((x - middle) * pixel, (middle - y) * pixel, 0);
     *direction = how->fov > 0 ? camera_ray(&eye, x, y) : vec3_make(0, 0, -1);

@@ -23,7 +23,7 @@ static float gloss_share(const eval_subject *on, size_t i)
     const sample *s = on->sample;
     const eval_maps *t = &on->truth;
     const size_t width = (size_t)on->mask.width, column = i % width, row = i / width;
-    const camera view = {on->mask.width, on->mask.height, s->fov};
+    const camera view = {.width = on->mask.width, .height = on->mask.height, .fov = s->fov};
     shade_input in = {.albedo = to_unit(t->albedo.data + 3 * i),
                       .roughness = 0.5f * (t->roughness.data[i] + 1),
                       .normal = vec3_of(t->normal.data + 3 * i),

@@ -1,8 +1,13 @@
 /* Pinhole camera at the origin, looking along -z, x right, y up; square pixels.
  *
- *     camera c = {256, 256, 60};
+ *     camera c = {.width = 256, .height = 256, .fov = 60};
  *     vec3 d = camera_ray(&c, 10.5f, 20.5f);           through the centre of the pixel in column 10, row 20
  *     vec3 p = camera_point(&c, 10.5f, 20.5f, depth);  the point there whose depth is -p.z
+ *
+ * A picture cut out of a larger one, away from the lens's axis, is a camera that looks at the middle of the cut, its
+ * image plane tilted against its line of sight: the plane stays square to the lens.
+ *
+ *     camera c = {256, 256, 60, camera_tilt(20, 0)};   its middle 20 degrees to the right of the lens's axis
  *
  * Pixel coordinates run from the image's top left corner: pixel (i, j) covers [i, i+1) × [j, j+1). */
 #ifndef MERLIN_OPTICS_CAMERA_H
@@ -10,22 +15,66 @@
 
 #include "base/vec.h"
 
+#define CAMERA_RADIAN ((real)(3.14159265358979323846 / 180))
+
+/* Where the lens's axis is not: the middle of the picture, as seen from the lens, sine of the angle to the right and
+ * upwards. Zero where the picture is a whole one. */
+typedef struct camera_slant {
+    real right, up;
+} camera_slant;
+
 typedef struct camera {
     int width, height;
-    real fov; /* horizontal, degrees */
+    real fov; /* horizontal, degrees, by the size of a pixel in the middle */
+    camera_slant slant;
 } camera;
+
+/* The angles by which the middle of the picture lies beside the lens's axis, in degrees, together less than 90. */
+static inline camera_slant camera_tilt(real right, real up)
+{
+    real x = tan(right * CAMERA_RADIAN), y = tan(up * CAMERA_RADIAN), length = sqrt(1 + x * x + y * y);
+    return (camera_slant){x / length, y / length};
+}
+
+/* The tangent of half the field of view: half the width of the picture at depth 1. */
+static inline real camera_tangent(real fov)
+{
+    return tan(fov * (CAMERA_RADIAN / 2));
+}
 
 /* Size of a pixel at depth 1. */
 static inline real camera_pixel_size(const camera *c)
 {
-    return 2 * tan(c->fov * (real)(3.14159265358979323846 / 360)) / (real)c->width;
+    return 2 * camera_tangent(c->fov) / (real)c->width;
+}
+
+/* The image plane's axes, to the right and upwards, as seen by a camera whose line of sight is -z: those of the lens,
+ * turned by the least rotation that takes the middle of the picture to the axis. */
+typedef struct camera_plane {
+    vec3 right, up;
+} camera_plane;
+
+static inline camera_plane camera_plane_of(camera_slant at)
+{
+    real forward = sqrt(1 - at.right * at.right - at.up * at.up), share = 1 / (1 + forward);
+    return (camera_plane){{1 - at.right * at.right * share, -at.right * at.up * share, -at.right},
+                          {-at.right * at.up * share, 1 - at.up * at.up * share, -at.up}};
+}
+
+/* The place in the plane, u to the right and v upwards in units of its distance, as a point of depth 1: (X, Y, -1). */
+static inline vec3 camera_on_plane(const camera_plane *p, real u, real v)
+{
+    real z = 1 - u * p->right.z - v * p->up.z;
+    return vec3_make((u * p->right.x + v * p->up.x) / z, (u * p->right.y + v * p->up.y) / z, -1);
 }
 
 /* The point of depth (-z) seen at (x, y). At depth 1: (X, Y, -1). */
 static inline vec3 camera_point(const camera *c, real x, real y, real depth)
 {
-    real size = camera_pixel_size(c) * depth;
-    return vec3_make((x - (real)c->width / 2) * size, ((real)c->height / 2 - y) * size, -depth);
+    const camera_plane plane = camera_plane_of(c->slant);
+    real size = camera_pixel_size(c);
+    vec3 ray = camera_on_plane(&plane, (x - (real)c->width / 2) * size, ((real)c->height / 2 - y) * size);
+    return vec3_scale(ray, depth);
 }
 
 /* Unit direction through (x, y). */
@@ -37,9 +86,12 @@ static inline vec3 camera_ray(const camera *c, real x, real y)
 /* Pixel coordinates of a point in front of the camera (p.z < 0). */
 static inline void camera_project(const camera *c, vec3 p, real *x, real *y)
 {
-    real size = camera_pixel_size(c) * -p.z;
-    *x = (real)c->width / 2 + p.x / size;
-    *y = (real)c->height / 2 - p.y / size;
+    const camera_plane plane = camera_plane_of(c->slant);
+    const camera_slant at = c->slant;
+    vec3 behind = vec3_cross(plane.right, plane.up);
+    real scale = -sqrt(1 - at.right * at.right - at.up * at.up) / vec3_dot(p, behind), size = camera_pixel_size(c);
+    *x = (real)c->width / 2 + (scale * vec3_dot(p, plane.right) - at.right) / size;
+    *y = (real)c->height / 2 - (scale * vec3_dot(p, plane.up) - at.up) / size;
 }
 
 #endif

@@ -244,7 +244,7 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
                   .target = layer_of(seed, index, STREAM_TARGET),
                   .surroundings = layer_of(seed, index, STREAM_SURROUNDINGS),
                   .out = out};
-    const camera eye = {settings->size, settings->size, settings->fov};
+    const camera eye = {.width = settings->size, .height = settings->size, .fov = settings->fov};
     rng jitter = rng_at(seed, index, STREAM_JITTER);
     uint64_t key = (uint64_t)rng_u32(&jitter) << 32;
     s = visibility_new(scene, &eye, settings->strata, key | rng_u32(&jitter), &r.visibility);

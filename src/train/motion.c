@@ -160,7 +160,7 @@ static status turn_camera(const trn_view *v, const float turn[3][3])
     picture p;
     status s = copy_picture(v, &p);
     if (s != OK) return s;
-    const camera eye = {v->size, v->size, MODEL_FOV};
+    const camera eye = {.width = v->size, .height = v->size, .fov = MODEL_FOV};
     for (int y = 0; y < v->size; y++)
         for (int x = 0; x < v->size; x++)
             turn_pixel(v, &p, &eye, turn, x, y);

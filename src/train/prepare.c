@@ -170,7 +170,7 @@ static status take_photograph(const trn_view *v, bool global, const trn_camera *
 void trn_render(const trn_view *maps, vec3 light, float *out)
 {
     int size = maps->size;
-    camera c = {size, size, MODEL_FOV};
+    camera c = {.width = size, .height = size, .fov = MODEL_FOV};
     float pixel = camera_pixel_size(&c), half = 0.5f * (float)size;
     memset(out, 0, 3 * (size_t)size * (size_t)size * sizeof(float));
     for (int y = 0; y < size; y++) {
@@ -213,7 +213,7 @@ void trn_add_environment(const trn_view *maps, const float sh[9][3], float *imag
 static void subtract_highlights(const trn_view *maps, const float sh[9][3], float *image)
 {
     int size = maps->size;
-    camera c = {size, size, MODEL_FOV};
+    camera c = {.width = size, .height = size, .fov = MODEL_FOV};
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
             size_t i = (size_t)y * (size_t)size + (size_t)x;

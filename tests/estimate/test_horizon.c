@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 enum { SIDE = 256, PIXELS = SIDE * SIDE };
-static const camera view = {SIDE, SIDE, SURFACE_FOV};
+static const camera view = {.width = SIDE, .height = SIDE, .fov = SURFACE_FOV};
 
 static vec3 ray_of(int i)
 {

@@ -49,7 +49,7 @@ static void sample_every_pixel(const surface *s, const env_map *env, const horiz
 {
     lobe_sampler l;
     lobe_over(env, hidden, &l);
-    camera eye = {SIZE, SIZE, SURFACE_FOV};
+    camera eye = {.width = SIZE, .height = SIZE, .fov = SURFACE_FOV};
     assert_int_equal(img_new(image, SIZE, SIZE, 3), OK);
     for (int i = 0; i < PIXELS; i++) {
         if (!(s->mask.data[i] > 0)) continue;

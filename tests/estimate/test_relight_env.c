@@ -20,7 +20,7 @@ enum { SIZE = 24, PIXELS = SIZE * SIZE };
 
 static vec3 view_of(int i)
 {
-    camera c = {SIZE, SIZE, 60};
+    camera c = {.width = SIZE, .height = SIZE, .fov = 60};
     return vec3_scale(camera_ray(&c, (float)(i % SIZE) + 0.5f, (float)(i / SIZE) + 0.5f), -1);
 }
 

@@ -13,7 +13,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 enum { SIDE = 128, PIXELS = SIDE * SIDE };
-static const camera view = {SIDE, SIDE, 60};
+static const camera view = {.width = SIDE, .height = SIDE, .fov = 60};
 
 typedef struct scene {
     img depth, normal, mask;

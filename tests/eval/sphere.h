@@ -59,7 +59,7 @@ static inline status sphere_sample(const sphere *of, int target_count, sample *o
     if (s == OK) s = img_new(&out->indirect, of->size, of->size, 3);
     if (s == OK) s = img_new(&out->env, of->size, of->size, 3);
     if (s != OK) return s;
-    camera view = {of->size, of->size, out->fov};
+    camera view = {.width = of->size, .height = of->size, .fov = out->fov};
     for (int y = 0; y < of->size; y++)
         for (int x = 0; x < of->size; x++)
             sphere_pixel(of, out, &view, x, y);

@@ -182,7 +182,7 @@ static void count_gloss(const char *path, size_t expected[EVAL_REGIONS])
 {
     sample s;
     assert_int_equal(sample_read(path, &s), OK);
-    const camera view = {SIZE, SIZE, s.fov};
+    const camera view = {.width = SIZE, .height = SIZE, .fov = s.fov};
     for (int i = 0; i < SIZE * SIZE; i++) {
         if (s.mask.data[i] <= 0.5f) continue;
         shade_input in = {.albedo = vec3_of(s.albedo.data + 3 * i),

@@ -36,7 +36,7 @@ static sample ball_sample(int size, int count)
     of.size = size;
     sample s;
     assert_int_equal(sphere_sample(&of, count, &s), OK);
-    camera view = {size, size, 60};
+    camera view = {.width = size, .height = size, .fov = 60};
     for (int i = 0; i < count; i++) {
         float phi = 2.4f * (float)i, u = ((float)i + 0.5f) / (float)count;
         s.targets[i].light = s.light = frontal_light(0.3f + 0.7f * u, phi / 6.2831853f - floorf(phi / 6.2831853f));

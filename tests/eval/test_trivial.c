@@ -47,7 +47,7 @@ static void an_inflated_sphere_comes_close_to_the_sphere(void **state)
     }
     assert_true(fabs(sum / count - 0.95) < 1e-4);
     /* where the surface faces the flash the albedo is right, but for the depth and the highlight taken for paint */
-    camera view = {96, 96, 60};
+    camera view = {.width = 96, .height = 96, .fov = 60};
     float x, y;
     camera_project(&view, ball.centre, &x, &y);
     float green = (img_at(&guess.albedo, (int)x, (int)y)[1] + 1) / 2;

@@ -70,7 +70,7 @@ static vec3 read3(const cpu_tensor *t, size_t i)
 
 static shade_input input_at(const scene *s, size_t i)
 {
-    camera c = {WIDTH, HEIGHT, (double)fov};
+    camera c = {.width = WIDTH, .height = HEIGHT, .fov = (double)fov};
     vec3 one = vec3_make(0.5, 0.5, 0.5);
     return (shade_input){.albedo = vec3_fma(one, 0.5, read3(&s->maps.albedo, i)),
                          .roughness = 0.5 + 0.5 * tensor_get(&s->maps.roughness, i),

@@ -121,7 +121,7 @@ static void shading_is_finite_for_empty_pixels_and_degenerate_lights(void **stat
 static void projecting_a_camera_point_returns_its_pixel(void **state)
 {
     (void)state;
-    camera c = {200, 100, 60};
+    camera c = {.width = 200, .height = 100, .fov = 60};
     rng r = rng_at(5, 0, 0);
     for (int i = 0; i < 100; i++) {
         double x = uniform(&r, 0, 200), y = uniform(&r, 0, 100), depth = uniform(&r, 0.1, 5), u, v;
@@ -132,10 +132,47 @@ static void projecting_a_camera_point_returns_its_pixel(void **state)
     }
 }
 
+static void a_slanted_cameras_points_return_to_their_pixels(void **state)
+{
+    (void)state;
+    rng r = rng_at(8, 0, 0);
+    for (int i = 0; i < 100; i++) {
+        camera c = {.width = 200, .height = 100, .fov = uniform(&r, 5, 75)};
+        c.slant = camera_tilt(uniform(&r, -35, 35), uniform(&r, -35, 35));
+        double x = uniform(&r, 0, 200), y = uniform(&r, 0, 100), depth = uniform(&r, 0.1, 5), u, v;
+        vec3 p = camera_point(&c, x, y, depth);
+        assert_true(fabs(-p.z - depth) < 1e-12);
+        camera_project(&c, p, &u, &v);
+        assert_true(fabs(u - x) < 1e-9 && fabs(v - y) < 1e-9);
+    }
+}
+
+/* A picture's angles do not depend on how it came out of the lens's plane: the lines of sight of two pixels of a cut
+ * lie as far apart as those of the same places in the whole. */
+static void a_cut_sees_along_the_same_lines_as_the_whole_picture(void **state)
+{
+    (void)state;
+    const double right = 20, up = -10;
+    camera whole = {.width = 1000, .height = 1000, .fov = 80}, cut = {.width = 100, .height = 100};
+    cut.slant = camera_tilt(right, up);
+    double unit = camera_pixel_size(&whole), x = 500 + tan(right * CAMERA_RADIAN) / unit,
+           y = 500 - tan(up * CAMERA_RADIAN) / unit,
+           forward = sqrt(1 - cut.slant.right * cut.slant.right - cut.slant.up * cut.slant.up);
+    cut.fov = 2 * atan(50 * unit * forward) / CAMERA_RADIAN;
+    for (int i = -50; i <= 50; i += 25)
+        for (int j = -50; j <= 50; j += 20) {
+            double as_cut = vec3_dot(camera_ray(&cut, 50 + i, 50 + j), camera_ray(&cut, 20, 70));
+            double as_whole = vec3_dot(camera_ray(&whole, x + i, y + j), camera_ray(&whole, x - 30, y + 20));
+            assert_true(fabs(as_cut - as_whole) < 1e-12);
+        }
+    vec3 middle = camera_ray(&cut, 50, 50);
+    assert_true(fabs(middle.x) < 1e-12 && fabs(middle.y) < 1e-12 && middle.z < 0);
+}
+
 static void camera_sees_its_field_of_view(void **state)
 {
     (void)state;
-    camera c = {64, 64, 60};
+    camera c = {.width = 64, .height = 64, .fov = 60};
     vec3 right = camera_ray(&c, 64, 32), top = camera_ray(&c, 32, 0);
     assert_true(fabs(atan2(right.x, -right.z) - 3.14159265358979 / 6) < 1e-12 && right.y == 0);
     assert_true(top.y > 0 && top.x == 0);
@@ -162,6 +199,8 @@ int main(void)
         cmocka_unit_test(surface_facing_away_from_the_light_is_black),
         cmocka_unit_test(shading_is_finite_for_empty_pixels_and_degenerate_lights),
         cmocka_unit_test(projecting_a_camera_point_returns_its_pixel),
+        cmocka_unit_test(a_slanted_cameras_points_return_to_their_pixels),
+        cmocka_unit_test(a_cut_sees_along_the_same_lines_as_the_whole_picture),
         cmocka_unit_test(camera_sees_its_field_of_view),
         cmocka_unit_test(target_lights_lie_on_the_frontal_hemisphere),
     };

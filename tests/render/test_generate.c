@@ -232,7 +232,7 @@ static size_t compare_direct(const sample *s, float *error)
 {
     size_t count = 0;
     int size = s->mask.width;
-    camera eye = {size, size, s->fov};
+    camera eye = {.width = size, .height = size, .fov = s->fov};
     for (int y = 1; y < size - 1; y++)
         for (int x = 1; x < size - 1; x++) {
             float whole = fminf(fminf(*img_at(&s->mask, x - 1, y), *img_at(&s->mask, x + 1, y)),

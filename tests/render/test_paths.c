@@ -227,7 +227,7 @@ static void direct_image_agrees_with_the_brdf_applied_to_the_stored_maps(void **
     stage_open(&s, shape_sphere(vec3_make(0, 0.02f, -1), 0.4f, 200), shape_patterned);
     image_settings settings = {.size = SIZE, .fov = 60, .strata = 4, .paths = 1};
     assert_int_equal(render_image(&s.scene, &settings, 3, 0, NULL, &out), OK);
-    camera eye = {SIZE, SIZE, 60};
+    camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
     for (int y = 1; y < SIZE - 1; y++)
         for (int x = 1; x < SIZE - 1; x++) {
             float covered = fminf(fminf(*img_at(&out.mask, x - 1, y), *img_at(&out.mask, x + 1, y)),

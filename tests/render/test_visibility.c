@@ -19,7 +19,7 @@ static void few_rays_find_the_coverage_of_a_sphere(void **state)
     trace_device *device;
     trace_scene scene;
     visibility *v;
-    const camera eye = {SIZE, SIZE, 60};
+    const camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
     scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 96);
     assert_int_equal(trace_device_new(&device), OK);
     assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 1e6, &scene), OK);
@@ -54,7 +54,7 @@ static void an_edge_between_two_surfaces_gets_all_its_rays(void **state)
     trace_device *device;
     trace_scene scene;
     visibility *v;
-    const camera eye = {SIZE, SIZE, 60};
+    const camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
     shape_quad quads[2] = {{{-2, -2, -2}, {4, 0, 0}, {0, 4, 0}}, {{0.013f, -1, -1}, {1, 0, 0}, {0, 2, 0}}};
     scn_object plates = shape_quads(quads, 2);
     assert_int_equal(trace_device_new(&device), OK);

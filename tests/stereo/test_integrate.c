@@ -134,7 +134,7 @@ static void a_sphere_in_perspective_is_exact(void **state)
     enum { SIDE = 72 };
     scene s = scene_new(SIDE, SIDE);
     s.camera = camera_of(SIDE, SIDE);
-    const camera c = {SIDE, SIDE, 60};
+    const camera c = {.width = SIDE, .height = SIDE, .fov = 60};
     const vec3 center = {0.05f, -0.03f, -1};
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {

@@ -69,7 +69,7 @@ static inline void sphere_write(const char *folder, int size, int which)
     for (int i = 0; i < 3; i++)
         assert_int_equal(img_new(one[i], size, size, 1), OK);
     sphere_sky(which, s.sh);
-    camera c = {size, size, 60};
+    camera c = {.width = size, .height = size, .fov = 60};
     for (int y = 0; y < size; y++)
         for (int x = 0; x < size; x++)
             sphere_pixel(&s, &c, x, y, which);

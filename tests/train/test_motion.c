@@ -41,7 +41,7 @@ static void turned_camera_sees_the_turned_sphere(void **state)
         assert_int_equal(trn_dataset_get(f->data, 1, 0, &f->view), OK);
         assert_int_equal(trn_move(&f->view, &m), OK);
         vec3 centre = times((const float(*)[3])m.turn, vec3_make(0.03f, -0.05f, -1)); /* sample 1 of synthetic.h */
-        camera eye = {SIZE, SIZE, 60};
+        camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
         for (int y = 2; y < SIZE - 2; y++)
             for (int x = 2; x < SIZE - 2; x++) {
                 if (!is_inside(&f->view, x, y)) continue;

@@ -433,7 +433,7 @@ static void turned_maps_reflect_the_turned_environment(void **state)
         assert_memory_equal(sh, alone, sizeof sh);
         memset(v->relit, 0, 3 * PIXELS * sizeof(float));
         trn_add_environment(v, (const float(*)[3])sh, v->relit);
-        camera c = {SIZE, SIZE, 60};
+        camera c = {.width = SIZE, .height = SIZE, .fov = 60};
         int inside = 0;
         for (int i = 0; i < PIXELS; i++) {
             if (v->mask[i] == 0) continue;

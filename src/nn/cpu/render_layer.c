@@ -28,7 +28,7 @@ static span span_of_row(const cpu_render_tensors *maps, const cpu_tensor *mask, 
         begin++;
     while (begin < end && m[end - 1] == 0)
         end--;
-    camera c = {mask->w, mask->h, fov};
+    camera c = {.width = mask->w, .height = mask->h, .fov = fov};
     float x = (float)(begin % width) + 0.5f, y = (float)(row % height) + 0.5f;
     const float *l = (const float *)light->data + 3 * (row / height);
     return (span){.albedo = (const float *)maps->albedo.data + 3 * begin,
