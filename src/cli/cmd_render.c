@@ -2,6 +2,7 @@
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/check_files.h"
 #include "cli/cli.h"
@@ -20,12 +21,14 @@ static const char help[] =
     "  --seed S           seed of the data set (default 1)\n"
     "  --first I          index of the first sample (default 0)\n"
     "  --size P           pixels on a side (default 128)\n"
-    "  --fov DEG          horizontal field of view (default 60)\n"
+    "  --fov DEG[-DEG]    horizontal field of view (default 60); two: every sample has one between them\n"
+    "  --off-axis DEG     pictures are cut out of larger ones, up to so far beside the lens's axis\n"
     "  --mesh F           this OBJ, PLY or glTF object, with procedural materials, instead of procedural shapes\n"
     "  --env-dir D        environment maps from this folder instead of procedural ones\n"
     "  --material-dir D   photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
     "  --no-env           no environment image\n"
     "  --targets K        also K images under random lights in front, with cast shadows\n"
+    "  --lamps K          also K images under random lamps, near and far, in front and beside, points and discs\n"
     "  --bounces          also keep bounce 2 and bounce 3 apart\n"
     "  --spp N            camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
     "  --paths N          indirect paths a pixel (default 8); environment light takes five for every eight\n"
@@ -51,6 +54,24 @@ static status take_strata(const char *text, void *to)
     return OK;
 }
 
+/* One angle, or two with a hyphen between. */
+static status take_fov(const char *text, void *to)
+{
+    render_options *o = to;
+    char low[32];
+    const char *hyphen = strchr(text, '-');
+    size_t length = hyphen ? (size_t)(hyphen - text) : strlen(text);
+    if (length == 0 || length >= sizeof low) return fail(ERROR_USAGE, "--fov must be like 60 or 8-75, not %s", text);
+    memcpy(low, text, length);
+    low[length] = 0;
+    double narrow = 0, wide = 0;
+    status s = cli_float("--fov", low, 5, 120, &narrow);
+    if (s == OK && hyphen) s = cli_float("--fov", hyphen + 1, narrow, 120, &wide);
+    o->image.fov = (float)narrow;
+    o->widest_fov = (float)wide;
+    return s;
+}
+
 static status read_options(int *argc, char ***argv, request *r)
 {
     render_options *o = &r->options;
@@ -60,12 +81,14 @@ static status read_options(int *argc, char ***argv, request *r)
         {"seed", .whole = &o->seed, .low = 0, .high = LONG_MAX},
         {"first", .whole = &o->first, .low = 0, .high = 1000000000},
         {"size", .integer = &o->image.size, .low = 8, .high = 4096},
-        {"fov", .real = &o->image.fov, .low = 5, .high = 120},
+        {"fov", .take = take_fov, .into = o},
+        {"off-axis", .real = &o->off_axis, .low = 0, .high = 40},
         {"mesh", .text = &o->mesh},
         {"env-dir", .text = &o->environment_folder},
         {"material-dir", .text = &o->material_folder},
         {"no-env", .flag = &r->no_environment},
         {"targets", .integer = &o->image.targets, .low = 0, .high = SAMPLE_MAX_TARGETS},
+        {"lamps", .integer = &o->image.lamps, .low = 0, .high = SAMPLE_MAX_LAMPS},
         {"bounces", .flag = &o->image.bounces},
         {"spp", .take = take_strata, .into = &o->image.strata},
         {"paths", .integer = &o->image.paths, .low = 1, .high = 4096},

@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,11 +41,26 @@ static status make_environment(const run *r, uint64_t index, environment *out)
     return environment_from_map(&r->maps.maps[chosen], &generator, out);
 }
 
-static status make_object(const run *r, uint64_t index, scn_object *out)
+/* Half of what a whole photograph shows, corner to corner, of the lens that sees most: no cut reaches beyond. */
+static const float HALF_FRAME = 40;
+
+/* The settings with the lens of one sample. */
+static image_settings lens_of(const render_options *o, uint64_t index)
+{
+    image_settings image = o->image;
+    rng r = rng_at(o->seed, index, STREAM_LENS);
+    float wide = rng_uniform(&r), far = rng_uniform(&r), angle = 6.2831853f * rng_uniform(&r);
+    if (o->widest_fov > 0) image.fov *= powf(o->widest_fov / image.fov, wide);
+    float most = fminf(o->off_axis, fmaxf(HALF_FRAME - image.fov / 2, 0));
+    if (most > 0) image.slant = camera_tilt(far * most * cosf(angle), far * most * sinf(angle));
+    return image;
+}
+
+static status make_object(const run *r, uint64_t index, float fov, scn_object *out)
 {
     const render_options *o = r->options;
-    status s = r->model ? scn_object_from_model(r->model, o->seed, index, o->image.fov, out)
-                        : scn_object_generate(o->seed, index, o->image.fov, out);
+    status s = r->model ? scn_object_from_model(r->model, o->seed, index, fov, out)
+                        : scn_object_generate(o->seed, index, fov, out);
     if (s == OK && r->textures.count) scn_object_wear(out, &r->textures, o->seed, index);
     return s;
 }
@@ -53,7 +69,7 @@ static status make_object(const run *r, uint64_t index, scn_object *out)
 static double expected_rays(const render_options *o)
 {
     const image_settings *m = &o->image;
-    double layers = 1 + m->targets + o->environment;
+    double layers = 1 + m->targets + m->lamps + o->environment;
     return (double)m->size * m->size * (m->strata + 0.5 * m->paths * layers);
 }
 
@@ -63,10 +79,11 @@ static status make_sample_under(const run *r, uint64_t index, const environment 
     const render_options *o = r->options;
     scn_object object;
     trace_scene scene = {0};
-    status s = make_object(r, index, &object);
+    const image_settings image = lens_of(o, index);
+    status s = make_object(r, index, image.fov, &object);
     if (s != OK) return s;
     s = trace_scene_new(r->device, &object, scn_surfaces_eval, expected_rays(o), &scene);
-    if (s == OK) s = render_image(&scene, &o->image, o->seed, index, env->map.data ? env : NULL, out);
+    if (s == OK) s = render_image(&scene, &image, o->seed, index, env->map.data ? env : NULL, out);
     *rays = scene.rays;
     trace_scene_free(&scene);
     scn_object_free(&object);
@@ -136,6 +153,16 @@ static void body(void *context, size_t i)
 
 /* ---- the folder and what made it ------------------------------------------------------------------------------- */
 
+/* Options that are told only where they are given: folders made before there were any go on. */
+static void describe_more(const render_options *o, char *out, size_t size)
+{
+    int length = 0;
+    if (o->image.lamps) length += snprintf(out, size, "lamps %d\n", o->image.lamps);
+    if (o->widest_fov > 0)
+        length += snprintf(out + length, size - (size_t)length, "widest fov %g\n", (double)o->widest_fov);
+    if (o->off_axis > 0) snprintf(out + length, size - (size_t)length, "off axis %g\n", (double)o->off_axis);
+}
+
 static void describe(const render_options *o, char *out, size_t size)
 {
     const image_settings *m = &o->image;
@@ -148,6 +175,7 @@ static void describe(const render_options *o, char *out, size_t size)
                                      : "procedural",
              o->mesh ? o->mesh : "procedural", o->material_folder ? "materials " : "",
              o->material_folder ? o->material_folder : "", o->material_folder ? "\n" : "");
+    describe_more(o, out + strlen(out), size - strlen(out));
 }
 
 /* The folder above, in place; false if there is none. */
@@ -214,6 +242,13 @@ static status check_options(const render_options *o)
     if (m->size < 1 || m->size > 4096) return fail(ERROR_USAGE, "image size %d is not within 1..4096", m->size);
     if (!(m->fov >= 1 && m->fov <= 150))
         return fail(ERROR_USAGE, "field of view %g is not within 1..150", (double)m->fov);
+    if (o->widest_fov != 0 && !(o->widest_fov >= m->fov && o->widest_fov <= 150))
+        return fail(ERROR_USAGE, "lenses of %g to %g degrees: the wider one belongs behind, up to 150", (double)m->fov,
+                    (double)o->widest_fov);
+    if (!(o->off_axis >= 0 && o->off_axis <= HALF_FRAME))
+        return fail(ERROR_USAGE, "pictures %g degrees off the axis: 0 to %g", (double)o->off_axis, (double)HALF_FRAME);
+    if (m->lamps < 0 || m->lamps > SAMPLE_MAX_LAMPS)
+        return fail(ERROR_USAGE, "%d lamps: at most %d", m->lamps, SAMPLE_MAX_LAMPS);
     if (m->strata < 1 || m->strata > VISIBILITY_MAX_STRATA || (m->strata > 1 && m->strata % 2))
         return fail(ERROR_USAGE, "%d x %d rays a pixel: must be 1, 4, 16, 36 or 64 in all", m->strata, m->strata);
     if (m->paths < 1) return fail(ERROR_USAGE, "at least one path a pixel is needed");
@@ -248,7 +283,8 @@ static status check_mesh(const run *r)
 {
     scn_object object;
     if (!r->model) return OK;
-    status s = make_object(r, r->options->first, &object);
+    const uint64_t first = r->options->first;
+    status s = make_object(r, first, lens_of(r->options, first).fov, &object);
     if (s == OK) scn_object_free(&object);
     return s;
 }

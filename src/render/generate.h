@@ -22,7 +22,9 @@ typedef struct render_options {
     const char *folder; /* NULL: render and throw away, to measure */
     uint64_t seed, first;
     size_t count;
-    image_settings image;
+    image_settings image; /* its fov is the narrowest, its slant is not looked at */
+    float widest_fov;     /* degrees; lenses are drawn from image.fov to this, evenly in the logarithm; or 0 */
+    float off_axis; /* pictures are cut out up to so many degrees beside the lens's axis, as far as a lens of 80 sees */
     bool environment;               /* an environment image and its SH coefficients as well */
     const char *environment_folder; /* maps from files instead of procedural ones; or NULL */
     const char *material_folder;    /* photographed materials on most objects; or NULL */

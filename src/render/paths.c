@@ -51,11 +51,46 @@ static path_start random_start(rng *r)
 
 /* What shading takes, one point a lane; lanes beyond count repeat the first. */
 typedef struct shaded {
-    lanes position, normal, albedo, view;
+    lanes position, normal, albedo, view, light;
     float roughness[LANES];
 } shaded;
 
-static void gather(const scn_surface *at, const vec3 *view, int count, shaded *out)
+/* Parts of a disc that a point of a surface looks for: one a quarter, so that a half hidden lamp gives about half. */
+enum { PARTS = 4 };
+
+static int parts_of(const point_light *light)
+{
+    return vec3_length(light->across[0]) > 0 ? PARTS : 1;
+}
+
+/* Returns 32 bits that look random, of a place alone: neighbours look at other places of a lamp, and a place always at
+ * the same. */
+static uint32_t scramble(vec3 place)
+{
+    uint32_t bits[3], h = 0x9e3779b9u;
+    const float at[3] = {(float)place.x, (float)place.y, (float)place.z};
+    memcpy(bits, at, sizeof bits);
+    for (int i = 0; i < 3; i++) {
+        h = (h ^ bits[i]) * 0x85ebca6bu;
+        h = (h ^ h >> 13) * 0xc2b2ae35u;
+        h ^= h >> 16;
+    }
+    return h;
+}
+
+/* Returns where a surface looks for a part of a lamp: evenly over a quarter of the disc. */
+static vec3 place_of_part(const point_light *light, int part, vec3 seen_from)
+{
+    if (parts_of(light) == 1) return light->position;
+    uint32_t bits = scramble(seen_from);
+    real u1 = ((real)(part & 1) + (real)(bits & 0xffff) / 0x10000) / 2;
+    real u2 = ((real)(part >> 1) + (real)(bits >> 16) / 0x10000) / 2;
+    real radius = sqrt(u1), angle = 2 * BRDF_PI * u2;
+    vec3 place = vec3_fma(light->position, radius * cos(angle), light->across[0]);
+    return vec3_fma(place, radius * sin(angle), light->across[1]);
+}
+
+static void gather(const scn_surface *at, const vec3 *view, int count, const point_light *light, int part, shaded *out)
 {
     for (int i = 0; i < LANES; i++) {
         int from = i < count ? i : 0;
@@ -63,18 +98,17 @@ static void gather(const scn_surface *at, const vec3 *view, int count, shaded *o
         lanes_put(&out->normal, i, at[from].normal);
         lanes_put(&out->albedo, i, at[from].albedo);
         lanes_put(&out->view, i, view[from]);
+        lanes_put(&out->light, i, place_of_part(light, part, at[from].position));
         out->roughness[i] = at[from].roughness;
     }
 }
 
-ALWAYS_INLINE void shade_lanes(const shaded *s, const point_light *light, bool diffuse_only, lanes *out)
+ALWAYS_INLINE void shade_lanes(const shaded *s, real power, bool diffuse_only, lanes *out)
 {
-    vec3 position = light->position;
-    real power = light->power;
 #pragma omp simd
     for (int i = 0; i < LANES; i++) {
         vec3 n = lanes_at(&s->normal, i), albedo = lanes_at(&s->albedo, i);
-        vec3 to_light = vec3_sub(position, lanes_at(&s->position, i));
+        vec3 to_light = vec3_sub(lanes_at(&s->light, i), lanes_at(&s->position, i));
         real distance2 = vec3_dot(to_light, to_light);
         vec3 l = vec3_scale(to_light, 1 / sqrt(distance2));
         real cosine = vec3_dot(n, l);
@@ -86,31 +120,27 @@ ALWAYS_INLINE void shade_lanes(const shaded *s, const point_light *light, bool d
     }
 }
 
-void point_light_unshadowed(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
-                            const point_light *light, vec3 *radiance)
+/* What up to LANES points get of one part of a lamp, nothing being in the way. */
+static void shade_part(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                       const point_light *light, int part, shaded *s, lanes *lit)
 {
-    shaded s;
-    lanes out;
-    for (int done = 0; done < count; done += LANES) {
-        int abreast = count - done < LANES ? count - done : LANES;
-        gather(at + done, view + done, abreast, &s);
-        if (scene->diffuse_only)
-            shade_lanes(&s, light, true, &out);
-        else
-            shade_lanes(&s, light, false, &out);
-        for (int i = 0; i < abreast; i++)
-            radiance[done + i] = lanes_at(&out, i);
-    }
+    real power = light->power / (real)parts_of(light);
+    gather(at, view, count, light, part, s);
+    if (scene->diffuse_only)
+        shade_lanes(s, power, true, lit);
+    else
+        shade_lanes(s, power, false, lit);
 }
 
 /* Puts out what up to LANES points get from behind something. */
-static void cast_shadows(trace_scene *scene, const scn_surface *at, int count, const point_light *light, vec3 *radiance)
+static void cast_shadows(trace_scene *scene, const scn_surface *at, int count, const shaded *s, lanes *lit)
 {
     ray_packet rays;
     float far[LANES];
     for (int i = 0; i < LANES; i++) {
         int from = i < count ? i : 0;
-        vec3 origin = trace_leave(&at[from]), to_light = vec3_sub(light->position, origin), lit = radiance[from];
+        vec3 origin = trace_leave(&at[from]), to_light = vec3_sub(lanes_at(&s->light, from), origin),
+             radiance = lanes_at(lit, from);
         far[i] = vec3_length(to_light);
         vec3 l = vec3_scale(to_light, 1 / far[i]);
         rays.x[i] = origin.x;
@@ -119,19 +149,54 @@ static void cast_shadows(trace_scene *scene, const scn_surface *at, int count, c
         rays.dx[i] = l.x;
         rays.dy[i] = l.y;
         rays.dz[i] = l.z;
-        rays.valid[i] = i < count && lit.x + lit.y + lit.z > 0 && faces(&at[from], to_light) ? -1 : 0;
+        rays.valid[i] = i < count && radiance.x + radiance.y + radiance.z > 0 && faces(&at[from], to_light) ? -1 : 0;
     }
     trace_packet_free(scene, &rays, far);
     for (int i = 0; i < count; i++)
-        if (!rays.valid[i]) radiance[i] = black;
+        if (!rays.valid[i]) lanes_put(lit, i, black);
+}
+
+/* Adds the lanes to sum, and sets it at the first part. */
+static void add_part(const lanes *lit, int count, int part, vec3 *sum)
+{
+    for (int i = 0; i < count; i++)
+        sum[i] = part == 0 ? lanes_at(lit, i) : vec3_add(sum[i], lanes_at(lit, i));
+}
+
+/* Either of radiance and unshadowed may be NULL. */
+static void light_points(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                         const point_light *light, vec3 *radiance, vec3 *unshadowed)
+{
+    shaded s;
+    lanes lit;
+    for (int done = 0; done < count; done += LANES) {
+        int abreast = count - done < LANES ? count - done : LANES;
+        for (int part = 0; part < parts_of(light); part++) {
+            shade_part(scene, at + done, view + done, abreast, light, part, &s, &lit);
+            if (unshadowed) add_part(&lit, abreast, part, unshadowed + done);
+            if (!radiance) continue;
+            cast_shadows(scene, at + done, abreast, &s, &lit);
+            add_part(&lit, abreast, part, radiance + done);
+        }
+    }
+}
+
+void point_light_unshadowed(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+                            const point_light *light, vec3 *radiance)
+{
+    light_points(scene, at, view, count, light, NULL, radiance);
 }
 
 void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
                         const point_light *light, vec3 *radiance)
 {
-    point_light_unshadowed(scene, at, view, count, light, radiance);
-    for (int done = 0; done < count; done += LANES)
-        cast_shadows(scene, at + done, count - done < LANES ? count - done : LANES, light, radiance + done);
+    light_points(scene, at, view, count, light, radiance, NULL);
+}
+
+void point_light_both(trace_scene *scene, const scn_surface *at, const vec3 *view, int count, const point_light *light,
+                      vec3 *radiance, vec3 *unshadowed)
+{
+    light_points(scene, at, view, count, light, radiance, unshadowed);
 }
 
 /* ---- paths that meet another surface --------------------------------------------------------------------------- */

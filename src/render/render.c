@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "optics/light.h"
+#include "render/lamps.h"
 #include "render/paths.h"
 #include "render/smooth.h"
 #include "render/streams.h"
@@ -32,7 +33,8 @@ typedef struct strip {
     trace_hit hit[STRIP * VISIBILITY_MAX_POINTS];
     vec3 view[STRIP * VISIBILITY_MAX_POINTS];
     scn_surface at[STRIP * VISIBILITY_MAX_POINTS];
-    vec3 radiance[STRIP * VISIBILITY_MAX_POINTS]; /* by one point light */
+    /* by one point light, and if nothing were in its way */
+    vec3 radiance[STRIP * VISIBILITY_MAX_POINTS], unshadowed[STRIP * VISIBILITY_MAX_POINTS];
 } strip;
 
 typedef struct renderer {
@@ -40,8 +42,8 @@ typedef struct renderer {
     const image_settings *settings;
     const environment *env;
     visibility *visibility;
-    point_light flash, lights[SAMPLE_MAX_TARGETS];
-    layer_source indirect, target, surroundings;
+    point_light flash, lights[SAMPLE_MAX_TARGETS], lamps[SAMPLE_MAX_LAMPS];
+    layer_source indirect, target, lamp, surroundings;
     strip strip;
     sample *out;
 } renderer;
@@ -97,13 +99,9 @@ static void store_maps(renderer *r, const pixel *p)
     *img_at(&r->out->mask, p->x, p->y) = p->coverage;
 }
 
-static void store_direct(renderer *r, const point_light *light, const img *image)
+/* What arrived at the strip's points, as its pixels show it. */
+static void store_radiance(const strip *s, const img *image)
 {
-    strip *s = &r->strip;
-    if (light->at_eye)
-        point_light_unshadowed(r->scene, s->at, s->view, s->points, light, s->radiance);
-    else
-        point_light_direct(r->scene, s->at, s->view, s->points, light, s->radiance);
     const vec3 *radiance = s->radiance;
     for (int k = 0; k < s->count; k++) {
         const pixel *p = &s->pixel[k];
@@ -111,6 +109,35 @@ static void store_direct(renderer *r, const point_light *light, const img *image
         for (int i = 0; i < p->count; i++)
             sum = vec3_add(sum, *radiance++);
         store(image, p, sum, p->coverage / (float)p->count);
+    }
+}
+
+static void store_direct(renderer *r, const point_light *light, const img *image)
+{
+    strip *s = &r->strip;
+    if (light->at_eye)
+        point_light_unshadowed(r->scene, s->at, s->view, s->points, light, s->radiance);
+    else
+        point_light_direct(r->scene, s->at, s->view, s->points, light, s->radiance);
+    store_radiance(s, image);
+}
+
+static float sum_of(vec3 v)
+{
+    return v.x + v.y + v.z;
+}
+
+static void store_visibility(const strip *s, const img *image)
+{
+    const vec3 *arrived = s->radiance, *sent = s->unshadowed;
+    for (int k = 0; k < s->count; k++) {
+        const pixel *p = &s->pixel[k];
+        float seen = 0, all = 0;
+        for (int i = 0; i < p->count; i++) {
+            seen += sum_of(*arrived++);
+            all += sum_of(*sent++);
+        }
+        *img_at(image, p->x, p->y) = all > 0 ? seen / all : 0;
     }
 }
 
@@ -142,6 +169,18 @@ static void store_indirect(renderer *r, const point_light *light, layer_source *
     }
 }
 
+static void store_lamp(renderer *r, int i)
+{
+    strip *s = &r->strip;
+    const sample_lamp *under = &r->out->lamps[i];
+    point_light_both(r->scene, s->at, s->view, s->points, &r->lamps[i], s->radiance, s->unshadowed);
+    store_radiance(s, &under->direct);
+    store_visibility(s, &under->visibility);
+    point_light point = r->lamps[i]; /* where its light went elsewhere first, nobody sees that it is a disc */
+    point.across[0] = point.across[1] = vec3_make(0, 0, 0);
+    store_indirect(r, &point, &r->lamp, &under->indirect, NULL);
+}
+
 static void store_environment(renderer *r)
 {
     int paths = (5 * r->settings->paths + 7) / 8;
@@ -167,10 +206,28 @@ static void render_strip(renderer *r, int first, int y)
         store_direct(r, &r->lights[t], &out->targets[t].direct);
         store_indirect(r, &r->lights[t], &r->target, &out->targets[t].indirect, NULL);
     }
+    for (int i = 0; i < r->settings->lamps; i++)
+        store_lamp(r, i);
     if (r->env) store_environment(r);
 }
 
 /* ---- a sample -------------------------------------------------------------------------------------------------- */
+
+static status make_lamps(const image_settings *set, sample *out)
+{
+    if (set->lamps == 0) return OK;
+    out->lamps = calloc((size_t)set->lamps, sizeof *out->lamps);
+    if (!out->lamps) return fail(ERROR_MEMORY, "out of memory for images under %d lamps", set->lamps);
+    out->lamp_count = set->lamps;
+    status s = OK;
+    for (int i = 0; s == OK && i < set->lamps; i++) {
+        sample_lamp *under = &out->lamps[i];
+        s = img_new(&under->direct, set->size, set->size, 3);
+        if (s == OK) s = img_new(&under->indirect, set->size, set->size, 3);
+        if (s == OK) s = img_new(&under->visibility, set->size, set->size, 1);
+    }
+    return s;
+}
 
 static status make_layers(const image_settings *set, bool env, sample *out)
 {
@@ -191,6 +248,7 @@ static status make_layers(const image_settings *set, bool env, sample *out)
     status s = OK;
     for (size_t i = 0; s == OK && i < sizeof layers / sizeof *layers; i++)
         if (layers[i].wanted) s = img_new(layers[i].image, set->size, set->size, layers[i].channels);
+    if (s == OK) s = make_lamps(set, out);
     if (s != OK || set->targets == 0) return s;
     out->targets = calloc((size_t)set->targets, sizeof *out->targets);
     if (!out->targets) return fail(ERROR_MEMORY, "out of memory for %d target images", set->targets);
@@ -212,6 +270,8 @@ static status smooth_layers(sample *out)
     if (s == OK && out->env.data) s = smooth_layer(out, &out->env, ENVIRONMENT_RADIUS);
     for (int t = 0; s == OK && t < out->target_count; t++)
         s = smooth_layer(out, &out->targets[t].indirect, INDIRECT_RADIUS);
+    for (int i = 0; s == OK && i < out->lamp_count; i++)
+        s = smooth_layer(out, &out->lamps[i].indirect, INDIRECT_RADIUS);
     return s;
 }
 
@@ -227,6 +287,7 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
 {
     *out = (sample){.light_power = LIGHT_POWER,
                     .fov = settings->fov,
+                    .slant = settings->slant,
                     .seed = seed,
                     .index = index,
                     .generator_version = SAMPLE_GENERATOR_VERSION};
@@ -239,12 +300,13 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     renderer r = {.scene = scene,
                   .settings = settings,
                   .env = env,
-                  .flash = {{0, 0, 0}, LIGHT_POWER, true},
+                  .flash = {.power = LIGHT_POWER, .at_eye = true},
                   .indirect = layer_of(seed, index, STREAM_INDIRECT),
                   .target = layer_of(seed, index, STREAM_TARGET),
+                  .lamp = layer_of(seed, index, STREAM_LAMPS),
                   .surroundings = layer_of(seed, index, STREAM_SURROUNDINGS),
                   .out = out};
-    const camera eye = {.width = settings->size, .height = settings->size, .fov = settings->fov};
+    const camera eye = {settings->size, settings->size, settings->fov, settings->slant};
     rng jitter = rng_at(seed, index, STREAM_JITTER);
     uint64_t key = (uint64_t)rng_u32(&jitter) << 32;
     s = visibility_new(scene, &eye, settings->strata, key | rng_u32(&jitter), &r.visibility);
@@ -255,8 +317,13 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     rng lights = rng_at(seed, index, STREAM_LIGHTS);
     for (int t = 0; t < settings->targets; t++) {
         float u1 = rng_uniform(&lights), u2 = rng_uniform(&lights);
-        r.lights[t] = (point_light){frontal_light(u1, u2), LIGHT_POWER, false};
+        r.lights[t] = (point_light){.position = frontal_light(u1, u2), .power = LIGHT_POWER};
         out->targets[t].light = r.lights[t].position;
+    }
+    rng lamps = rng_at(seed, index, STREAM_LAMP_PLACES);
+    for (int i = 0; i < settings->lamps; i++) {
+        lamp_draw(&lamps, scene->object, &out->lamps[i]);
+        r.lamps[i] = lamp_light(&out->lamps[i]);
     }
     if (env) memcpy(out->sh, env->sh, sizeof out->sh);
     for (int y = 0; y < settings->size; y++)

@@ -18,11 +18,13 @@
 #include "render/visibility.h"
 
 typedef struct image_settings {
-    int size;     /* pixels, square */
-    float fov;    /* horizontal, degrees */
+    int size;  /* pixels, square */
+    float fov; /* horizontal, degrees */
+    camera_slant slant;
     int strata;   /* 1 or even, at most VISIBILITY_MAX_STRATA */
     int paths;    /* per pixel, for indirect light and each target */
     int targets;  /* images under lights of the frontal hemisphere, at most SAMPLE_MAX_TARGETS */
+    int lamps;    /* images under lamps of any place and size (render/lamps.h), at most SAMPLE_MAX_LAMPS */
     bool bounces; /* keep bounce 2 and bounce 3 apart as well */
 } image_settings;
 

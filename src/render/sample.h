@@ -7,12 +7,14 @@
 #ifndef MERLIN_RENDER_SAMPLE_H
 #define MERLIN_RENDER_SAMPLE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/vec.h"
 #include "image/image.h"
+#include "optics/camera.h"
 
-enum { SAMPLE_GENERATOR_VERSION = 3, SAMPLE_MAX_TARGETS = 64 };
+enum { SAMPLE_GENERATOR_VERSION = 3, SAMPLE_MAX_TARGETS = 64, SAMPLE_MAX_LAMPS = 16 };
 
 /* An image under one more point light, with cast shadows. */
 typedef struct sample_target {
@@ -20,6 +22,17 @@ typedef struct sample_target {
     img direct;   /* 3 channels, bounce 1, cast shadows included */
     img indirect; /* 3 channels, bounces 2 and 3 */
 } sample_target;
+
+/* An image under one more lamp, as bright in the object's middle, (0, 0, -1), as the flash is there. */
+typedef struct sample_lamp {
+    vec3 at; /* its place; of a distant one, whose light is parallel, the unit direction toward it */
+    bool distant;
+    float radius; /* 0: a point; else of a disc that faces the middle; of a distant one as seen from there (tangent) */
+    img direct;   /* 3 channels, bounce 1, cast shadows included */
+    img indirect; /* 3 channels, bounces 2 and 3 */
+    img visibility; /* 1: the share of bounce 1 that other parts of the object let through; 0 where there would be none
+                     */
+} sample_lamp;
 
 typedef struct sample {
     img albedo;           /* 3 */
@@ -34,9 +47,12 @@ typedef struct sample {
     float sh[9][3];       /* radiance SH of that environment, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22 */
     sample_target *targets;
     int target_count;
-    vec3 light;        /* of direct and indirect: the origin */
-    float light_power; /* Φ */
-    float fov;         /* horizontal, degrees */
+    sample_lamp *lamps;
+    int lamp_count;
+    vec3 light;         /* of direct and indirect: the origin */
+    float light_power;  /* Φ */
+    float fov;          /* horizontal, degrees */
+    camera_slant slant; /* of a picture cut out of a larger one (optics/camera.h) */
     uint64_t seed, index;
     int generator_version;
     char shape[32]; /* class of object: "union", "blend", "revolution", "superquadric", "relief", "mesh" */
@@ -50,9 +66,10 @@ static inline vec3 sample_normal(vec3 n)
 
 void sample_free(sample *s);
 /* Channels albedo.R/.G/.B, normal.X/.Y/.Z, roughness.Y, depth.Z, mask.A, direct.*, indirect.*, bounce2.*, bounce3.*,
- * env.*, target00.direct.* …; the rest as attributes. Written to a temporary name, then renamed. */
+ * env.*, target00.direct.* …, lamp00.direct.*, lamp00.indirect.*, lamp00.visibility.Y …; the rest as attributes.
+ * Written to a temporary name, then renamed. */
 status sample_write(const char *path, const sample *s);
-/* Refuses files that lack a layer or hold NaN or infinity. */
+/* Reads all layers there are. Refuses files that lack one that every sample has, or hold NaN or infinity. */
 status sample_read(const char *path, sample *out);
 /* Reads everything but env, bounces and targets: what training needs, faster. */
 status sample_read_training(const char *path, sample *out);

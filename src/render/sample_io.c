@@ -9,7 +9,11 @@
 #include "base/file.h"
 #include "image/exr.h"
 
-enum { MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS, MAX_ATTRIBUTES = 16 + SAMPLE_MAX_TARGETS, NAME_SIZE = 32 };
+enum {
+    MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS + 7 * SAMPLE_MAX_LAMPS,
+    MAX_ATTRIBUTES = 18 + SAMPLE_MAX_TARGETS + 2 * SAMPLE_MAX_LAMPS,
+    NAME_SIZE = 32
+};
 
 /* A layer's channels: one image and the endings of its channels' names. */
 typedef struct layer {
@@ -64,6 +68,19 @@ static void add_targets(channel_list *list, const sample *s)
     }
 }
 
+static void add_lamps(channel_list *list, const sample *s)
+{
+    char name[NAME_SIZE];
+    for (int i = 0; i < s->lamp_count; i++) {
+        snprintf(name, sizeof name, "lamp%02d.direct", i);
+        add_layer(list, name, "RGB", &s->lamps[i].direct);
+        snprintf(name, sizeof name, "lamp%02d.indirect", i);
+        add_layer(list, name, "RGB", &s->lamps[i].indirect);
+        snprintf(name, sizeof name, "lamp%02d.visibility", i);
+        add_layer(list, name, "Y", &s->lamps[i].visibility);
+    }
+}
+
 void sample_free(sample *s)
 {
     for (int i = 0; i < LAYER_COUNT; i++)
@@ -73,6 +90,12 @@ void sample_free(sample *s)
         img_free(&s->targets[t].indirect);
     }
     free(s->targets);
+    for (int i = 0; i < s->lamp_count; i++) {
+        img_free(&s->lamps[i].direct);
+        img_free(&s->lamps[i].indirect);
+        img_free(&s->lamps[i].visibility);
+    }
+    free(s->lamps);
     *s = (sample){0};
 }
 
@@ -80,7 +103,7 @@ void sample_free(sample *s)
 
 typedef struct attribute_list {
     exr_attribute items[MAX_ATTRIBUTES];
-    char names[SAMPLE_MAX_TARGETS][NAME_SIZE];
+    char names[SAMPLE_MAX_TARGETS][NAME_SIZE], lamp_names[2 * SAMPLE_MAX_LAMPS][NAME_SIZE];
     char seed[24], index[24];
     size_t count;
 } attribute_list;
@@ -92,13 +115,29 @@ static void add_numbers(attribute_list *list, const char *name, const float *val
     memcpy(a->values, values, (size_t)count * sizeof *values);
 }
 
+/* Left out where there are none, so that samples without lamps are the files they were. */
+static void describe_lamps(attribute_list *list, const sample *s)
+{
+    if (s->lamp_count) list->items[list->count++] = exr_number("lamps", (float)s->lamp_count);
+    for (int i = 0; i < s->lamp_count; i++) {
+        const sample_lamp *under = &s->lamps[i];
+        const float at[3] = {under->at.x, under->at.y, under->at.z}, kind[2] = {under->distant, under->radius};
+        char *at_name = list->lamp_names[2 * i], *kind_name = list->lamp_names[2 * i + 1];
+        snprintf(at_name, NAME_SIZE, "lamp%02d.at", i);
+        add_numbers(list, at_name, at, 3);
+        snprintf(kind_name, NAME_SIZE, "lamp%02d.distantRadius", i);
+        add_numbers(list, kind_name, kind, 2);
+    }
+}
+
 static void describe(attribute_list *list, const sample *s)
 {
-    const float light[3] = {s->light.x, s->light.y, s->light.z};
+    const float light[3] = {s->light.x, s->light.y, s->light.z}, slant[2] = {s->slant.right, s->slant.up};
     list->count = 0;
     add_numbers(list, "light", light, 3);
     add_numbers(list, "lightPower", &s->light_power, 1);
     add_numbers(list, "fieldOfView", &s->fov, 1);
+    if (s->slant.right != 0 || s->slant.up != 0) add_numbers(list, "slant", slant, 2);
     if (s->env.data) add_numbers(list, "sphericalHarmonics", &s->sh[0][0], 27);
     /* 64-bit numbers as text: a float cannot hold them */
     snprintf(list->seed, sizeof list->seed, "%" PRIu64, s->seed);
@@ -113,6 +152,7 @@ static void describe(attribute_list *list, const sample *s)
         snprintf(list->names[t], NAME_SIZE, "target%02d.light", t);
         add_numbers(list, list->names[t], at, 3);
     }
+    describe_lamps(list, s);
 }
 
 status sample_write(const char *path, const sample *s)
@@ -130,6 +170,7 @@ status sample_write(const char *path, const sample *s)
         if (image->data) add_layer(list, layers[i].name, layers[i].endings, image);
     }
     add_targets(list, s);
+    add_lamps(list, s);
     for (size_t i = 0; i < list->count; i++)
         work->written[i] =
             (exr_channel){list->names[i], list->image[i]->data + list->part[i], list->image[i]->channels, false};
@@ -161,6 +202,11 @@ static status read_optics(const exr_file *f, const char *path, sample *s)
         !exr_get_numbers(f, "fieldOfView", &s->fov, 1))
         return fail(ERROR_INPUT, "%s: not a sample of this renderer (no light, lightPower or fieldOfView)", path);
     s->light = vec3_of(light);
+    float slant[2] = {0, 0};
+    exr_get_numbers(f, "slant", slant, 2);
+    s->slant = (camera_slant){slant[0], slant[1]};
+    if (!(slant[0] * slant[0] + slant[1] * slant[1] < 1))
+        return fail(ERROR_INPUT, "%s: impossible slant %g, %g", path, (double)slant[0], (double)slant[1]);
     if (!(s->fov > 0 && s->fov < 180) || !(s->light_power > 0))
         return fail(ERROR_INPUT, "%s: impossible field of view %g or light power %g", path, (double)s->fov,
                     (double)s->light_power);
@@ -189,6 +235,38 @@ static status make_targets(const exr_file *f, const char *path, sample *s)
     return OK;
 }
 
+static status make_lamp(const exr_file *f, const char *path, int i, sample_lamp *under)
+{
+    char name[NAME_SIZE];
+    float at[3], kind[2];
+    snprintf(name, sizeof name, "lamp%02d.at", i);
+    bool known = exr_get_numbers(f, name, at, 3);
+    if (known) snprintf(name, sizeof name, "lamp%02d.distantRadius", i);
+    if (!known || !exr_get_numbers(f, name, kind, 2))
+        return fail(ERROR_INPUT, "%s: attribute %s is missing", path, name);
+    under->at = vec3_of(at);
+    under->distant = kind[0] != 0;
+    under->radius = kind[1];
+    status s = img_new(&under->direct, exr_width(f), exr_height(f), 3);
+    if (s == OK) s = img_new(&under->indirect, exr_width(f), exr_height(f), 3);
+    return s == OK ? img_new(&under->visibility, exr_width(f), exr_height(f), 1) : s;
+}
+
+static status make_lamps(const exr_file *f, const char *path, sample *s)
+{
+    float count = 0;
+    if (!exr_get_numbers(f, "lamps", &count, 1) || count == 0) return OK;
+    if (!(count > 0 && count <= SAMPLE_MAX_LAMPS))
+        return fail(ERROR_INPUT, "%s: impossible number of lamps %g", path, (double)count);
+    s->lamps = calloc((size_t)count, sizeof *s->lamps);
+    if (!s->lamps) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    s->lamp_count = (int)count;
+    status st = OK;
+    for (int i = 0; i < s->lamp_count && st == OK; i++)
+        st = make_lamp(f, path, i, &s->lamps[i]);
+    return st;
+}
+
 typedef enum extent { READ_TRAINING, READ_TRAINING_ENVIRONMENT, READ_ALL } extent;
 
 static bool is_wanted(const exr_file *f, const layer *l, extent what)
@@ -212,7 +290,9 @@ static status plan(const exr_file *f, const char *path, extent what, sample *s, 
     }
     if (what != READ_ALL) return OK;
     status st = make_targets(f, path, s);
+    if (st == OK) st = make_lamps(f, path, s);
     add_targets(list, s);
+    add_lamps(list, s);
     return st;
 }
 

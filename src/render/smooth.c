@@ -25,7 +25,7 @@ static status guides_new(const sample *s, const img *layer, int radius, guides *
     g->radius = radius;
     g->stride = (width + LANES - 1) / LANES * LANES + 2 * border;
     size_t size = g->stride * ((size_t)layer->height + 2 * border);
-    camera eye = {.width = layer->width, .height = layer->height, .fov = s->fov};
+    camera eye = {.width = layer->width, .height = layer->height, .fov = s->fov, .slant = s->slant};
     /* a slope of two pixels' depth a pixel still counts half */
     g->depth_scale = 0.5f / camera_pixel_size(&eye);
     float *all = calloc(PLANES * size, sizeof *all);

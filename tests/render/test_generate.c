@@ -1,5 +1,6 @@
 /* Data sets: the same whatever the threads, continued where they stopped, never mixed; and what the samples promise. */
 #include "render/generate.h"
+#include "render/lamps.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -150,6 +151,12 @@ static void impossible_options_are_refused(void **state)
     o.image.targets = SAMPLE_MAX_TARGETS + 1;
     assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
     o = small(NULL);
+    o.image.lamps = SAMPLE_MAX_LAMPS + 1;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    o = small(NULL);
+    o.widest_fov = o.image.fov - 1;
+    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    o = small(NULL);
     o.mesh = "/nonexistent/mesh.obj";
     assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
 }
@@ -232,7 +239,7 @@ static size_t compare_direct(const sample *s, float *error)
 {
     size_t count = 0;
     int size = s->mask.width;
-    camera eye = {.width = size, .height = size, .fov = s->fov};
+    camera eye = {.width = size, .height = size, .fov = s->fov, .slant = s->slant};
     for (int y = 1; y < size - 1; y++)
         for (int x = 1; x < size - 1; x++) {
             float whole = fminf(fminf(*img_at(&s->mask, x - 1, y), *img_at(&s->mask, x + 1, y)),
@@ -272,6 +279,80 @@ static void direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps
     free(error);
 }
 
+static void samples_of_any_lens_agree_with_the_brdf_on_their_maps(void **state)
+{
+    (void)state;
+    enum { SIZE = 96, OBJECTS = 8 };
+    float *error = malloc(sizeof *error * SIZE * SIZE * OBJECTS), narrowest = 180, widest = 0, slant = 0;
+    size_t count = 0;
+    render_options o = small(NULL);
+    o.image = render_options_default().image;
+    o.image.size = SIZE;
+    o.image.fov = 8;
+    o.widest_fov = 75;
+    o.off_axis = 25;
+    o.environment = false;
+    for (uint64_t index = 0; index < OBJECTS; index++) {
+        sample s;
+        assert_int_equal(render_sample(&o, index, &s), OK);
+        count += compare_direct(&s, error + count);
+        narrowest = fminf(narrowest, s.fov);
+        widest = fmaxf(widest, s.fov);
+        slant = fmaxf(slant, hypotf(s.slant.right, s.slant.up));
+        sample_free(&s);
+    }
+    qsort(error, count, sizeof *error, by_value);
+    assert_true(count > 1000 && error[count / 2] < 0.01f);
+    assert_true(narrowest > 7.9f && narrowest < 25 && widest > 45 && widest < 75.1f && slant > 0.1f && slant < 0.5f);
+    free(error);
+}
+
+/* What a point lamp does to the maps, as far as it is let through. */
+static size_t compare_lamp(const sample *s, const sample_lamp *under, float *error)
+{
+    size_t count = 0;
+    const camera eye = {s->mask.width, s->mask.height, s->fov, s->slant};
+    const point_light light = lamp_light(under);
+    for (int i = 0; i < s->mask.width * s->mask.height && under->radius == 0; i++) {
+        int x = i % s->mask.width, y = i / s->mask.width;
+        if (s->mask.data[i] < 1 || under->visibility.data[i] < 0.01f) continue;
+        shade_input in = {vec3_of(s->albedo.data + 3 * i),
+                          s->roughness.data[i],
+                          vec3_of(s->normal.data + 3 * i),
+                          s->depth.data[i],
+                          camera_point(&eye, (float)x + 0.5f, (float)y + 0.5f, 1),
+                          light.position,
+                          light.power};
+        float expected = shade_point(&in).y * under->visibility.data[i];
+        error[count++] = fabsf(under->direct.data[3 * i + 1] - expected) / fmaxf(expected, 1e-2f);
+    }
+    return count;
+}
+
+static void lamps_light_the_maps_as_far_as_they_are_visible(void **state)
+{
+    (void)state;
+    enum { SIZE = 96, OBJECTS = 4, LAMPS = 4 };
+    float *error = malloc(sizeof *error * SIZE * SIZE * OBJECTS * LAMPS);
+    size_t count = 0;
+    render_options o = small(NULL);
+    o.image = render_options_default().image;
+    o.image.size = SIZE;
+    o.image.lamps = LAMPS;
+    o.environment = false;
+    for (uint64_t index = 0; index < OBJECTS; index++) {
+        sample s;
+        assert_int_equal(render_sample(&o, index, &s), OK);
+        assert_int_equal(s.lamp_count, LAMPS);
+        for (int i = 0; i < LAMPS; i++)
+            count += compare_lamp(&s, &s.lamps[i], error + count);
+        sample_free(&s);
+    }
+    qsort(error, count, sizeof *error, by_value);
+    assert_true(count > 1000 && error[count / 2] < 0.02f);
+    free(error);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +365,8 @@ int main(void)
         cmocka_unit_test(an_object_elsewhere_keeps_its_maps_and_flash_picture),
         cmocka_unit_test(maps_are_zero_outside_the_mask_and_within_their_ranges_inside),
         cmocka_unit_test(direct_images_of_generated_objects_agree_with_the_brdf_on_their_maps),
+        cmocka_unit_test(samples_of_any_lens_agree_with_the_brdf_on_their_maps),
+        cmocka_unit_test(lamps_light_the_maps_as_far_as_they_are_visible),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

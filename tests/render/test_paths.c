@@ -1,6 +1,7 @@
 /* Light transport against closed forms. */
 #include "optics/camera.h"
 #include "optics/light.h"
+#include "render/lamps.h"
 #include "render/paths.h"
 #include "render/render.h"
 #include "shapes.h"
@@ -187,7 +188,7 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         enum { PATHS = 400000 };
         vec3 p = on_floor(places[k][0], places[k][1]);
         scn_surface at = {p, floor_normal, floor_normal, {0.5f, 0.5f, 0.5f}, 0.4f};
-        point_light flash = {{0, 0, 0}, 5.95f, true};
+        point_light flash = {.power = 5.95f, .at_eye = true};
         rng r = rng_at(7, (uint64_t)k, 0);
         sequence spread = sequence_of(&r);
         path_source source = {&spread, &r};
@@ -258,7 +259,7 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     shape_quad quads[2] = {{{-1, -0.3f, -0.2f}, {2, 0, 0}, {0, 0, -2}},
                            {{-0.1f, 0.1f, -0.9f}, {0.2f, 0, 0}, {0, 0, -0.2f}}};
     stage_open(&s, shape_quads(quads, 2), shape_grey);
-    point_light above = {{0, 0.7f, -1}, 5.95f, false};
+    point_light above = {.position = {0, 0.7f, -1}, .power = 5.95f};
     scn_surface under = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f}, beside = under;
     beside.position.x = 0.5f;
     vec3 view = vec3_normalize(vec3_make(0, 0.3f, 1));
@@ -272,6 +273,58 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     stage_close(&s);
 }
 
+/* The plate hides what of the disc lies to its side of the line from its edge: half, right under the edge. */
+static void a_disc_half_behind_a_plate_gives_half(void **state)
+{
+    (void)state;
+    enum { POINTS = 400 };
+    stage s;
+    shape_quad quads[2] = {{{-1, -0.3f, -0.2f}, {2, 0, 0}, {0, 0, -2}}, {{0, 0.1f, -0.5f}, {2, 0, 0}, {0, 0, -1}}};
+    stage_open(&s, shape_quads(quads, 2), shape_grey);
+    const point_light disc = {.position = {0, 0.7f, -1}, .power = 5.95f, .across = {{0.1f, 0, 0}, {0, 0, 0.1f}}};
+    static vec3 view[POINTS], seen[POINTS], sent[POINTS];
+    static scn_surface under[POINTS];
+    double arrived = 0, all = 0;
+    for (int i = 0; i < POINTS; i++) {
+        under[i] =
+            (scn_surface){{0, -0.3f, -0.9f - 0.0005f * (float)i}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f};
+        view[i] = vec3_normalize(vec3_make(0, 0.3f, 1));
+    }
+    point_light_both(&s.scene, under, view, POINTS, &disc, seen, sent);
+    for (int i = 0; i < POINTS; i++) {
+        assert_true(seen[i].x <= sent[i].x);
+        arrived += seen[i].x;
+        all += sent[i].x;
+    }
+    /* 1600 places on the disc, one a quarter each: deviation below 0.01 */
+    assert_true(fabs(arrived / all - 0.5) < 0.03);
+    stage_close(&s);
+}
+
+static void lamps_are_as_bright_in_the_middle_as_the_flash(void **state)
+{
+    (void)state;
+    stage s;
+    stage_open(&s, shape_sphere(vec3_make(0, 0.02f, -1), 0.2f, 20), shape_grey);
+    rng r = rng_at(11, 0, 0);
+    int distant = 0, discs = 0, behind = 0;
+    for (int i = 0; i < 400; i++) {
+        sample_lamp drawn = {0};
+        lamp_draw(&r, s.scene.object, &drawn);
+        point_light light = lamp_light(&drawn);
+        vec3 way = vec3_sub(light.position, vec3_make(0, 0, -1));
+        double far = vec3_length(way), cosine = way.z / far;
+        assert_true(fabs(light.power / (far * far) - LIGHT_POWER) < 1e-3);
+        assert_true(cosine > -0.343 && (drawn.distant || (far > 0.25 && far <= 3.001)));
+        assert_true(fabs(vec3_dot(light.across[0], way)) <= 1e-4 * far * vec3_length(light.across[0]));
+        distant += drawn.distant;
+        discs += drawn.radius > 0;
+        behind += cosine < 0;
+    }
+    assert_true(distant > 60 && distant < 140 && discs > 150 && discs < 250 && behind > 20);
+    stage_close(&s);
+}
+
 static void layers_do_not_change_when_another_is_asked_for(void **state)
 {
     (void)state;
@@ -282,6 +335,7 @@ static void layers_do_not_change_when_another_is_asked_for(void **state)
     image_settings settings = {.size = 32, .fov = 60, .strata = 2, .paths = 4};
     assert_int_equal(render_image(&s.scene, &settings, 5, 9, NULL, &plain), OK);
     settings.targets = 2;
+    settings.lamps = 2;
     settings.bounces = true;
     assert_int_equal(render_image(&s.scene, &settings, 5, 9, NULL, &rich), OK);
     assert_memory_equal(plain.indirect.data, rich.indirect.data, 32 * 32 * 3 * sizeof(float));
@@ -300,6 +354,8 @@ int main(void)
         cmocka_unit_test(open_corner_of_two_diffuse_squares_matches_quadrature),
         cmocka_unit_test(direct_image_agrees_with_the_brdf_applied_to_the_stored_maps),
         cmocka_unit_test(plate_casts_a_shadow_on_the_floor_under_it),
+        cmocka_unit_test(a_disc_half_behind_a_plate_gives_half),
+        cmocka_unit_test(lamps_are_as_bright_in_the_middle_as_the_flash),
         cmocka_unit_test(layers_do_not_change_when_another_is_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -52,6 +52,17 @@ static sample make_sample(void)
         fill(&s.targets[t].indirect, 3, 12 + (float)t);
         s.targets[t].light = vec3_make(0.25f, (float)t, -1);
     }
+    s.lamp_count = 2;
+    s.lamps = calloc(2, sizeof *s.lamps);
+    for (int i = 0; i < 2; i++) {
+        fill(&s.lamps[i].direct, 3, 14 + (float)i);
+        fill(&s.lamps[i].indirect, 3, 15 - (float)i);
+        fill(&s.lamps[i].visibility, 1, (float)i);
+        s.lamps[i].at = vec3_make(-0.5f, (float)i, -2);
+    }
+    s.lamps[1].distant = true;
+    s.lamps[1].radius = 0.125f;
+    s.slant = (camera_slant){0.25f, -0.125f};
     for (int i = 0; i < 27; i++)
         s.sh[i / 3][i % 3] = (float)i / 7;
     return s;
@@ -82,6 +93,12 @@ static void sample_survives_writing_and_reading(void **state)
     assert_int_equal(r.target_count, 2);
     assert_same_image(&s.targets[1].direct, &r.targets[1].direct);
     assert_same_image(&s.targets[0].indirect, &r.targets[0].indirect);
+    assert_int_equal(r.lamp_count, 2);
+    assert_same_image(&s.lamps[1].direct, &r.lamps[1].direct);
+    assert_same_image(&s.lamps[0].indirect, &r.lamps[0].indirect);
+    assert_same_image(&s.lamps[1].visibility, &r.lamps[1].visibility);
+    assert_true(r.lamps[1].at.y == 1 && r.lamps[1].distant && r.lamps[1].radius == 0.125f && !r.lamps[0].distant);
+    assert_true(r.slant.right == 0.25f && r.slant.up == -0.125f);
     assert_true(r.targets[1].light.y == 1 && r.light_power == 5.95f && r.fov == 60);
     assert_true(r.seed == s.seed && r.index == s.index && r.generator_version == SAMPLE_GENERATOR_VERSION);
     assert_string_equal(r.shape, "blend");
