@@ -1,9 +1,11 @@
 /* A watch tells how far long work is to whoever waits for it. Libraries take one and never print:
  *
- *     watch_tell(w, "solving", 0.4);          w may be NULL */
+ *     watch_tell(w, "solving", 0.4);                                    w may be NULL
+ *     if (watch_stops(w)) return fail(ERROR_STOPPED, "stopped"); */
 #ifndef MERLIN_BASE_WATCH_H
 #define MERLIN_BASE_WATCH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct watch {
@@ -11,11 +13,17 @@ typedef struct watch {
      * the one that began the work. */
     void (*tell)(void *context, const char *what, double share);
     void *context;
+    int (*stop)(void); /* nonzero: whoever waits gave up; may be NULL. Any thread */
 } watch;
 
 static inline void watch_tell(const watch *w, const char *what, double share)
 {
     if (w) w->tell(w->context, what, share);
+}
+
+static inline bool watch_stops(const watch *w)
+{
+    return w && w->stop && w->stop();
 }
 
 #endif

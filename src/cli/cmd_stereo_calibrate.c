@@ -107,6 +107,11 @@ static status announce(const request *r, const pst_calibration *c, const staged_
     return OK;
 }
 
+static status interrupted(const request *r)
+{
+    return fail(ERROR_STOPPED, "interrupted; nothing was written to %s", r->output);
+}
+
 static status write_files(const request *r, const pst_calibration *c, staged_files *written)
 {
     const char *const inputs[STAGING_MOST_INPUTS] = {r->options.mask};
@@ -115,7 +120,7 @@ static status write_files(const request *r, const pst_calibration *c, staged_fil
     if (s != OK) return s;
     char lights[PATH_MAX], picture[PATH_MAX];
     s = pst_calibration_write(c, staging_path(t, "lights.txt", lights), staging_path(t, "calibration.png", picture));
-    if (s == OK && cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written to %s", r->output);
+    if (s == OK && cli_interrupted()) s = interrupted(r);
     return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }
 
@@ -124,14 +129,16 @@ static status run(request *r)
     double began = clock_seconds();
     pst_calibration c;
     staged_files written = {0};
-    stage_bar bar = {.quiet = r->quiet};
-    watch shown = {stage_bar_tell, &bar};
+    stage_bar bar;
+    stage_bar_begin(&bar, r->quiet);
+    stage_bar_plan(&bar, (const stage_cost[]){{"reading", 1}}, 1);
+    const watch shown = stage_bar_watch(&bar);
     r->options.watch = &shown;
     status s = pst_calibrate_sphere(r->input, &r->options, &c);
     r->options.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
+    if (s == ERROR_STOPPED) return interrupted(r);
     if (s != OK) return s;
-    cli_catch_interrupts(); /* until here an interrupt just ends the program: there is nothing to tidy up */
     s = write_files(r, &c, &written);
     if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);
     if (s == OK && !r->quiet) {
@@ -148,6 +155,7 @@ int stereo_calibrate(int argc, char **argv)
     request r = {0};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("stereo calibrate", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
+    cli_catch_interrupts();
     status s = run(&r);
     return s == OK ? 0 : cli_fail("stereo calibrate", s);
 }

@@ -1,22 +1,148 @@
 #include "cli/stage_bar.h"
 
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include <time.h>
 
-enum { HUNDRED = 100 };
+#include "cli/cli.h"
+
+/* Seconds. What is done in less than LONG has no bar; one of which nothing was heard gets it a little earlier, so that
+ * a terminal is not silent for long. Whether it is long is not known in the beginning. */
+static const double LONG = 2, UNHEARD = 1.5, BEGINNING = 0.5;
+enum { TICK_NANOSECONDS = 200000000, SECOND_NANOSECONDS = 1000000000 };
+
+/* ---- drawing; the lock is held ---- */
+
+static void take_away(stage_bar *b)
+{
+    if (b->drawn) progress_clear();
+    b->drawn = false;
+}
+
+static bool is_long(const stage_bar *b, double elapsed, double left)
+{
+    if (b->drawn) return true;
+    return left < 0 ? elapsed >= UNHEARD : elapsed >= BEGINNING && elapsed + left >= LONG;
+}
+
+static void draw(stage_bar *b)
+{
+    double now = clock_seconds(), left = pace_left(&b->pace, now);
+    if (!b->label || b->hidden || !is_long(b, now - b->began, left)) return;
+    char time[PROGRESS_TIME] = "?", words[64];
+    if (left >= 0) progress_time(fmax(left, 1), time); /* what goes on is not at its end */
+    snprintf(words, sizeof words, "%3.0f %%  %s left", floor(100 * b->pace.share), time);
+    progress_draw(b->label, b->pace.share, words);
+    b->drawn = true;
+}
+
+static void *tick(void *bar)
+{
+    stage_bar *b = bar;
+    pthread_mutex_lock(&b->lock);
+    while (!b->ending) {
+        struct timespec until;
+        clock_gettime(CLOCK_MONOTONIC, &until);
+        until.tv_nsec += TICK_NANOSECONDS;
+        until.tv_sec += until.tv_nsec / SECOND_NANOSECONDS;
+        until.tv_nsec %= SECOND_NANOSECONDS;
+        if (pthread_cond_timedwait(&b->ended, &b->lock, &until) != ETIMEDOUT) continue;
+        if (cli_interrupted())
+            take_away(b);
+        else
+            draw(b);
+    }
+    pthread_mutex_unlock(&b->lock);
+    return NULL;
+}
+
+/* ---- what is done ---- */
+
+/* Returns the whole's share where a stage's is done; stages that are not planned are where the bar stands. */
+static double whole_share(const stage_bar *b, const char *stage, double share)
+{
+    double done = -1, all = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        if (strcmp(b->stages[i].name, stage) == 0) done = all + share * b->stages[i].cost;
+        all += b->stages[i].cost;
+    }
+    return done < 0 || !(all > 0) ? b->pace.share : b->from + (b->to - b->from) * done / all;
+}
+
+static void tell(void *bar, const char *stage, double share)
+{
+    stage_bar *b = bar;
+    if (!b->seen) return;
+    pthread_mutex_lock(&b->lock);
+    b->label = stage;
+    b->hidden = false;
+    pace_note(&b->pace, whole_share(b, stage, share), clock_seconds());
+    pthread_mutex_unlock(&b->lock);
+}
+
+watch stage_bar_watch(stage_bar *b)
+{
+    return (watch){tell, b, cli_interrupted};
+}
+
+void stage_bar_plan(stage_bar *b, const stage_cost *stages, size_t count)
+{
+    b->count = count < STAGE_BAR_MOST ? count : STAGE_BAR_MOST;
+    memcpy(b->stages, stages, b->count * sizeof *stages);
+}
+
+void stage_bar_span(stage_bar *b, double from, double to)
+{
+    b->from = from;
+    b->to = to;
+}
+
+/* ---- from begin to end ---- */
+
+/* Without memory or a thread for it there is no bar, and all else goes on. */
+static bool start(stage_bar *b)
+{
+    pthread_condattr_t monotonic;
+    if (pthread_mutex_init(&b->lock, NULL) != 0) return false;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    bool made = pthread_cond_init(&b->ended, &monotonic) == 0;
+    pthread_condattr_destroy(&monotonic);
+    b->ticking = made && pthread_create(&b->ticker, NULL, tick, b) == 0;
+    if (b->ticking) return true;
+    if (made) pthread_cond_destroy(&b->ended);
+    pthread_mutex_destroy(&b->lock);
+    return false;
+}
+
+void stage_bar_begin(stage_bar *b, bool quiet)
+{
+    *b = (stage_bar){.to = 1, .began = clock_seconds()};
+    pace_begin(&b->pace, 0, b->began);
+    b->seen = !quiet && progress_is_seen() && start(b);
+}
+
+void stage_bar_hide(stage_bar *b)
+{
+    if (!b->seen) return;
+    pthread_mutex_lock(&b->lock);
+    take_away(b);
+    b->hidden = true;
+    pthread_mutex_unlock(&b->lock);
+}
 
 void stage_bar_end(stage_bar *b)
 {
-    if (b->bar.label && b->bar.shown > b->bar.started) progress_end(&b->bar);
-    b->bar = (progress){0};
-}
-
-void stage_bar_tell(void *bar, const char *stage, double share)
-{
-    stage_bar *b = bar;
-    if (!b->bar.label || strcmp(b->bar.label, stage) != 0) {
-        stage_bar_end(b);
-        progress_begin(&b->bar, stage, "%", 0, HUNDRED, b->quiet);
-    }
-    size_t done = (size_t)(share * HUNDRED);
-    progress_update(&b->bar, done < HUNDRED ? done : HUNDRED, NULL);
+    if (!b->seen) return;
+    pthread_mutex_lock(&b->lock);
+    b->ending = true;
+    pthread_cond_signal(&b->ended);
+    pthread_mutex_unlock(&b->lock);
+    pthread_join(b->ticker, NULL);
+    take_away(b);
+    pthread_cond_destroy(&b->ended);
+    pthread_mutex_destroy(&b->lock);
+    b->seen = false;
 }

@@ -1,21 +1,52 @@
-/* A progress bar for each stage of long work, on standard error; none for what is soon done.
+/* One bar for all of a command's long work, with the time left: on a terminal's standard error alone, drawn once the
+ * work lasts, and gone when it ends, fails or is interrupted.
  *
- *     stage_bar bar = {.quiet = quiet};
- *     watch w = {stage_bar_tell, &bar};
+ *     stage_bar bar;
+ *     stage_bar_begin(&bar, quiet);
+ *     stage_bar_plan(&bar, (const stage_cost[]){{"reading", 1}, {"solving", 4}}, 2);
+ *     watch w = stage_bar_watch(&bar);
  *     ... work that is given &w ...
- *     stage_bar_end(&bar); */
+ *     stage_bar_end(&bar);                                    before anything is printed */
 #ifndef MERLIN_CLI_STAGE_BAR_H
 #define MERLIN_CLI_STAGE_BAR_H
+
+#include <pthread.h>
 
 #include "base/progress.h"
 #include "base/watch.h"
 
+/* What a stage costs beside the others, in any unit. */
+typedef struct stage_cost {
+    const char *name; /* as the watch is told it: a literal */
+    double cost;
+} stage_cost;
+
+enum { STAGE_BAR_MOST = 8 };
+
 typedef struct stage_bar {
-    progress bar; /* in hundredths of the stage */
-    bool quiet;
+    pthread_mutex_t lock;
+    pthread_cond_t ended;
+    pthread_t ticker; /* draws while nothing is told */
+    bool seen, ticking, ending;
+    stage_cost stages[STAGE_BAR_MOST];
+    size_t count;
+    double from, to; /* of the whole: the plan's */
+    const char *label;
+    double began;
+    pace pace;
+    bool drawn, hidden;
 } stage_bar;
 
-void stage_bar_tell(void *bar, const char *stage, double share);
+void stage_bar_begin(stage_bar *b, bool quiet);
 void stage_bar_end(stage_bar *b);
+/* For all of the work, or for the span that follows. Stages may be left out, and may come again: a bar does not go
+ * back. */
+void stage_bar_plan(stage_bar *b, const stage_cost *stages, size_t count);
+/* What follows is this part of the whole, one photograph of several; 0 <= from <= to <= 1. */
+void stage_bar_span(stage_bar *b, double from, double to);
+/* Takes the bar away until something is told, so that other lines can be printed. */
+void stage_bar_hide(stage_bar *b);
+/* Tells the bar, and stops when the command is interrupted. */
+watch stage_bar_watch(stage_bar *b);
 
 #endif

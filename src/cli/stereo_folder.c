@@ -133,7 +133,7 @@ static status solve(const stereo_folder *f, const pst_capture *c, stereo_result 
     status s = pst_solve(c, &(pst_options){.method = f->method, .watch = f->watch}, &surface);
     if (s != OK) return s;
     double solved = clock_seconds();
-    s = pst_surface_integrate(c, f->integrate, f->preserve_edges, &surface);
+    s = pst_surface_integrate(c, f->integrate, f->preserve_edges, f->watch, &surface);
     if (s == OK) s = pst_doubts(c, &surface, &doubts);
     if (s == OK) s = take_surface(c, &surface, out);
     if (s == OK) s = put_report(report, c, &surface, out);

@@ -55,7 +55,7 @@ static status solve_all(work *w)
     int (*stop)(void) = w->photo->params.stop;
     status s = OK;
     for (int d = 0; d < DRAW_MOST && s == OK; d++) {
-        watch_tell(w->photo->watch, "solving", (double)(d + 1) / (DRAW_MOST + 1));
+        watch_tell(w->photo->watch, "solving", (double)d / DRAW_MOST);
         s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : solve_draw(w, d);
     }
     if (s == OK) watch_tell(w->photo->watch, "solving", 1);
@@ -141,14 +141,15 @@ status stereo_from_photo(const stereo_photo *p, stereo_result *out, cJSON *repor
 {
     work w = {.photo = p};
     *out = (stereo_result){0};
-    watch_tell(p->watch, "solving", 0); /* the photograph and its relit pictures take as long as a draw */
+    watch_tell(p->watch, "relighting", 0);
     status s = open_photo(&w);
     if (s == OK) s = result_new(&w, out);
     if (s == OK) doubts_list(&w.maps, &out->doubts);
     if (s == OK) s = solve_all(&w);
     if (s == OK) {
         average_all(&w, out, report);
-        pst_integration how = {.preserve_edges = p->preserve_edges};
+        pst_integration how = {.preserve_edges = p->preserve_edges, .watch = p->watch};
+        watch_tell(p->watch, "integrating", 0);
         s = pst_integrate(&out->normal, &out->mask, &out->camera, &how, &out->depth);
     }
     work_free(&w);

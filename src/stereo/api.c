@@ -230,7 +230,7 @@ static status solve(const pst_capture *c, const merlin_stereo_params *params, me
     pst_surface found;
     status s = pst_solve(c, &(pst_options){.method = (pst_method)params->method}, &found);
     if (s != OK) return s;
-    s = pst_surface_integrate(c, false, params->keep_edges, &found);
+    s = pst_surface_integrate(c, false, params->keep_edges, NULL, &found);
     if (s == OK) s = take_surface(c, &found, out);
     pst_surface_free(&found);
     return s;

@@ -265,10 +265,16 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
     }
 }
 
+static bool stopped(const pst_field *f)
+{
+    return f->problem->effort && watch_stops(f->problem->effort->watch);
+}
+
 static void fit_block(void *context, size_t block)
 {
     const fit_job *job = context;
     const pst_field *f = job->field;
+    if (stopped(f)) return;
     size_t first = block * BLOCK, end = first + BLOCK < f->count ? first + BLOCK : f->count;
     size_t stride = (size_t)pst_padded(f->problem->capture->count), wanted[BLOCK], count = 0;
     uint32_t pixel[BLOCK];
@@ -308,7 +314,7 @@ static status run(fit_job *job)
     for (size_t i = 0; i < f->count; i++)
         job->total += (double)job->cost[i];
     free(memory);
-    return OK;
+    return stopped(f) ? fail(ERROR_STOPPED, "stopped") : OK;
 }
 
 status pst_field_fit(const pst_field *f, double *cost)

@@ -189,7 +189,7 @@ status pst_integrate(const img *normal, const img *mask, const pst_camera *camer
     *depth = (img){0};
     status result = check(normal, mask, camera, options);
     if (result != OK) return result;
-    integration_steps s = {.normal = normal, .camera = *camera};
+    integration_steps s = {.normal = normal, .camera = *camera, .watch = options->watch};
     result = poisson_grid_new(mask, &s.grid);
     if (result != OK) return result;
     double *x = memory_new((size_t)s.grid.count * sizeof *x);

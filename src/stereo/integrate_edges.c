@@ -93,12 +93,15 @@ status integrate_edges(integration_steps *s, poisson_solver *solver, bool steppe
     pairs p = {0};
     status result = pairs_new(&s->grid, &p);
     double first = stepped ? STEPPED_SHARPNESS : FIRST_SHARPNESS, growth = stepped ? STEPPED_GROWTH : GROWTH;
+    double rounds = ceil(log(LAST_SHARPNESS / first) / log(growth)), round = 0;
     for (double sharpness = first; result == OK && sharpness < LAST_SHARPNESS; sharpness *= growth) {
+        watch_tell(s->watch, "integrating", fmin(round++ / rounds, 1));
+        if (watch_stops(s->watch)) result = fail(ERROR_STOPPED, "stopped");
         for (int k = 0; k < 2; k++) {
             find_misfits(s, x, k, &p);
             reweigh(&s->grid, &p, k, sharpness);
         }
-        result = poisson_solve(solver, TOLERANCE, x);
+        if (result == OK) result = poisson_solve(solver, TOLERANCE, x);
     }
     pairs_free(&p);
     return result;

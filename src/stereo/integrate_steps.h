@@ -13,6 +13,7 @@ typedef struct integration_steps {
     const img *normal;
     pst_camera camera;
     poisson_grid grid;
+    const watch *watch;
 } integration_steps;
 
 /* Bilaterally weighted least squares (Cao et al., ECCV 2022, "Bilateral normal integration") from least squares' x: one

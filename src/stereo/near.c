@@ -51,6 +51,7 @@ typedef struct near_job {
     pst_lobe lobe;
     pst_shading *shading; /* a pixel */
     float held_at;        /* mean distance, where it is known and until parts have found their places; else 0 */
+    const watch *watch;   /* of the integration, where it lasts; else NULL */
     float moved;          /* by the last integration: mean of all pixels, against the distance */
 } near_job;
 
@@ -208,7 +209,8 @@ static status place(near_job *job, float slope, bool preserve_edges)
                            .prior_weight = 1,
                            .trust = &trust,
                            .preserve_edges = preserve_edges,
-                           .from_prior = preserve_edges};
+                           .from_prior = preserve_edges,
+                           .watch = job->watch};
     if (s == OK) s = integrate(job, &how);
     img_free(&place);
     img_free(&trust);
@@ -316,6 +318,7 @@ static status find_depth_small(near_job *job, int factor)
 /* The small depth map's steps find their pixels. */
 static status fill_in(near_job *job)
 {
+    job->watch = job->problem->effort ? job->problem->effort->watch : NULL;
     status s = fit_normals(job, true);
     return s == OK ? place(job, placed, true) : s;
 }

@@ -48,6 +48,7 @@ static status cost_at(search *s, float extent, bool held, double *cost)
     pst_surface found;
     put_lights(s->about, extent * s->unit, held, &s->small);
     watch_tell(s->watch, "finding the distance", (double)s->tried++ / (2 + COARSE + VALLEYS * FINE));
+    if (watch_stops(s->watch)) return fail(ERROR_STOPPED, "stopped");
     status result = pst_solve(&s->small, &(pst_options){.method = PST_NEAR_LIGHTS, .iterations = ROUNDS}, &found);
     if (result != OK) return result;
     double sum = 0, count = 0;

@@ -103,6 +103,7 @@ static status for_pictures(const reading *r, status (*work)(const reading *r, in
     for (int i = 0; i < r->into->count && s == OK; i += READERS) {
         watch_tell(r->watch, "reading", (double)i / r->into->count);
         int left = r->into->count - i;
+        if (watch_stops(r->watch)) return fail(ERROR_STOPPED, "stopped");
         s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
     }
     return s;

@@ -22,7 +22,7 @@ typedef struct pst_options {
     float shadow;       /* values at or below this share of full scale are left out; 0: chosen */
     float saturation;   /* values at or above; 0: PST_SATURATED */
     int iterations;     /* of iterative methods; 0: chosen */
-    const watch *watch; /* may be NULL */
+    const watch *watch; /* ERROR_STOPPED where it says so; may be NULL */
 } pst_options;
 
 typedef struct pst_surface {
@@ -43,8 +43,9 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
 void pst_surface_free(pst_surface *s);
 
 /* Depth (integrate.h) from the normals, unless the method has found it; integrate: even then, held near what it found.
- */
-status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, pst_surface *s);
+ * shown may be NULL. */
+status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, const watch *shown,
+                             pst_surface *s);
 
 /* The name people type ("ls", "robust", "near", "semi", "uncalibrated", "auto"); -1 if unknown. */
 int pst_method_from_name(const char *name);

@@ -1,10 +1,12 @@
 #include "stereo/integrate.h"
 #include "stereo/solve.h"
 
-status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, pst_surface *s)
+status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, const watch *shown,
+                             pst_surface *s)
 {
     if (s->depth.data && !integrate) return OK;
-    pst_integration how = {.preserve_edges = preserve_edges};
+    pst_integration how = {.preserve_edges = preserve_edges, .watch = shown};
+    watch_tell(shown, "integrating", 0);
     if (s->depth.data) {
         how.prior = &s->depth;
         how.prior_weight = PST_KEEP_DEPTH;

@@ -34,7 +34,7 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
     relief_capture(&how, &c);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         heard h = {0};
-        watch w = {hear, &h};
+        watch w = {.tell = hear, .context = &h};
         pst_surface watched, alone;
         assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &watched), OK);
         assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i]}, &alone), OK);

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Long work shows on a terminal that it goes on, and leaves nothing of that behind; elsewhere there is none.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
+# shellcheck source=tests/cli/support/pictures.bash
+source "$(dirname "$0")/support/pictures.bash"
+if ! command -v script >/dev/null; then
+    echo "there is no script(1) to make a terminal: not tested"
+    exit 77
+fi
+make_tiny_model
+export OMP_WAIT_POLICY=passive MERLIN_MODEL=$scratch/weights.safetensors # other tests may run beside this one
+export TERM=xterm
+cd "$scratch" || exit 1
+
+# The work is long on every machine, for it is halted for some seconds.
+cat >halted <<'BASH'
+#!/usr/bin/env bash
+"$MERLIN" "$@" &
+sleep 0.3
+kill -STOP $!
+sleep 2.5
+kill -CONT $!
+wait $!
+BASH
+chmod +x halted
+erase=$'\r\033[K'
+
+# on_terminal COMMAND...: what the command writes on a terminal, in `screen`.
+on_terminal() {
+    local status=0
+    script -qec "$(printf '%q ' "$@")" /dev/null </dev/null >screen 2>&1 || status=$?
+    return "$status"
+}
+
+has_bar() { grep -q '\[[#.]*\] *[0-9]* %  .* left' screen; }
+
+# is_cleared: behind the last bar the line is empty before anything else is written.
+is_cleared() {
+    local all
+    all=$(<screen)
+    [[ ${all##* left} == $'\033[K'"$erase"* ]]
+}
+
+# shows_bar WORD COMMAND...: drawn with that word before it, cleared, and exit status 0.
+shows_bar() {
+    local word=$1
+    shift
+    on_terminal "$@" || complain "$* exited with $?: $(<screen)"
+    has_bar || complain "$* has no bar: $(<screen)"
+    grep -q "$word \[" screen || complain "$* does not say that it is $word: $(<screen)"
+    is_cleared || complain "$* leaves its bar: $(<screen)"
+}
+
+# shows_none COMMAND...
+shows_none() {
+    on_terminal "$@" || complain "$* exited with $?: $(<screen)"
+    has_bar && complain "$* has a bar: $(<screen)"
+    grep -q $'\033' screen && complain "$* moves the cursor: $(<screen)"
+}
+
+radiance disc.hdr 256 100
+"$MERLIN" estimate disc.hdr --size 64 -q || complain "no maps"
+
+echo "stereo"
+"$MERLIN" relight disc.merlin --dome 12 --near -o dome -q || complain "no dome"
+near=(stereo dome --near --distance 1 --fov 60 -o out)
+shows_bar '\(reading\|solving\|integrating\)' ./halted "${near[@]}"
+shows_none ./halted "${near[@]}" -q
+TERM=dumb shows_none ./halted "${near[@]}"
+./halted "${near[@]}" >stdout 2>stderr || complain "stereo exited with $?: $(<stderr)"
+[ -s stderr ] && complain "beside a terminal stereo says: $(<stderr)"
+cp out/maps.exr alone.exr
+on_terminal ./halted "${near[@]}"
+cmp -s alone.exr out/maps.exr || complain "a bar changes the surface"
+
+echo "a refused picture's line is beside no bar"
+head -c 2000 dome/dome_011.png >broken && mv broken dome/dome_011.png
+on_terminal ./halted "${near[@]}" && complain "a broken picture was taken"
+grep -q '^merlin stereo: ' <(tr '\r' '\n' <screen | sed 's/^\x1b\[K//') || complain "said: $(<screen)"
+has_bar && ! is_cleared && complain "a failure leaves the bar: $(<screen)"
+finish
