@@ -1,4 +1,5 @@
 /* merlin estimate: photographs to maps. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "base/progress.h"
 #include "cli/check_files.h"
 #include "cli/cli.h"
+#include "cli/expect.h"
 #include "cli/json_line.h"
 #include "cli/mesh_file.h"
 #include "cli/options.h"
@@ -15,6 +17,7 @@
 #include "cli/photo_hint.h"
 #include "cli/photo_mesh.h"
 #include "cli/photos.h"
+#include "cli/stage_bar.h"
 #include "cli/standard_input.h"
 #include "cli/written.h"
 #include "estimate/api.h"
@@ -61,6 +64,7 @@ typedef struct request {
     merlin_model *model;
     const photo_list *photos;
     bool *told; /* what was left aside of folders */
+    stage_bar *bar;
 } request;
 
 static status take_standard_input(const request *r, int count, char **photos)
@@ -139,6 +143,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
     enum { TOLD = 3 };
     char amount[WRITTEN_WORDS];
     status s = OK;
+    stage_bar_hide(r->bar);
     if (r->json)
         s = print_json(r, job, maps, written, laps);
     else if (!r->quiet)
@@ -169,6 +174,14 @@ static status write_named_mesh(const void *maps, const char *path)
     return photo_mesh_write(maps, path);
 }
 
+static void plan(const request *r, double pixels)
+{
+    stage_cost stages[STAGE_BAR_MOST];
+    size_t count = expect_estimate(pixels, stages, 0);
+    stages[count++] = (stage_cost){"writing", expect_maps_written(pixels, r->mesh || r->meshes.count > 0)};
+    stage_bar_plan(r->bar, stages, count);
+}
+
 static status write_meshes(const void *context, const merlin_maps *maps, maps_staging *to)
 {
     const mesh_work *w = context;
@@ -191,9 +204,13 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
     mesh_work meshes = {r, job, inputs};
+    const watch shown = stage_bar_watch(r->bar);
+    plan(r, (double)photo->width * photo->height);
+    object->watch = &shown;
     maps_output to = {.folder = job->output,
                       .inputs = inputs,
                       .stop = cli_interrupted,
+                      .watch = &shown,
                       .more = write_meshes,
                       .context = &meshes,
                       .written = &written};
@@ -204,6 +221,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) s = announce(r, job, &maps, &written, laps);
+    object->watch = NULL; /* it ends with this function */
     staged_files_free(&written);
     merlin_maps_free(&maps);
     return s;
@@ -245,16 +263,32 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     return fail(opened, "%s", words);
 }
 
+/* What photograph i is of all of them; its stages follow, which its size is not known for yet. */
+static void begin_photo(const request *r, const photo_list *photos, size_t i, double *done, double all)
+{
+    double cost = expect_photo(photos->at[i].photo);
+    stage_bar_span(r->bar, *done / all, fmin((*done + cost) / all, 1), i + 1, photos->count);
+    plan(r, 0);
+    const watch shown = stage_bar_watch(r->bar);
+    watch_tell(&shown, "reading", 0);
+    *done += cost;
+}
+
 /* Goes on after a photograph that fails, but not without weights. */
 static int estimate_all(request *r, const photo_list *photos, const char *weights)
 {
     int code = 0;
+    double done = 0, all = 0;
+    for (size_t i = 0; i < photos->count; i++)
+        all += expect_photo(photos->at[i].photo);
     bool ready = false, broken = false;
     for (size_t i = 0; i < photos->count; i++) {
         const photo_job *job = &photos->at[i];
+        begin_photo(r, photos, i, &done, all);
         status s = cli_interrupted() ? ERROR_STOPPED : check_photo_and_mask(job->photo, job->mask);
         if (s == OK) s = check_output(job->output);
         if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, weights, &ready, &broken);
+        if (s != OK) stage_bar_hide(r->bar);
         if (s == ERROR_STOPPED)
             return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
         if (s == OK) continue;
@@ -283,7 +317,11 @@ int cmd_estimate(int argc, char **argv)
     r.told = &told;
     if (photo_hint_given(&r.params.hint)) photo_use_hint(&photos.at[0], &r.params.hint);
     s = photo_find_model(r.weights, &weights);
+    stage_bar bar;
+    stage_bar_begin(&bar, r.quiet);
+    r.bar = &bar;
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
+    stage_bar_end(&bar);
     merlin_model_close(r.model);
     free(weights);
     photo_list_free(&photos);

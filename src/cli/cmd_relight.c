@@ -9,6 +9,7 @@
 #include "base/warnings.h"
 #include "cli/check_files.h"
 #include "cli/cli.h"
+#include "cli/expect.h"
 #include "cli/json_line.h"
 #include "cli/lamps.h"
 #include "cli/options.h"
@@ -16,6 +17,7 @@
 #include "cli/photo_hint.h"
 #include "cli/photos.h"
 #include "cli/relight_output.h"
+#include "cli/stage_bar.h"
 #include "cli/standard_input.h"
 #include "cli/stereo_maps.h"
 #include "cli/written.h"
@@ -281,12 +283,12 @@ static status read_lamps(request *r)
 }
 
 /* From a folder of estimate's or stereo's, or by estimating now. */
-static status get_maps(const request *r, merlin_model *model, merlin_maps *maps)
+static status get_maps(const request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
-    return photo_maps(model, r->input, r->mask, &r->params, maps);
+    return photo_maps(model, r->input, r->mask, &r->params, shown, maps);
 }
 
 /* ---- what is said of it ---- */
@@ -343,20 +345,6 @@ static status announce(const request *r, const relight_job *job, const relight_r
 
 /* ---- the work ---- */
 
-/* Where there is something to wait for. */
-static status write_all(const request *r, const relight_job *job, relight_result *result)
-{
-    enum { SOON_DONE = 8 };
-    progress p;
-    relight_job watched = *job;
-    size_t count = relight_count(job);
-    progress_begin(&p, "relighting", "pictures", 0, count, r->quiet || count <= SOON_DONE);
-    watched.progress = &p;
-    status s = to_standard_output(r) ? relight_print(&watched, result) : relight_output(&watched, result);
-    progress_end(&p);
-    return s;
-}
-
 static relight_job job_of(const request *r, const char *output)
 {
     bool captured = stereo_maps_in(r->input);
@@ -377,6 +365,20 @@ static relight_job job_of(const request *r, const char *output)
     return job;
 }
 
+/* By the sizes of files, since the plan is made before they are read. */
+static void plan(const request *r, stage_bar *bar)
+{
+    stage_cost stages[STAGE_BAR_MOST];
+    double pixels = expect_pixels(r->input), lamps = (double)r->lamps.count + r->dome.count;
+    size_t count = expect_estimate(pixels, stages, 0);
+    expect_relight how = {.pixels = pixels,
+                          .pictures = r->env && r->lamps.count == 0 ? lamps + 1 : lamps,
+                          .frames = r->orbit,
+                          .environment = r->env != NULL};
+    if (file_is_folder(r->input)) count = expect_maps(pixels, stages, 0);
+    stage_bar_plan(bar, stages, expect_relit(&how, stages, count));
+}
+
 static status relight(const request *r, const char *weights, const char *output)
 {
     double began = clock_seconds();
@@ -385,13 +387,20 @@ static status relight(const request *r, const char *weights, const char *output)
     job.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list};
     merlin_maps maps = {0};
     merlin_environment *environment = NULL;
+    stage_bar bar;
     status s = OK;
+    stage_bar_begin(&bar, r->quiet);
+    plan(r, &bar);
+    const watch shown = stage_bar_watch(&bar);
+    job.watch = &shown;
+    watch_tell(&shown, "reading", 0);
     if (r->env) s = (status)merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
     if (s == OK) s = (status)merlin_model_open(weights, &job.model);
-    if (s == OK) s = get_maps(r, job.model, &maps);
+    if (s == OK) s = get_maps(r, job.model, &shown, &maps);
     job.maps = &maps;
-    if (s == OK) s = write_all(r, &job, &result);
+    if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
+    stage_bar_end(&bar);
     if (s == OK) s = announce(r, &job, &result, clock_seconds() - began);
     staged_files_free(&result.files);
     merlin_maps_free(&maps);

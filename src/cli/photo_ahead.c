@@ -34,7 +34,7 @@ status photo_read_object(const photo_job *job, merlin_image *photo, photo_object
 }
 
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
-                  merlin_maps *maps)
+                  const watch *shown, merlin_maps *maps)
 {
     const merlin_hint *hint = params && photo_hint_given(&params->hint) ? &params->hint : NULL;
     char *own = NULL;
@@ -44,9 +44,11 @@ status photo_maps(merlin_model *model, const char *photo, const char *mask, cons
     merlin_image picture;
     photo_object object;
     double seconds;
+    watch_tell(shown, "reading", 0);
     s = photo_read_object(&job, &picture, &object, &seconds);
     free(own);
     if (s != OK) return s;
+    object.watch = shown;
     s = estimate_object(model, &picture, &object, params, maps);
     return s == OK ? OK : fail_in(s, "%s", photo);
 }

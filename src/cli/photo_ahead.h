@@ -32,9 +32,9 @@ status photo_finish(photo_ahead *ahead, merlin_image *photo, photo_object *objec
 /* The same without a thread. */
 status photo_read_object(const photo_job *job, merlin_image *photo, photo_object *object, double *read_seconds);
 
-/* All of it, and estimated; mask (its own then, or found), params (the usual ones then) may be NULL. The message names
- * the photograph. */
+/* All of it, and estimated; mask (its own then, or found), params (the usual ones then) and shown may be NULL. The
+ * message names the photograph. */
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
-                  merlin_maps *maps);
+                  const watch *shown, merlin_maps *maps);
 
 #endif

@@ -26,6 +26,7 @@ static status write_animations(const relight_work *w, const img_animation *frame
     status s = OK;
     for (int i = 0; i < 2 && s == OK; i++) {
         char path[PATH_MAX];
+        watch_tell(w->job->watch, "animating", (double)i / 2);
         s = relight_check(w);
         if (s == OK) s = img_animation_write(frames, staging_path(w->staging, names[i], path), delay);
     }
@@ -66,6 +67,7 @@ static status write_frames(relight_work *w, img_animation *frames)
     status s = OK;
     for (int i = 0; i < job->orbit && s == OK; i++) {
         img frame = {0};
+        watch_tell(job->watch, "going round", (double)i / job->orbit);
         s = relight_check(w);
         if (s == OK) s = render_frame(w, &turning, i, &some, &frame);
         if (s == OK) s = write_frame(w, i, &frame);

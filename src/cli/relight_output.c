@@ -15,6 +15,18 @@ status relight_check(const relight_work *w)
     return w->job->stop && w->job->stop() ? fail(ERROR_STOPPED, "stopped") : OK;
 }
 
+/* ---- how many ---- */
+
+static size_t count_lights(const relight_job *job)
+{
+    return job->lamps.count > 0 ? job->lamps.count : job->environment != NULL;
+}
+
+size_t relight_count_whole(const relight_job *job)
+{
+    return count_lights(job) + (size_t)job->dome.count;
+}
+
 /* ---- one picture ---- */
 
 static void note_burnt_out(relight_work *w, const img *square)
@@ -37,7 +49,6 @@ status relight_square(relight_work *w, const lamp *light, img *out)
 {
     status s = stage_relight(w->job->model->network, &w->stage, light, out);
     if (s == OK) note_burnt_out(w, out);
-    progress_update(w->job->progress, w->job->progress->done + 1, NULL);
     return s;
 }
 
@@ -68,6 +79,7 @@ status relight_write(relight_work *w, const relight_picture *p)
     char name[32], label[RELIGHT_LABEL];
     snprintf(name, sizeof name, "%s_%03zu", p->name, p->number);
     relight_label(p->light, label);
+    watch_tell(w->job->watch, "relighting", (double)w->done++ / (double)relight_count_whole(w->job));
     status s = relight_square(w, p->light, &square);
     if (s == OK && p->sheet) s = relight_sheet_add(p->sheet, &square, label);
     if (s == OK) s = frame_whole(w, &square, &whole);
@@ -79,11 +91,6 @@ status relight_write(relight_work *w, const relight_picture *p)
 }
 
 /* ---- single lights, in the photograph's frame ---- */
-
-static size_t count_lights(const relight_job *job)
-{
-    return job->lamps.count > 0 ? job->lamps.count : job->environment != NULL;
-}
 
 /* Writes relit.png: one light's picture itself, or a sheet of several lights' pictures. */
 static status write_lights(relight_work *w)
@@ -141,16 +148,6 @@ static status expose(relight_work *w)
 
 /* ---- all of them ---- */
 
-static size_t count_whole(const relight_job *job)
-{
-    return count_lights(job) + (size_t)job->dome.count;
-}
-
-size_t relight_count(const relight_job *job)
-{
-    return count_whole(job) + (size_t)job->orbit;
-}
-
 static int frame_side(const relight_job *job)
 {
     int crop = job->maps->crop.side;
@@ -168,6 +165,7 @@ static void let_go(merlin_maps *m)
 static status set_stage(relight_work *w, int side)
 {
     const relight_job *job = w->job;
+    watch_tell(job->watch, "preparing", 0);
     status s = stage_new(job->model->network, job->maps, side, job->how, &w->stage);
     if (s == OK && job->matte) s = stage_make_matte(&w->stage);
     if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
@@ -177,7 +175,7 @@ static status set_stage(relight_work *w, int side)
 static status write_all(relight_work *w)
 {
     const relight_job *job = w->job;
-    bool whole = count_whole(job) > 0, both = whole && job->orbit > 0;
+    bool whole = relight_count_whole(job) > 0, both = whole && job->orbit > 0;
     status s = set_stage(w, whole ? 0 : frame_side(job));
     if (s == OK && !both) let_go(job->maps);
     if (s == OK) s = write_lights(w);
@@ -217,6 +215,7 @@ status relight_print(const relight_job *job, relight_result *result)
     uint8_t *data = NULL;
     size_t size = 0;
     status s = set_stage(&w, 0);
+    watch_tell(job->watch, "relighting", 0);
     if (s == OK) s = relight_square(&w, job->lamps.count ? &job->lamps.at[0] : NULL, &square);
     if (s == OK) s = frame_whole(&w, &square, &whole);
     if (s == OK) s = img_encode_picture("standard output", &whole, job->format, &data, &size);

@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-#include "base/progress.h"
 #include "base/status.h"
+#include "base/watch.h"
 #include "cli/lamps.h"
 #include "estimate/staging.h"
 #include "image/write.h"
@@ -44,7 +44,7 @@ typedef struct relight_job {
                 * light does */
     int frame; /* their side; 0: the crop's, at most 512 */
     int (*stop)(void);
-    progress *progress; /* moves on by one for each of relight_count */
+    const watch *watch; /* told "preparing", "relighting", "going round" (of an orbit) and "animating" */
 } relight_job;
 
 /* The outcome of it. */
@@ -58,8 +58,8 @@ typedef struct relight_result {
 
 #define RELIGHT_MUCH_BURNT_OUT 0.05
 
-/* How many pictures of the object it takes. */
-size_t relight_count(const relight_job *job);
+/* How many pictures of the photograph's size it takes. */
+size_t relight_count_whole(const relight_job *job);
 
 /* All files, or none; ERROR_STOPPED if stop said so. */
 status relight_output(const relight_job *job, relight_result *result);

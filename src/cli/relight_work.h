@@ -10,6 +10,7 @@ typedef struct relight_work {
     staging *staging;
     stage stage;
     relight_result *result;
+    size_t done; /* of relight_count_whole */
 } relight_work;
 
 /* ERROR_STOPPED if the job is to stop. */

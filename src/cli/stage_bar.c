@@ -8,9 +8,9 @@
 
 #include "cli/cli.h"
 
-/* Seconds. What is done in less than LONG has no bar; one of which nothing was heard gets it a little earlier, so that
- * a terminal is not silent for long. Whether it is long is not known in the beginning. */
-static const double LONG = 2, UNHEARD = 1.5, BEGINNING = 0.5;
+/* Seconds. What is done in less than LONG has no bar, nor what is all but done after it; work of which nothing was
+ * heard gets it a little earlier, so that a terminal is not silent for long. The first moments tell little. */
+static const double LONG = 2, UNHEARD = 1.5, MOMENTS = 0.5;
 enum { TICK_NANOSECONDS = 200000000, SECOND_NANOSECONDS = 1000000000 };
 
 /* ---- drawing; the lock is held ---- */
@@ -24,16 +24,17 @@ static void take_away(stage_bar *b)
 static bool is_long(const stage_bar *b, double elapsed, double left)
 {
     if (b->drawn) return true;
-    return left < 0 ? elapsed >= UNHEARD : elapsed >= BEGINNING && elapsed + left >= LONG;
+    if (left < 0) return elapsed >= UNHEARD;
+    return elapsed >= MOMENTS && elapsed + left >= LONG && (left >= MOMENTS || elapsed >= LONG + MOMENTS);
 }
 
 static void draw(stage_bar *b)
 {
     double now = clock_seconds(), left = pace_left(&b->pace, now);
     if (!b->label || b->hidden || !is_long(b, now - b->began, left)) return;
-    char time[PROGRESS_TIME] = "?", words[64];
+    char time[PROGRESS_TIME] = "?", words[96];
     if (left >= 0) progress_time(fmax(left, 1), time); /* what goes on is not at its end */
-    snprintf(words, sizeof words, "%3.0f %%  %s left", floor(100 * b->pace.share), time);
+    snprintf(words, sizeof words, "%3.0f %%  %s%s left", floor(100 * b->pace.share), b->item, time);
     progress_draw(b->label, b->pace.share, words);
     b->drawn = true;
 }
@@ -93,10 +94,15 @@ void stage_bar_plan(stage_bar *b, const stage_cost *stages, size_t count)
     memcpy(b->stages, stages, b->count * sizeof *stages);
 }
 
-void stage_bar_span(stage_bar *b, double from, double to)
+void stage_bar_span(stage_bar *b, double from, double to, size_t number, size_t count)
 {
+    if (!b->seen) return;
+    pthread_mutex_lock(&b->lock); /* the ticker reads the item */
     b->from = from;
     b->to = to;
+    b->item[0] = 0;
+    if (count > 1) snprintf(b->item, sizeof b->item, "%zu/%zu  ", number, count);
+    pthread_mutex_unlock(&b->lock);
 }
 
 /* ---- from begin to end ---- */

@@ -31,6 +31,7 @@ typedef struct stage_bar {
     stage_cost stages[STAGE_BAR_MOST];
     size_t count;
     double from, to; /* of the whole: the plan's */
+    char item[32];
     const char *label;
     double began;
     pace pace;
@@ -42,8 +43,8 @@ void stage_bar_end(stage_bar *b);
 /* For all of the work, or for the span that follows. Stages may be left out, and may come again: a bar does not go
  * back. */
 void stage_bar_plan(stage_bar *b, const stage_cost *stages, size_t count);
-/* What follows is this part of the whole, one photograph of several; 0 <= from <= to <= 1. */
-void stage_bar_span(stage_bar *b, double from, double to);
+/* What follows is this part of the whole, 0 <= from <= to <= 1: item number (from 1) of count. */
+void stage_bar_span(stage_bar *b, double from, double to, size_t number, size_t count);
 /* Takes the bar away until something is told, so that other lines can be printed. */
 void stage_bar_hide(stage_bar *b);
 /* Tells the bar, and stops when the command is interrupted. */

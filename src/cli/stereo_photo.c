@@ -31,7 +31,7 @@ static status open_photo(work *w)
     if (s == OK && file_is_folder(p->photo))
         s = (status)merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
-        s = photo_maps(w->model, p->photo, p->mask, &p->params, &w->maps);
+        s = photo_maps(w->model, p->photo, p->mask, &p->params, NULL, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

@@ -2,6 +2,7 @@
 #ifndef MERLIN_ESTIMATE_API_H
 #define MERLIN_ESTIMATE_API_H
 
+#include "base/watch.h"
 #include "estimate/crop.h"
 #include "estimate/env_map.h"
 #include "estimate/horizon.h"
@@ -40,9 +41,10 @@ typedef struct photo_object {
     img mask;
     mask_choice choice;
     crop_square crop;
-    merlin_shot shot; /* unknown, unless it is told */
-    light_cues cues;  /* what estimate_object found of the light */
-    double seconds;   /* that finding it took */
+    merlin_shot shot;   /* unknown, unless it is told */
+    light_cues cues;    /* what estimate_object found of the light */
+    const watch *watch; /* told of what estimate_object does; may be NULL */
+    double seconds;     /* that finding it took */
 } photo_object;
 
 /* merlin_estimate in two steps, so that the object can be searched for while the model is still being read. given may
@@ -91,6 +93,7 @@ typedef struct maps_output {
     const char *folder;
     const char *const *inputs; /* as in staging_begin */
     int (*stop)(void);         /* asked between files */
+    const watch *watch;        /* told "writing" */
     /* writes other files beside the maps, or elsewhere, and adds where */
     status (*more)(const void *context, const merlin_maps *maps, maps_staging *to);
     const void *context;

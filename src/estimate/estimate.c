@@ -29,6 +29,7 @@ typedef struct work {
     img reconstruction;
     light_cues cues;
     merlin_shot shot;
+    const watch *watch;
     double clock; /* when the current stage began */
 } work;
 
@@ -102,6 +103,7 @@ static void take_object(work *w, photo_object *object, merlin_maps *maps)
     w->mask = object->mask;
     w->crop = object->crop;
     w->shot = object->shot;
+    w->watch = object->watch;
     object->mask = (img){0};
     maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = object->choice.confidence;
@@ -273,6 +275,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     network *n = model->network;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
+    watch_tell(w->watch, "estimating", 0);
     const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
     status s = network_prepare(n, maps->size, views);
     if (s == OK && finer > 0) s = network_prepare_normals(n, finer);
@@ -287,10 +290,12 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
     if (s == OK) s = add_detail(n, w, finer, maps->gain);
     if (s == OK) s = lap(w, &t->network);
+    watch_tell(w->watch, "refining", 0);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     img photo = img_of(&maps->photo);
     if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
     if (s == OK) s = refine(w, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
+    watch_tell(w->watch, "refining", 0.75);
     if (s == OK) s = place_all(w, maps);
     if (s == OK) doubts_find(&w->cues, &w->shot, maps);
     if (s == OK) s = lap(w, &t->upsample);

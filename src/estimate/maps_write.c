@@ -1,4 +1,6 @@
 /* merlin_maps_write: a folder with everything, or nothing. */
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +102,8 @@ enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
 typedef struct batch {
     job job;
+    pthread_t owner; /* the thread that tells */
+    atomic_int done;
     staging *staging;
     const maps_output *output;
 } batch;
@@ -111,10 +115,13 @@ static bool stopped(const batch *b)
 
 static status write_one(void *context, size_t i)
 {
-    const batch *b = context;
+    batch *b = context;
     char path[PATH_MAX];
     if (stopped(b)) return fail(ERROR_STOPPED, "stopped");
-    return outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
+    status s = outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
+    int done = atomic_fetch_add(&b->done, 1) + 1;
+    if (pthread_equal(b->owner, pthread_self())) watch_tell(b->output->watch, "writing", (double)done / (OUTPUTS + 1));
+    return s;
 }
 
 /* A mesh is no part of merlin_maps_write, but of the same all or none. */
@@ -145,6 +152,8 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const maps_outpu
     if (!b) return fail(ERROR_MEMORY, "no memory to write %s", to->folder);
     b->job.maps = maps;
     b->output = to;
+    b->owner = pthread_self();
+    watch_tell(to->watch, "writing", 0);
     /* before the files are written side by side, because the network uses every processor itself */
     status s = overview_new(model->network, maps, &b->job.overview);
     if (s == OK) s = write_through(b);

@@ -48,7 +48,7 @@ shows_bar() {
     shift
     on_terminal "$@" || complain "$* exited with $?: $(<screen)"
     has_bar || complain "$* has no bar: $(<screen)"
-    grep -q "$word \[" screen || complain "$* does not say that it is $word: $(<screen)"
+    grep -q "\($word \[\|%  $word\)" screen || complain "$* does not say that it is $word: $(<screen)"
     is_cleared || complain "$* leaves its bar: $(<screen)"
 }
 
@@ -73,6 +73,41 @@ TERM=dumb shows_none ./halted "${near[@]}"
 cp out/maps.exr alone.exr
 on_terminal ./halted "${near[@]}"
 cmp -s alone.exr out/maps.exr || complain "a bar changes the surface"
+
+echo "estimate"
+photo=(estimate "$MERLIN_SOURCE_DIR/examples/demo.png" --model merlin-point -o photo)
+shows_bar '\(reading\|estimating\|refining\|writing\)' ./halted "${photo[@]}"
+shows_none ./halted "${photo[@]}" -q
+./halted "${photo[@]}" >stdout 2>stderr || complain "estimate exited with $?: $(<stderr)"
+[ -s stderr ] && complain "beside a terminal estimate says: $(<stderr)"
+mkdir box
+for i in {1..3}; do cp disc.hdr "box/$i.hdr"; done
+shows_bar '[1-3]/3' ./halted estimate box -o boxes
+for i in {1..3}; do # each photograph's line stands alone
+    grep -q "^box/$i.hdr: boxes/$i/overview.png" <(sed 's/.*\x1b\[K//' screen) || complain "$i: $(<screen)"
+done
+
+echo "relight"
+orbit=(relight disc.merlin --orbit 40 --frame 128 -o orbit)
+shows_bar '\(preparing\|going round\|animating\)' ./halted "${orbit[@]}"
+shows_none ./halted "${orbit[@]}" -q
+./halted "${orbit[@]}" >stdout 2>stderr || complain "relight exited with $?: $(<stderr)"
+[ -s stderr ] && complain "beside a terminal relight says: $(<stderr)"
+
+echo "what is soon done has none"
+shows_none "$MERLIN" relight disc.merlin --light 0.5,0.2,-0.4 -o soon
+
+echo "an interrupt takes the bar away"
+script -qec 'echo $$ >pid; exec "$MERLIN" relight disc.merlin --orbit 240 --frame 1024 -o long' /dev/null </dev/null >screen 2>&1 &
+for _ in {1..600}; do
+    has_bar && break
+    sleep 0.1
+done
+kill -INT "$(<pid)"
+wait $! && complain "an interrupted command exits with 0"
+is_cleared || complain "an interrupt leaves the bar: $(<screen)"
+grep -q 'K.*merlin relight: interrupted' screen || complain "an interrupt is not told: $(<screen)"
+absent long
 
 echo "a refused picture's line is beside no bar"
 head -c 2000 dome/dome_011.png >broken && mv broken dome/dome_011.png
