@@ -185,7 +185,7 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
 
 static nn_node *render(network *n, nn_node *light)
 {
-    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light};
+    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, NULL};
     return nn_render(n->g, &in, MODEL_FOV, MODEL_LIGHT_POWER);
 }
 

@@ -402,18 +402,21 @@ nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift)
 
 nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float light_power)
 {
-    nn_node *inputs[] = {in->albedo, in->normal, in->roughness, in->depth, in->mask, in->light};
+    nn_node *inputs[] = {in->albedo, in->normal, in->roughness, in->depth, in->mask, in->light, in->lens};
     static const struct {
         const char *name;
         int channels;
-    } expected[] = {{"albedo", 3}, {"normal", 3}, {"roughness", 1}, {"depth", 1}, {"mask", 1}, {"light", 3}};
-    nn_node *node = append(g, OP_RENDER, inputs, 6);
-    for (int i = 0; node && i < 6; i++) {
+    } expected[] = {{"albedo", 3}, {"normal", 3}, {"roughness", 1}, {"depth", 1},
+                    {"mask", 1},   {"light", 3},  {"lens", 3}};
+    const int count = in->lens ? 7 : 6;
+    nn_node *node = append(g, OP_RENDER, inputs, count);
+    for (int i = 0; node && i < count; i++) {
         if (!is_float_of(node, inputs[i], expected[i].channels, expected[i].name)) return NULL;
         if (i < 5 && !matches(node, inputs[i], false)) return NULL;
     }
     if (!node) return NULL;
     if (in->light->reduction != NN_VECTOR) return reject(g, "render: the light must be a vector");
+    if (in->lens && in->lens->reduction != NN_VECTOR) return reject(g, "render: the lens must be a vector");
     node->at.fov = fov;
     node->at.light_power = light_power;
     return node;

@@ -83,9 +83,13 @@ nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift);
 /* The rendering layer (the paper's Eq. 2 and 3, the BRDF of src/optics/brdf.h): radiance of the object under one point
  * light, clipped to [0, 1] and multiplied by the mask. albedo (3) and roughness (1) in [-1, 1] as inside the network,
  * normal (3) unit, depth (1) in scene units, mask (1), light (vector of 3: position in camera space), all float.
- * field of view in degrees, horizontal, square frame. No gradient flows to mask and light. */
+ * field of view in degrees, horizontal, square frame. No gradient flows to mask, light and lens.
+ *
+ * lens (a vector of 3, or NULL: that of fov for all): the tangent of half of a sample's field of view, and its slant to
+ * the right and upwards (optics/camera.h). Depth then counts relief in widths of the frame, as the picture shows it:
+ * the distance is 1 + (depth - 1) · tangent / tangent of fov's half. */
 typedef struct nn_render_inputs {
-    nn_node *albedo, *normal, *roughness, *depth, *mask, *light;
+    nn_node *albedo, *normal, *roughness, *depth, *mask, *light, *lens;
 } nn_render_inputs;
 nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float light_power);
 /* What the diffuse part of the same maps reflects of an environment known by their spherical harmonics

@@ -40,7 +40,8 @@ static nn_graph *build_net(void)
     nn_node *normal = nn_normalize(g, tilt);
     nn_node *roughness = nn_tanh(g, nn_slice(g, head, 6, 1));
     nn_node *depth = nn_reciprocal(g, nn_tanh(g, nn_slice(g, head, 7, 1)), 0.4f, 0.65f);
-    nn_node *radiance = nn_render(g, &(nn_render_inputs){albedo, normal, roughness, depth, mask, light}, 60, 5.95f);
+    nn_node *radiance =
+        nn_render(g, &(nn_render_inputs){albedo, normal, roughness, depth, mask, light, NULL}, 60, 5.95f);
     nn_node *mean = nn_tanh(g, nn_linear(g, nn_spatial_mean(g, coarse), "mean", 27));
     nn_node *ambient = nn_environment(g, albedo, normal, mask, nn_float(g, mean));
     radiance = nn_add(g, radiance, ambient);

@@ -11,7 +11,13 @@ static const float fov = 60, power = 5.95f;
 typedef struct scene {
     cpu_render_tensors maps;
     cpu_tensor mask, light, dy;
+    cpu_tensor lens; /* or empty: fov's for all */
 } scene;
+
+static cpu_render_view view_of(const scene *s)
+{
+    return (cpu_render_view){s->mask, s->light, s->lens, fov, power};
+}
 
 static cpu_tensor map_of(int channels, uint64_t seed, float low, float high)
 {
@@ -57,10 +63,21 @@ static scene scene_new(void)
     return s;
 }
 
+/* A long lens away from its axis, and a short one on it. */
+static scene scene_of_other_lenses(void)
+{
+    scene s = scene_new();
+    const float lenses[] = {0.15f, 0.3f, -0.2f, 0.7f, 0, 0};
+    s.lens = tensor_new(NN_FLOAT32, BATCH, 1, 1, 3);
+    memcpy(s.lens.data, lenses, sizeof lenses);
+    return s;
+}
+
 static void scene_free(scene *s)
 {
     tensor_free(&s->maps.albedo), tensor_free(&s->maps.normal), tensor_free(&s->maps.roughness);
     tensor_free(&s->maps.depth), tensor_free(&s->mask), tensor_free(&s->light), tensor_free(&s->dy);
+    if (s->lens.data) tensor_free(&s->lens);
 }
 
 static vec3 read3(const cpu_tensor *t, size_t i)
@@ -68,14 +85,29 @@ static vec3 read3(const cpu_tensor *t, size_t i)
     return vec3_make(tensor_get(t, 3 * i), tensor_get(t, 3 * i + 1), tensor_get(t, 3 * i + 2));
 }
 
-static shade_input input_at(const scene *s, size_t i)
+/* The camera of a pixel's sample; relief is what a unit of depth is in distance. */
+static camera camera_at(const scene *s, size_t i, double *relief)
 {
     camera c = {.width = WIDTH, .height = HEIGHT, .fov = (double)fov};
+    size_t sample = 3 * (i / (WIDTH * HEIGHT));
+    *relief = 1;
+    if (!s->lens.data) return c;
+    double tangent = tensor_get(&s->lens, sample);
+    c.fov = 2 * atan(tangent) / CAMERA_RADIAN;
+    c.slant = (camera_slant){tensor_get(&s->lens, sample + 1), tensor_get(&s->lens, sample + 2)};
+    *relief = tangent / tan((double)fov / 2 * CAMERA_RADIAN);
+    return c;
+}
+
+static shade_input input_at(const scene *s, size_t i)
+{
+    double relief;
+    camera c = camera_at(s, i, &relief);
     vec3 one = vec3_make(0.5, 0.5, 0.5);
     return (shade_input){.albedo = vec3_fma(one, 0.5, read3(&s->maps.albedo, i)),
                          .roughness = 0.5 + 0.5 * tensor_get(&s->maps.roughness, i),
                          .normal = read3(&s->maps.normal, i),
-                         .depth = tensor_get(&s->maps.depth, i),
+                         .depth = 1 + relief * (tensor_get(&s->maps.depth, i) - 1),
                          .ray = camera_point(&c, (double)(i % WIDTH) + 0.5, (double)(i / WIDTH % HEIGHT) + 0.5, 1),
                          .light = read3(&s->light, i / (WIDTH * HEIGHT)),
                          .power = (double)power};
@@ -103,12 +135,11 @@ static cpu_tensor expected_rendering(const scene *s)
     return y;
 }
 
-static void rendering_is_the_physics_of_optics(void **state)
+static void check_rendering(scene s)
 {
-    (void)state;
-    scene s = scene_new();
+    const cpu_render_view view = view_of(&s);
     cpu_tensor y = map_of(3, 9, -1, 1), expected = expected_rendering(&s);
-    cpu_render(&s.maps, &s.mask, &s.light, fov, power, &y);
+    cpu_render(&s.maps, &view, &y);
     /* float: the highlight's base, 1 - (n·h)² + ..., keeps about four digits at the smallest roughness, 0.1 */
     assert_near("rendering", &y, &expected, 2e-4, 1e-5);
     double brightest = 0;
@@ -117,6 +148,18 @@ static void rendering_is_the_physics_of_optics(void **state)
     assert_true(brightest > 0.5);
     tensor_free(&y), tensor_free(&expected);
     scene_free(&s);
+}
+
+static void rendering_is_the_physics_of_optics(void **state)
+{
+    (void)state;
+    check_rendering(scene_new());
+}
+
+static void rendering_through_any_lens_is_the_physics_of_optics(void **state)
+{
+    (void)state;
+    check_rendering(scene_of_other_lenses());
 }
 
 /* d(Σ dy·y at pixel i)/d(parameter), by central differences; the parameter is a number inside `in`. */
@@ -152,12 +195,11 @@ static void expect(const cpu_tensor *gradient, size_t i, double wanted, double *
     *worst = fmax(*worst, error);
 }
 
-static void gradients_are_those_of_central_differences(void **state)
+static void check_gradients(scene s)
 {
-    (void)state;
-    scene s = scene_new();
+    const cpu_render_view view = view_of(&s);
     cpu_render_tensors d = {map_of(3, 7, -1, 1), map_of(3, 8, -1, 1), map_of(1, 9, -1, 1), map_of(1, 10, -1, 1)};
-    cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &d, (cpu_render_accumulate){0});
+    cpu_render_backward(&s.maps, &view, &s.dy, &d, (cpu_render_accumulate){0});
     double worst = 0;
     int checked = 0;
     for (size_t i = 0; i < PIXELS; i++) {
@@ -172,7 +214,9 @@ static void gradients_are_those_of_central_differences(void **state)
             expect(&d.normal, 3 * i + c, numeric(&s, i, &in, normal[c], 1e-5), &worst);
         }
         expect(&d.roughness, i, 0.5 * numeric(&s, i, &in, &in.roughness, 1e-5), &worst);
-        expect(&d.depth, i, numeric(&s, i, &in, &in.depth, 1e-5), &worst);
+        double relief;
+        camera_at(&s, i, &relief);
+        expect(&d.depth, i, relief * numeric(&s, i, &in, &in.depth, 1e-5), &worst);
     }
     assert_true(checked > 500);
     /* as in the rendering itself: float keeps about four digits in sharp highlights, and slopes one less */
@@ -181,17 +225,30 @@ static void gradients_are_those_of_central_differences(void **state)
     scene_free(&s);
 }
 
+static void gradients_are_those_of_central_differences(void **state)
+{
+    (void)state;
+    check_gradients(scene_new());
+}
+
+static void gradients_through_any_lens_are_those_of_central_differences(void **state)
+{
+    (void)state;
+    check_gradients(scene_of_other_lenses());
+}
+
 static void gradients_accumulate_and_may_be_unwanted(void **state)
 {
     (void)state;
     scene s = scene_new();
+    const cpu_render_view view = view_of(&s);
     cpu_render_tensors once = {map_of(3, 7, -1, 1), map_of(3, 8, -1, 1), map_of(1, 9, -1, 1), map_of(1, 10, -1, 1)};
     cpu_render_tensors some = {.normal = map_of(3, 11, -1, 1), .depth = map_of(1, 12, -1, 1)};
     cpu_tensor expected = tensor_like(&some.normal);
-    cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &once, (cpu_render_accumulate){0});
+    cpu_render_backward(&s.maps, &view, &s.dy, &once, (cpu_render_accumulate){0});
     for (size_t i = 0; i < cpu_count(&expected); i++)
         tensor_set(&expected, i, tensor_get(&some.normal, i) + tensor_get(&once.normal, i));
-    cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &some, (cpu_render_accumulate){.normal = true});
+    cpu_render_backward(&s.maps, &view, &s.dy, &some, (cpu_render_accumulate){.normal = true});
     assert_near("normal", &some.normal, &expected, 1e-6, 1e-6);
     assert_same_bits("depth", &some.depth, &once.depth);
     tensor_free(&once.albedo), tensor_free(&once.normal), tensor_free(&once.roughness), tensor_free(&once.depth);
@@ -209,6 +266,7 @@ static void nothing_but_numbers_comes_out(void **state)
 {
     (void)state;
     scene s = scene_new();
+    const cpu_render_view view = view_of(&s);
     static const float bad[] = {NAN, INFINITY, -INFINITY, 0, 1e30f, -1e30f, 1e-30f};
     cpu_tensor *maps[] = {&s.maps.albedo, &s.maps.normal, &s.maps.roughness, &s.maps.depth};
     for (size_t m = 0; m < 4; m++)
@@ -216,8 +274,8 @@ static void nothing_but_numbers_comes_out(void **state)
             tensor_set(maps[m], i, (double)bad[(i + m) % 7]);
     cpu_tensor y = tensor_like(&s.dy);
     cpu_render_tensors d = {map_of(3, 7, -1, 1), map_of(3, 8, -1, 1), map_of(1, 9, -1, 1), map_of(1, 10, -1, 1)};
-    cpu_render(&s.maps, &s.mask, &s.light, fov, power, &y);
-    cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &d, (cpu_render_accumulate){0});
+    cpu_render(&s.maps, &view, &y);
+    cpu_render_backward(&s.maps, &view, &s.dy, &d, (cpu_render_accumulate){0});
     assert_finite(&y), assert_finite(&d.albedo), assert_finite(&d.normal), assert_finite(&d.roughness);
     assert_finite(&d.depth);
     for (size_t i = 0; i < cpu_count(&y); i++) {
@@ -232,8 +290,10 @@ static void clipped_pixels_pass_no_gradient(void **state)
 {
     (void)state;
     scene s = scene_new();
+    cpu_render_view view = view_of(&s);
     cpu_render_tensors d = {map_of(3, 7, -1, 1), map_of(3, 8, -1, 1), map_of(1, 9, -1, 1), map_of(1, 10, -1, 1)};
-    cpu_render_backward(&s.maps, &s.mask, &s.light, fov, 1e6f, &s.dy, &d, (cpu_render_accumulate){0});
+    view.light_power = 1e6f;
+    cpu_render_backward(&s.maps, &view, &s.dy, &d, (cpu_render_accumulate){0});
     int lit = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         shade_input in = input_at(&s, i);
@@ -252,13 +312,14 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
 {
     (void)state;
     scene s = scene_new();
+    const cpu_render_view view = view_of(&s);
     int before = parallel_threads();
     cpu_tensor y[2] = {tensor_like(&s.dy), tensor_like(&s.dy)};
     cpu_render_tensors d[2] = {{.normal = tensor_like(&s.dy)}, {.normal = tensor_like(&s.dy)}};
     for (int i = 0; i < 2; i++) {
         threads_use_here(i + 1);
-        cpu_render(&s.maps, &s.mask, &s.light, fov, power, &y[i]);
-        cpu_render_backward(&s.maps, &s.mask, &s.light, fov, power, &s.dy, &d[i], (cpu_render_accumulate){0});
+        cpu_render(&s.maps, &view, &y[i]);
+        cpu_render_backward(&s.maps, &view, &s.dy, &d[i], (cpu_render_accumulate){0});
     }
     threads_use_here(before);
     assert_same_bits("rendering", &y[0], &y[1]);
@@ -272,6 +333,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rendering_is_the_physics_of_optics),
         cmocka_unit_test(gradients_are_those_of_central_differences),
+        cmocka_unit_test(rendering_through_any_lens_is_the_physics_of_optics),
+        cmocka_unit_test(gradients_through_any_lens_are_those_of_central_differences),
         cmocka_unit_test(gradients_accumulate_and_may_be_unwanted),
         cmocka_unit_test(nothing_but_numbers_comes_out),
         cmocka_unit_test(clipped_pixels_pass_no_gradient),

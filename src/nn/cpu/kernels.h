@@ -70,11 +70,14 @@ typedef struct cpu_render_tensors {
 typedef struct cpu_render_accumulate {
     bool albedo, normal, roughness, depth;
 } cpu_render_accumulate;
-void cpu_render(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
-                float light_power, cpu_tensor *y);
-void cpu_render_backward(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
-                         float light_power, const cpu_tensor *dy, cpu_render_tensors *dmaps,
-                         cpu_render_accumulate accumulate);
+/* What the maps are seen by and lit by. */
+typedef struct cpu_render_view {
+    cpu_tensor mask, light, lens; /* lens.data NULL: that of fov for all */
+    float fov, light_power;
+} cpu_render_view;
+void cpu_render(const cpu_render_tensors *maps, const cpu_render_view *view, cpu_tensor *y);
+void cpu_render_backward(const cpu_render_tensors *maps, const cpu_render_view *view, const cpu_tensor *dy,
+                         cpu_render_tensors *dmaps, cpu_render_accumulate accumulate);
 
 typedef struct cpu_environment {
     cpu_tensor albedo, normal, sh; /* values; or their gradients, data NULL where none is wanted */

@@ -44,10 +44,18 @@ static cpu_render_tensors render_tensors(const nn_tensor *t)
     return (cpu_render_tensors){t[0], t[1], t[2], t[3]};
 }
 
+static cpu_render_view render_view(const nn_step *step)
+{
+    cpu_render_view view = {step->in[4], step->in[5], {0}, step->at.fov, step->at.light_power};
+    if (step->inputs > 6) view.lens = step->in[6];
+    return view;
+}
+
 static void render_forward(nn_step *step)
 {
     cpu_render_tensors maps = render_tensors(step->in);
-    cpu_render(&maps, &step->in[4], &step->in[5], step->at.fov, step->at.light_power, &step->out);
+    const cpu_render_view view = render_view(step);
+    cpu_render(&maps, &view, &step->out);
 }
 
 static void render_backward(nn_step *step)
@@ -55,8 +63,8 @@ static void render_backward(nn_step *step)
     cpu_render_tensors maps = render_tensors(step->in), gradients = render_tensors(step->in_gradient);
     cpu_render_accumulate accumulate = {step->accumulate[0], step->accumulate[1], step->accumulate[2],
                                         step->accumulate[3]};
-    cpu_render_backward(&maps, &step->in[4], &step->in[5], step->at.fov, step->at.light_power, &step->out_gradient,
-                        &gradients, accumulate);
+    const cpu_render_view view = render_view(step);
+    cpu_render_backward(&maps, &view, &step->out_gradient, &gradients, accumulate);
 }
 
 static cpu_environment environment_tensors(const nn_tensor *t)

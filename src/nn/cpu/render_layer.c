@@ -12,34 +12,53 @@
 /* One row of the maps, from its first to its last pixel inside the mask. */
 typedef struct span {
     const float *albedo, *normal, *roughness, *depth, *mask;
-    vec3 first; /* ray of the first pixel; rays are first + (i step, 0, 0) */
-    float step;
+    camera_plane plane;
+    float first, step, up; /* the first pixel in the plane, from one to the next, and the row */
+    float nearer, relief;  /* distance is nearer + relief times the depth */
     vec3 light;
     float power;
     size_t at, count; /* pixel of the batch, pixels */
 } span;
 
-static span span_of_row(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, size_t row,
-                        float fov, float power)
+/* The camera of a sample. */
+static camera camera_of(const cpu_render_view *view, size_t sample, float *relief)
 {
+    camera c = {.width = view->mask.w, .height = view->mask.h, .fov = view->fov};
+    *relief = 1;
+    if (!view->lens.data) return c;
+    const float *lens = (const float *)view->lens.data + 3 * sample;
+    c.fov = 2 * atanf(lens[0]) / CAMERA_RADIAN;
+    c.slant = (camera_slant){lens[1], lens[2]};
+    *relief = lens[0] / camera_tangent(view->fov);
+    return c;
+}
+
+static span span_of_row(const cpu_render_tensors *maps, const cpu_render_view *view, size_t row)
+{
+    const cpu_tensor *mask = &view->mask;
     size_t width = (size_t)mask->w, height = (size_t)mask->h, begin = row * width, end = begin + width;
     const float *m = mask->data;
     while (begin < end && m[begin] == 0)
         begin++;
     while (begin < end && m[end - 1] == 0)
         end--;
-    camera c = {.width = mask->w, .height = mask->h, .fov = fov};
+    float relief;
+    const camera c = camera_of(view, row / height, &relief);
     float x = (float)(begin % width) + 0.5f, y = (float)(row % height) + 0.5f;
-    const float *l = (const float *)light->data + 3 * (row / height);
+    const float *l = (const float *)view->light.data + 3 * (row / height), pixel = camera_pixel_size(&c);
     return (span){.albedo = (const float *)maps->albedo.data + 3 * begin,
                   .normal = (const float *)maps->normal.data + 3 * begin,
                   .roughness = (const float *)maps->roughness.data + begin,
                   .depth = (const float *)maps->depth.data + begin,
                   .mask = m + begin,
-                  .first = camera_point(&c, x, y, 1),
-                  .step = camera_pixel_size(&c),
+                  .plane = camera_plane_of(c.slant),
+                  .first = (x - (float)c.width / 2) * pixel,
+                  .step = pixel,
+                  .up = ((float)c.height / 2 - y) * pixel,
+                  .nearer = 1 - relief,
+                  .relief = relief,
                   .light = vec3_of(l),
-                  .power = power,
+                  .power = view->light_power,
                   .at = begin,
                   .count = end - begin};
 }
@@ -56,8 +75,8 @@ static inline shade_input pixel_of(const span *s, size_t i)
     return (shade_input){.albedo = vec3_make(to_unit(a[0]), to_unit(a[1]), to_unit(a[2])),
                          .roughness = to_unit(s->roughness[i]),
                          .normal = vec3_of(n),
-                         .depth = s->depth[i],
-                         .ray = vec3_make(s->first.x + (float)i * s->step, s->first.y, s->first.z),
+                         .depth = s->nearer + s->relief * s->depth[i],
+                         .ray = camera_on_plane(&s->plane, s->first + (float)i * s->step, s->up),
                          .light = s->light,
                          .power = s->power};
 }
@@ -89,13 +108,12 @@ static void render_span(const span *row, float *y)
         render_pixel(&s, i, y + 3 * i);
 }
 
-void cpu_render(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
-                float light_power, cpu_tensor *y)
+void cpu_render(const cpu_render_tensors *maps, const cpu_render_view *view, cpu_tensor *y)
 {
     size_t width = (size_t)y->w, rows = (size_t)y->n * (size_t)y->h;
-#pragma omp parallel for schedule(dynamic, 16) if (cpu_count(mask) > CPU_CHUNK)
+#pragma omp parallel for schedule(dynamic, 16) if (cpu_count(&view->mask) > CPU_CHUNK)
     for (size_t row = 0; row < rows; row++) {
-        span s = span_of_row(maps, mask, light, row, fov, light_power);
+        span s = span_of_row(maps, view, row);
         float *out = y->data, *begin = out + 3 * s.at, *end = begin + 3 * s.count;
         render_span(&s, begin);
         memset(out + 3 * row * width, 0, (size_t)((char *)begin - (char *)(out + 3 * row * width)));
@@ -135,7 +153,7 @@ static inline void differentiate_pixel(const span *s, size_t pixel, const float 
     tile->normal[3 * i + 1] = finite_or_zero(g.normal.y);
     tile->normal[3 * i + 2] = finite_or_zero(g.normal.z);
     tile->roughness[i] = finite_or_zero(0.5f * g.roughness);
-    tile->depth[i] = finite_or_zero(g.depth);
+    tile->depth[i] = finite_or_zero(s->relief * g.depth);
 }
 
 static void differentiate(const span *row, size_t first, size_t count, const float *dy, gradient_tile *tile)
@@ -158,14 +176,13 @@ static void clear_row(cpu_tensor *t, size_t row, bool accumulate)
     if (t->data && !accumulate) memset((float *)t->data + row * elements, 0, elements * sizeof(float));
 }
 
-void cpu_render_backward(const cpu_render_tensors *maps, const cpu_tensor *mask, const cpu_tensor *light, float fov,
-                         float light_power, const cpu_tensor *dy, cpu_render_tensors *dmaps,
-                         cpu_render_accumulate accumulate)
+void cpu_render_backward(const cpu_render_tensors *maps, const cpu_render_view *view, const cpu_tensor *dy,
+                         cpu_render_tensors *dmaps, cpu_render_accumulate accumulate)
 {
-    size_t rows = (size_t)mask->n * (size_t)mask->h;
-#pragma omp parallel for schedule(dynamic, 16) if (cpu_count(mask) > CPU_CHUNK)
+    size_t rows = (size_t)view->mask.n * (size_t)view->mask.h;
+#pragma omp parallel for schedule(dynamic, 16) if (cpu_count(&view->mask) > CPU_CHUNK)
     for (size_t row = 0; row < rows; row++) {
-        span s = span_of_row(maps, mask, light, row, fov, light_power);
+        span s = span_of_row(maps, view, row);
         clear_row(&dmaps->albedo, row, accumulate.albedo);
         clear_row(&dmaps->normal, row, accumulate.normal);
         clear_row(&dmaps->roughness, row, accumulate.roughness);
