@@ -236,6 +236,13 @@ static nn_node *enlarge(nn_node *node, int factor)
     return node;
 }
 
+nn_node *nn_conv2d_zero(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias)
+{
+    nn_node *node = nn_conv2d(g, x, name, out, kernel, stride, bias);
+    if (node) node->at.zero = true;
+    return node;
+}
+
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
 {
     nn_node *node = append_named(g, OP_LINEAR, x, name, out);

@@ -38,7 +38,7 @@ enum { NN_MAX_INPUTS = 8 };
 
 typedef struct nn_attributes {
     int kernel, stride, block, first;
-    bool bias;
+    bool bias, zero; /* zero: weights of a convolution before training */
     float scale, shift;
     float fov, light_power;
     float weight;       /* of a loss */

@@ -50,6 +50,9 @@ nn_node *nn_float(nn_graph *g, nn_node *x);
 /* Parameters `name.weight` (out × in × k × k, like PyTorch) and `name.bias`. Padding keeps size/stride: (k - 1)/2
  * before, the rest behind. */
 nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias);
+/* The same with weights that start at 0: what it gives is nothing until it is trained, so that it can be added beside
+ * what is trained already. */
+nn_node *nn_conv2d_zero(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias);
 /* On vectors (1×1): `name.weight` out × in, `name.bias`. */
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out);
 /* Per channel over N, H, W (Ioffe & Szegedy 2015); eps 1e-5, running statistics as nn_set_norm_momentum says.

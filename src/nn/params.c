@@ -16,9 +16,9 @@ typedef struct param_spec {
     char name[NAME_LIMIT];
     int rank;
     int64_t shape[4];
-    double fan_in; /* 0: constant */
+    double fan_in; /* 0: no weights, but as many constants */
     float constant;
-    bool trained;
+    bool trained, zero; /* zero: weights that begin as nothing */
 } param_spec;
 
 static param_spec vector_spec(const nn_node *node, const char *suffix, float constant, bool trained)
@@ -31,7 +31,7 @@ static param_spec vector_spec(const nn_node *node, const char *suffix, float con
 static param_spec weight_spec(const nn_node *node)
 {
     int64_t in = node->in[0]->channels, out = node->channels, k = node->at.kernel;
-    param_spec spec = {.rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true};
+    param_spec spec = {.rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true, .zero = node->at.zero};
     spec.fan_in = (double)(in * k * k);
     if (node->op == OP_LINEAR) spec.shape[2] = spec.shape[3] = 0;
     snprintf(spec.name, sizeof spec.name, "%s.weight", node->name);
@@ -106,7 +106,7 @@ static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed
 {
     if (!seed && spec->fan_in > 0) return;
     rng random = rng_at(seed ? *seed : 0, hash_name(spec->name), 0);
-    float deviation = spec->fan_in > 0 ? (float)sqrt(2 / spec->fan_in) : 0;
+    float deviation = spec->fan_in > 0 && !spec->zero ? (float)sqrt(2 / spec->fan_in) : 0;
     for (size_t i = 0; i < p->count; i++)
         p->value[i] = spec->fan_in > 0 ? deviation * rng_normal(&random) : spec->constant;
 }
