@@ -37,6 +37,19 @@ static nn_node *residual_blocks(nn_graph *g, nn_node *x, const char *name, const
     return x;
 }
 
+/* block_conv of the packed picture, with what is told beside it: nothing until that is trained. */
+static nn_node *first_layer(nn_graph *g, nn_node *x, const char *level, const char *name,
+                            const block_encoder_shape *shape)
+{
+    char buffer[NAME], own[NAME];
+    join(own, level, "a");
+    if (!shape->beside) return block_conv(g, x, own, shape->widths[0], 1);
+    nn_node *y = nn_conv2d(g, x, join(buffer, own, "conv"), shape->widths[0], 3, 1, NN_NO_BIAS);
+    nn_node *beside = nn_space_to_depth(g, nn_compute(g, shape->beside), 2);
+    beside = nn_conv2d_zero(g, beside, join(buffer, name, "beside"), shape->widths[0], 1, 1, NN_NO_BIAS);
+    return nn_relu(g, nn_batch_norm(g, nn_add(g, y, beside), join(buffer, own, "norm")));
+}
+
 void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
                    nn_node *features[MODEL_LEVELS])
 {
@@ -45,7 +58,7 @@ void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encode
     for (int i = 0; i < MODEL_LEVELS; i++) {
         char level[NAME], buffer[NAME];
         snprintf(level, sizeof level, "%.48s.level%d", name, i);
-        y = block_conv(g, y, join(buffer, level, "a"), shape->widths[i], i ? 2 : 1);
+        y = i ? block_conv(g, y, join(buffer, level, "a"), shape->widths[i], 2) : first_layer(g, y, level, name, shape);
         if (i) y = block_conv(g, y, join(buffer, level, "b"), shape->widths[i], 1);
         if (i == MODEL_LEVELS - 1) y = block_conv(g, y, join(buffer, level, "c"), shape->widths[i], 1);
         features[i] = y = residual_blocks(g, y, level, shape->blocks ? &shape->blocks[i] : NULL, shape->widths[i]);

@@ -14,6 +14,7 @@ nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width);
 
 typedef struct block_encoder_shape {
     const int *widths, *blocks; /* MODEL_LEVELS of each; blocks NULL: none */
+    nn_node *beside;            /* full-size, told the first layer beside its input (`name.beside.*`); NULL: nothing */
 } block_encoder_shape;
 
 /* The packed full-size input (float, any channels) to features at every level. */

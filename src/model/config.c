@@ -11,7 +11,7 @@
 enum { MAX_WIDTH = 640, MAX_BLOCKS = 9, MAX_CONFIG_BYTES = 1 << 20 };
 
 static const char *const relight_words[] = {"network", "brdf"};
-static const char *const lighting_words[] = {"point", "both"};
+static const char *const lighting_words[] = {"point", "both", "any"};
 
 static status check_widths(const char *where, const char *key, const int *widths)
 {
@@ -42,7 +42,7 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = json_bool(o, "gated_attention", &out->gated_attention);
     if (s == OK) s = json_choice(o, "relight", relight_words, 2, &relight);
     if (s == OK) s = json_bool(o, "global_illumination", &out->global_illumination);
-    if (s == OK) s = json_choice(o, "lighting", lighting_words, 2, &lighting);
+    if (s == OK) s = json_choice(o, "lighting", lighting_words, 3, &lighting);
     if (s == OK) s = json_ints(o, "widths", 8, MAX_WIDTH, MODEL_LEVELS, out->widths);
     if (s == OK) s = json_ints(o, "gi_widths", 8, MAX_WIDTH, MODEL_LEVELS, out->gi_widths);
     if (s == OK) s = json_ints_or(o, "encoder_blocks", 0, MAX_BLOCKS, MODEL_LEVELS, 0, out->encoder_blocks);

@@ -9,9 +9,24 @@
 
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
-const char *const model_losses[MODEL_LOSSES] = {
-    "albedo",         "normal",  "depth",       "roughness",    "roughness_gradient", "direct",           "indirect",
-    "reconstruction", "relight", "environment", "relight_brdf", "relight_ssim",       "relight_brdf_ssim"};
+const char *const model_losses[MODEL_LOSSES] = {"albedo",
+                                                "normal",
+                                                "depth",
+                                                "roughness",
+                                                "roughness_gradient",
+                                                "direct",
+                                                "indirect",
+                                                "reconstruction",
+                                                "relight",
+                                                "environment",
+                                                "relight_brdf",
+                                                "relight_ssim",
+                                                "relight_brdf_ssim",
+                                                "flash",
+                                                "lamp",
+                                                "lamp_distance",
+                                                "lamp_light",
+                                                "visibility"};
 
 const char *const model_features[MODEL_FEATURES + 1] = {
     "encoder_features0",  "encoder_features1",  "encoder_features2",  "encoder_features3",  "encoder_features4",
@@ -25,11 +40,13 @@ typedef struct network {
     nn_graph *g;
     const model_config *config;
     nn_node *mask, *light_position;
+    nn_node *sight, *lens; /* NULL but under any light */
     nn_node *encoder[MODEL_LEVELS];
     nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of the four decoders' */
     maps maps;
     nn_node *light;                          /* the target's lighting code */
-    nn_node *environment_code, *environment; /* NULL in the point setting */
+    nn_node *environment_code, *environment; /* NULL but for both lights */
+    nn_node *lights, *visibility;            /* NULL but under any light */
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
 
@@ -40,6 +57,19 @@ void model_encode_image(const float *linear, float *encoded, size_t n)
         float v = linear[i] > 0 ? linear[i] : 0;
         encoded[i] = sqrtf(v < MODEL_BRIGHTEST ? v : MODEL_BRIGHTEST);
     }
+}
+
+void model_sight(const camera *lens, bool flash, int size, float *out)
+{
+    const camera c = lens ? (camera){size, size, lens->fov, lens->slant} : (camera){0};
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < size; x++, out += MODEL_SIGHT) {
+            vec3 ray = lens ? camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1) : vec3_make(0, 0, -1);
+            out[0] = ray.x;
+            out[1] = ray.y;
+            out[2] = lens != NULL;
+            out[3] = flash;
+        }
 }
 
 /* What becomes of radiance in band 0, 1 and 2 on its way to a diffuse white surface, over the root of the sphere's
@@ -144,16 +174,16 @@ static void relight_by_network(network *n)
     n->relit_direct = nn_gate(g, y, n->mask);
 }
 
-/* The photograph's environment from the encoder's two deepest features, averaged over the image. */
-static void estimate_environment(network *n)
+/* A vector from the encoder's two deepest features, averaged over the image: what lit the photograph. Small from the
+ * first step on, lest a dazzling light teach the maps to be black. */
+static nn_node *estimate_light(network *n, const char *first, const char *second, int values)
 {
     nn_graph *g = n->g;
     nn_node *parts[2];
     for (int i = 0; i < 2; i++)
         parts[i] = nn_spatial_mean(g, n->encoder[MODEL_LEVELS - 2 + i]);
-    nn_node *y = nn_relu(g, nn_linear(g, nn_concat(g, parts, 2), "environment.fc1", ENVIRONMENT_FEATURES));
-    /* small from the first step on, lest a dazzling environment teach the maps to be black */
-    n->environment_code = nn_float(g, nn_scale_shift(g, nn_linear(g, y, "environment.fc2", MODEL_SH), 0.1f, 0.0f));
+    nn_node *y = nn_relu(g, nn_linear(g, nn_concat(g, parts, 2), first, ENVIRONMENT_FEATURES));
+    return nn_float(g, nn_scale_shift(g, nn_linear(g, y, second, values), 0.1f, 0.0f));
 }
 
 /* What the lamp of the rendering layer does not: direct is all of bounce 1, environment (or NULL) the part of it that
@@ -185,7 +215,7 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
 
 static nn_node *render(network *n, nn_node *light)
 {
-    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, NULL};
+    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
     return nn_render(n->g, &in, MODEL_FOV, MODEL_LIGHT_POWER);
 }
 
@@ -202,12 +232,17 @@ static void add_light(network *n)
 static void build_lights(network *n, model_part part)
 {
     nn_graph *g = n->g;
-    bool both = n->config->lighting == MODEL_LIGHT_BOTH, by_network = n->config->relight == MODEL_RELIGHT_NETWORK;
+    bool both = n->config->lighting == MODEL_LIGHT_BOTH, any = n->config->lighting == MODEL_LIGHT_ANY;
+    bool by_network = n->config->relight == MODEL_RELIGHT_NETWORK;
     n->direct = render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
     if (both) {
-        estimate_environment(n);
+        n->environment_code = estimate_light(n, "environment.fc1", "environment.fc2", MODEL_SH);
         n->environment = render_environment(n, n->environment_code);
         n->direct = nn_add(g, n->direct, n->environment);
+    }
+    if (any) {
+        n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
+        n->visibility = nn_sigmoid(g, block_head(g, n->material[0], "visibility.head", 1));
     }
     first_bounce first = {n->direct, n->environment};
     if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
@@ -225,8 +260,12 @@ static void build_network(network *n, model_part part)
     nn_node *image = nn_input(g, "image", 3, 1);
     n->mask = nn_input(g, "mask", 1, 1);
     n->light_position = nn_input(g, "light_position", 3, NN_VECTOR);
+    if (n->config->lighting == MODEL_LIGHT_ANY) {
+        n->sight = nn_input(g, "sight", MODEL_SIGHT, 1);
+        n->lens = nn_input(g, "lens", 3, NN_VECTOR);
+    }
     nn_node *parts[2] = {image, n->mask};
-    block_encoder_shape shape = {n->config->widths, n->config->encoder_blocks};
+    block_encoder_shape shape = {n->config->widths, n->config->encoder_blocks, n->sight};
     block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->encoder);
     if (n->config->material_decoders == 1)
         material_by_one_decoder(n);
@@ -275,6 +314,8 @@ static void name_outputs(const network *n)
     nn_output(g, n->direct, "direct");
     if (n->environment) nn_output(g, n->environment, "environment");
     if (n->environment) nn_output(g, n->environment_code, "environment_code");
+    if (n->lights) nn_output(g, n->lights, "lights");
+    if (n->visibility) nn_output(g, n->visibility, "visibility");
     if (n->indirect) nn_output(g, n->indirect, "indirect");
     if (n->relit_direct) nn_output(g, n->relit_direct, "relit_direct");
     if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
@@ -291,6 +332,29 @@ static void add_relighting_losses(network *n, model_part part, nn_node *mask)
     if (part != MODEL_TRAINING_SSIM) return;
     nn_masked_dssim(g, relit, relit_true, mask, "relight_ssim", 1.0f);
     if (both) nn_masked_dssim(g, n->relit_brdf, relit_true, mask, "relight_brdf_ssim", 1.0f);
+}
+
+/* Of what lit a photograph, and what of it the object itself kept away. A vector's loss by how much there is to say. */
+static void add_light_losses(network *n)
+{
+    nn_graph *g = n->g;
+    nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
+    nn_node *truth = nn_input(g, "lights_true", MODEL_LIGHTS, NN_VECTOR);
+    nn_node *lamp = nn_input(g, "lamp_weight", 1, NN_VECTOR), *rest = nn_input(g, "rest_weight", 1, NN_VECTOR);
+    const struct {
+        const char *name;
+        int first, count;
+        nn_node *weight;
+    } parts[] = {{"flash", MODEL_LIGHTS_FLASH, 1, one},
+                 {"lamp", MODEL_LIGHTS_LAMP, 3, one},
+                 {"lamp_distance", MODEL_LIGHTS_DISTANCE, 1, lamp},
+                 {"lamp_light", MODEL_LIGHTS_STRENGTH, 3, one},
+                 {"environment", MODEL_LIGHTS_REST, MODEL_SH, rest}};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        nn_masked_l2(g, nn_slice(g, n->lights, parts[i].first, parts[i].count),
+                     nn_slice(g, truth, parts[i].first, parts[i].count), parts[i].weight, parts[i].name, 0.25f);
+    nn_masked_l2(g, n->visibility, nn_input(g, "visibility_true", 1, 1), nn_input(g, "visibility_weight", 1, 1),
+                 "visibility", 1.0f);
 }
 
 /* The paper's losses, weight 2 for normals and 1 for the rest, and what is beside them. */
@@ -316,6 +380,7 @@ static void add_losses(network *n, model_part part)
         nn_node *code = nn_input(g, "environment_true", MODEL_SH, NN_VECTOR);
         nn_masked_l2(g, n->environment_code, code, one, "environment", 1.0f);
     }
+    if (n->lights) add_light_losses(n);
     add_relighting_losses(n, part, mask);
 }
 

@@ -18,6 +18,14 @@
  * "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and the losses "albedo", "normal", "depth",
  * "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"; for both lights also vector 27
  * "environment_true" and the loss "environment".
+ *
+ * With "lighting": "any" the photograph shows the object under any light through any lens. Inputs beside: "sight" 4,
+ * what is known of the lens (model_sight), and "lens" vector 3 (nn_render_inputs), the lens that the maps are rendered
+ * through. "depth" is relief in widths of the frame then, as of nn_render; "direct", "indirect" and "relit_brdf" are
+ * what a flash or the target light would show, whatever lit the photograph. What did: "lights" vector MODEL_LIGHTS, and
+ * "visibility" 1 in [0, 1], the share of the strongest lamp's light that the rest of the object lets through. Training
+ * has inputs "lights_true", "lamp_weight" and "rest_weight" (vectors of 1), "visibility_true" 1 and "visibility_weight"
+ * 1, and the losses "flash", "lamp", "lamp_distance", "lamp_light", "environment" and "visibility".
  */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
@@ -26,8 +34,9 @@
 
 #include "base/status.h"
 #include "nn/nn.h"
+#include "optics/camera.h"
 
-enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 13, MODEL_SH = 27 };
+enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18, MODEL_SH = 27 };
 
 /* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
 #define MODEL_FOV 60.0f
@@ -38,7 +47,18 @@ enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 13, MODEL_SH =
 extern const char *const model_losses[MODEL_LOSSES];
 
 typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
-typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH } model_lighting;
+typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH, MODEL_LIGHT_ANY } model_lighting;
+
+/* Where the parts of "lights" begin. Strengths are in the photograph's radiance: 1 is what the lamp of power
+ * MODEL_LIGHT_POWER gives at distance 1. Their roots are predicted, because they span orders of magnitude. */
+enum {
+    MODEL_LIGHTS_FLASH = 0, /* the root of the flash's strength */
+    MODEL_LIGHTS_LAMP = 1,  /* from the object's middle toward the strongest lamp, as long as the network is sure: 3 */
+    MODEL_LIGHTS_DISTANCE = 4, /* the inverse of its distance from there; 0: far away */
+    MODEL_LIGHTS_STRENGTH = 5, /* the root of its strength in the object's middle, by channel: 3 */
+    MODEL_LIGHTS_REST = 8,     /* model_encode_sh of everything else: MODEL_SH */
+    MODEL_LIGHTS = 8 + MODEL_SH
+};
 
 typedef struct model_config {
     char name[64];
@@ -48,7 +68,8 @@ typedef struct model_config {
     bool gated_attention;
     model_relight relight; /* by network: has a relighting decoder */
     bool global_illumination;
-    model_lighting lighting;  /* the paper's settings A (point) and B (point and environment) */
+    /* the paper's settings A (point) and B (point and environment), or any light and lens */
+    model_lighting lighting;
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
     int encoder_blocks[MODEL_LEVELS];      /* residual blocks behind each level's convolutions */
@@ -79,6 +100,11 @@ void model_encode_image(const float *linear, float *encoded, size_t n);
  * place is fine. */
 void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
 void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
+
+/* What the network is told of how a photograph was taken: of a picture of size × size, MODEL_SIGHT values a pixel. lens
+ * NULL: nothing is known of it. flash: the photograph is lit by a flash alone, as far as anybody knows. */
+enum { MODEL_SIGHT = 4 };
+void model_sight(const camera *lens, bool flash, int size, float *out);
 
 /* What the relighting decoder takes of a photograph, whatever the light, NULL behind: the encoder's features at levels
  * 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant
