@@ -16,13 +16,17 @@ enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
 /* Inside pixels only, in reading order. */
 typedef struct packed {
     uint32_t count;
+    int lamp_count;
+    trn_lamp lamp[TRN_LAMPS];
+    float fov;
+    camera_slant slant;
     float sh[9][3];
     uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × values halves */
 } packed;
 
 struct trn_dataset {
     trn_dataset_options options;
-    size_t values; /* a pixel */
+    size_t values; /* a pixel, beside the lamps' */
     size_t count, memory_limit;
     char **paths;
     _Atomic(packed *) *kept;
@@ -36,7 +40,7 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
     trn_dataset *d = calloc(1, sizeof *d);
     if (!d) return fail(ERROR_MEMORY, "out of memory opening %s", folder);
     d->options = *options;
-    d->values = options->environment ? VALUES_WITH_ENVIRONMENT : VALUES;
+    d->values = options->environment || options->lamps ? VALUES_WITH_ENVIRONMENT : VALUES;
     d->memory_limit = (size_t)(options->memory_gib * 0x1p30);
     status s = sample_list(folder, &d->paths, &d->count);
     if (s == OK) {
@@ -80,9 +84,30 @@ static uint16_t *put3(uint16_t *to, const float *from)
     return to;
 }
 
-static size_t packed_bytes(const trn_dataset *d, size_t count)
+static size_t packed_bytes(const trn_dataset *d, size_t count, int lamps)
 {
-    return sizeof(packed) + count * (d->values + 2) * sizeof(uint16_t);
+    return sizeof(packed) + count * (d->values + 2 + (size_t)lamps * TRN_LAMP_VALUES) * sizeof(uint16_t);
+}
+
+/* All its light, and how much of the direct part is let through. */
+static uint16_t *put_lamp(uint16_t *to, const sample_lamp *from, size_t i)
+{
+    float sum[3];
+    for (size_t c = 0; c < 3; c++)
+        sum[c] = fminf(from->direct.data[3 * i + c] + from->indirect.data[3 * i + c], 65504.0f); /* the largest half */
+    to = put3(to, sum);
+    *to++ = float_to_half(from->visibility.data[i]);
+    return to;
+}
+
+static void describe(const sample *s, int lamps, packed *p)
+{
+    p->lamp_count = lamps;
+    for (int k = 0; k < lamps; k++)
+        p->lamp[k] = (trn_lamp){s->lamps[k].at, s->lamps[k].distant};
+    p->fov = s->fov;
+    p->slant = s->slant;
+    memcpy(p->sh, s->sh, sizeof p->sh);
 }
 
 static packed *pack(const trn_dataset *d, const sample *s)
@@ -90,10 +115,11 @@ static packed *pack(const trn_dataset *d, const sample *s)
     size_t count = 0, pixels = (size_t)s->mask.width * (size_t)s->mask.height;
     for (size_t i = 0; i < pixels; i++)
         count += s->mask.data[i] > 0;
-    packed *p = calloc(1, packed_bytes(d, count));
+    const int most = s->lamp_count < TRN_LAMPS ? s->lamp_count : TRN_LAMPS, lamps = d->options.lamps ? most : 0;
+    packed *p = calloc(1, packed_bytes(d, count, lamps));
     if (!p) return NULL;
     p->count = (uint32_t)count;
-    memcpy(p->sh, s->sh, sizeof p->sh);
+    describe(s, lamps, p);
     uint16_t *place = p->data, *value = p->data + 2 * count;
     for (size_t i = 0; i < pixels; i++) {
         if (!(s->mask.data[i] > 0)) continue;
@@ -107,14 +133,16 @@ static packed *pack(const trn_dataset *d, const sample *s)
         *value++ = float_to_half(s->depth.data[i]);
         *value++ = float_to_half(s->mask.data[i]);
         if (s->env.data) value = put3(value, s->env.data + 3 * i);
+        for (int k = 0; k < lamps; k++)
+            value = put_lamp(value, &s->lamps[k], i);
     }
     return p;
 }
 
 /* The rendering layer knows one camera and one flash: to it, the shading of others is wrong everywhere. */
-static status check_optics(const char *path, const sample *s)
+static status check_optics(const char *path, const sample *s, bool any_lens)
 {
-    if (fabsf(s->fov - MODEL_FOV) > 0.01f)
+    if (!any_lens && fabsf(s->fov - MODEL_FOV) > 0.01f)
         return fail(ERROR_INPUT, "%s was rendered with a field of view of %g degrees, training wants %g", path,
                     (double)s->fov, (double)MODEL_FOV);
     if (fabsf(s->light_power - MODEL_LIGHT_POWER) > 0.001f * MODEL_LIGHT_POWER)
@@ -126,18 +154,27 @@ static status check_optics(const char *path, const sample *s)
     return OK;
 }
 
+static status read_layers(const trn_dataset *d, const char *path, sample *out)
+{
+    if (!d->options.lamps)
+        return d->options.environment ? sample_read_training_environment(path, out) : sample_read_training(path, out);
+    status s = sample_read(path, out);
+    if (s != OK || (out->lamp_count > 0 && out->env.data)) return s;
+    sample_free(out);
+    return fail(ERROR_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps", path);
+}
+
 static status read_packed(trn_dataset *d, size_t i, packed **out)
 {
     sample one;
     int size = d->options.size;
-    status s = d->options.environment ? sample_read_training_environment(d->paths[i], &one)
-                                      : sample_read_training(d->paths[i], &one);
+    status s = read_layers(d, d->paths[i], &one);
     if (s != OK) return s;
     if (one.mask.width != size || one.mask.height != size)
         s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
                  one.mask.height, size, size);
     else
-        s = check_optics(d->paths[i], &one);
+        s = check_optics(d->paths[i], &one, d->options.lamps);
     if (s == OK) {
         *out = pack(d, &one);
         if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
@@ -149,7 +186,7 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
 /* Keeps p if there is room. Returns true if the data set owns it now. */
 static bool keep(trn_dataset *d, size_t i, packed *p)
 {
-    size_t bytes = packed_bytes(d, p->count);
+    size_t bytes = packed_bytes(d, p->count, p->lamp_count);
     if (atomic_fetch_add(&d->memory_used, bytes) + bytes > d->memory_limit) {
         atomic_fetch_sub(&d->memory_used, bytes);
         return false;
@@ -175,13 +212,45 @@ static void clear(const trn_view *v)
     for (int i = 0; i < 4; i++)
         memset(three[i], 0, 3 * n * sizeof(float));
     if (v->env) memset(v->env, 0, 3 * n * sizeof(float));
+    if (v->lamps) memset(v->lamps, 0, TRN_LAMPS * TRN_LAMP_VALUES * n * sizeof(float));
     for (int i = 0; i < 3; i++)
         memset(one[i], 0, n * sizeof(float));
 }
 
-static void unpack(const packed *p, int orientation, const trn_view *v)
+static const uint16_t *get_lamps(const uint16_t *from, int count, size_t pixels, float *pixel)
 {
+    for (int k = 0; k < count; k++, pixel += TRN_LAMP_VALUES * pixels)
+        for (int c = 0; c < TRN_LAMP_VALUES; c++)
+            pixel[c] = half_to_float(*from++);
+    return from;
+}
+
+static void turn_vector(int orientation, vec3 *v)
+{
+    float values[3];
+    vec3_put(*v, values);
+    orientation_turn(orientation, values);
+    *v = vec3_of(values);
+}
+
+/* What a sample with lamps has beside pictures. */
+static void unpack_lights(const packed *p, int orientation, trn_view *v)
+{
+    vec3 slant = {p->slant.right, p->slant.up, 0};
+    turn_vector(orientation, &slant);
+    v->lens = (camera){v->size, v->size, p->fov, {slant.x, slant.y}};
+    v->lamp_count = p->lamp_count;
+    for (int k = 0; k < p->lamp_count; k++) {
+        v->lamp[k] = p->lamp[k];
+        turn_vector(orientation, &v->lamp[k].at);
+    }
+}
+
+static void unpack(const packed *p, int orientation, trn_view *v)
+{
+    const size_t pixels = (size_t)v->size * (size_t)v->size;
     clear(v);
+    unpack_lights(p, orientation, v);
     const uint16_t *place = p->data, *value = p->data + 2 * (size_t)p->count;
     for (uint32_t k = 0; k < p->count; k++, place += 2) {
         size_t i = orientation_place(orientation, v->size, (size_t)place[0] | (size_t)place[1] << 16);
@@ -194,6 +263,7 @@ static void unpack(const packed *p, int orientation, const trn_view *v)
         v->depth[i] = half_to_float(*value++);
         v->mask[i] = half_to_float(*value++);
         if (v->env) value = get3(value, v->env + 3 * i);
+        if (v->lamps) value = get_lamps(value, p->lamp_count, pixels, v->lamps + TRN_LAMP_VALUES * i);
     }
     if (!v->sh) return;
     float sh[9][3];
@@ -214,7 +284,7 @@ status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3])
     return s;
 }
 
-status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out)
+status trn_dataset_get(trn_dataset *d, size_t i, int orientation, trn_view *out)
 {
     packed *p = d->kept[i];
     bool owned = true;

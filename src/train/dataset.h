@@ -16,8 +16,17 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "optics/camera.h"
 
 typedef struct trn_dataset trn_dataset;
+
+/* What a lamp of a sample is like. */
+typedef struct trn_lamp {
+    vec3 at; /* as of sample_lamp */
+    bool distant;
+} trn_lamp;
+
+enum { TRN_LAMPS = 4, TRN_LAMP_VALUES = 4 };
 
 /* One sample's places in the batch, each size × size × channels floats, channels last. */
 typedef struct trn_view {
@@ -32,17 +41,28 @@ typedef struct trn_view {
     /* of a data set with environments, else NULL: */
     float *env; /* 3, the object under its environment alone */
     float *sh;  /* 27 values: that environment; model_encode_sh of it after trn_prepare */
+    /* of a data set with lamps, else NULL: */
+    float *lamps; /* TRN_LAMPS images of TRN_LAMP_VALUES: the object under each, bounces included, and its visibility */
+    trn_lamp lamp[TRN_LAMPS];
+    int lamp_count;
+    camera lens; /* size × size */
     /* filled by trn_prepare */
     float *image, *reconstruction, *relit; /* 3 */
     float *loss_mask;                      /* 1 */
     float *light;                          /* 3 values */
     float *target_sh;                      /* 27 values, model_encode_sh: the target's environment; or NULL */
+    /* for any light, else NULL: */
+    float *photo;                              /* 3: radiance of the mixture of lights, before the camera */
+    float *sight, *lens_values;                /* MODEL_SIGHT; 3 values, as the model's inputs "sight" and "lens" */
+    float *lights, *lamp_weight, *rest_weight; /* MODEL_LIGHTS values, 1 and 1 */
+    float *visibility, *visibility_weight;     /* 1 */
 } trn_view;
 
 typedef struct trn_dataset_options {
     int size;          /* what every sample's width and height must be */
     double memory_gib; /* samples read are kept until they fill this */
     bool environment;  /* with the images under environments; samples without are refused */
+    bool lamps;        /* with these and those under lamps, through any lens; samples without are refused */
 } trn_dataset_options;
 
 /* Refuses an empty folder. */
@@ -50,8 +70,8 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
 void trn_dataset_close(trn_dataset *d);
 size_t trn_dataset_count(const trn_dataset *d);
 /* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Refuses a sample of another
- * size, and of another camera or flash than the model's. Safe to call from several threads. */
-status trn_dataset_get(trn_dataset *d, size_t i, int orientation, const trn_view *out);
+ * size, and of another camera (but for lamps) or flash than the model's. Safe to call from several threads. */
+status trn_dataset_get(trn_dataset *d, size_t i, int orientation, trn_view *out);
 /* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
 status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);
 /* Of the folder's first sample. */

@@ -5,10 +5,11 @@
 
 #include "base/parallel.h"
 #include "optics/orientation.h"
+#include "train/mixture.h"
 #include "train/motion.h"
 #include "train/prepare.h"
 
-enum { POINT_BUFFERS = 12, BUFFERS = 15 };
+enum { POINT_BUFFERS = 12, BOTH_BUFFERS = 15, BUFFERS = 24 };
 
 /* What one thread does for one place of the batch. */
 typedef struct item {
@@ -51,7 +52,24 @@ static const field fields[BUFFERS] = {
     {NULL, 3, false, offsetof(trn_view, env)},
     {"environment_true", MODEL_SH, true, offsetof(trn_view, sh)},
     {NULL, MODEL_SH, true, offsetof(trn_view, target_sh)},
+    /* for any light only: */
+    {NULL, TRN_LAMPS *TRN_LAMP_VALUES, false, offsetof(trn_view, lamps)},
+    {NULL, 3, false, offsetof(trn_view, photo)},
+    {"sight", MODEL_SIGHT, false, offsetof(trn_view, sight)},
+    {"lens", 3, true, offsetof(trn_view, lens_values)},
+    {"lights_true", MODEL_LIGHTS, true, offsetof(trn_view, lights)},
+    {"lamp_weight", 1, true, offsetof(trn_view, lamp_weight)},
+    {"rest_weight", 1, true, offsetof(trn_view, rest_weight)},
+    {"visibility_true", 1, false, offsetof(trn_view, visibility)},
+    {"visibility_weight", 1, false, offsetof(trn_view, visibility_weight)},
 };
+
+/* How many of them a kind of training has. */
+static int buffer_count(const trn_source *source)
+{
+    if (source->any) return BUFFERS;
+    return source->environment ? BOTH_BUFFERS : POINT_BUFFERS;
+}
 
 static status connect(trn_feed *f, nn_program *program, int which)
 {
@@ -78,7 +96,7 @@ status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **ou
     f->batch = (size_t)source->config->batch;
     f->items = calloc(f->batch, sizeof *f->items);
     status s = f->items ? OK : fail(ERROR_MEMORY, "out of memory for a batch");
-    for (int i = 0; i < (source->environment ? BUFFERS : POINT_BUFFERS) && s == OK; i++)
+    for (int i = 0; i < buffer_count(source) && s == OK; i++)
         s = connect(f, program, i);
     f->light_code = nn_input_data(program, "light");
     if (s != OK) {
@@ -133,10 +151,29 @@ static status add_faults(const trn_feed *f, const item *it, trn_camera *lens)
     return trn_motion_moves(&motion) ? trn_move(&it->view, &motion) : OK;
 }
 
+/* Under any light. Validation has the mixtures of every kind, too, by a perfect camera that exposes and balances. */
+static status fill_any(trn_feed *f, item *it)
+{
+    const train_config *c = f->source.config;
+    rng r = rng_at(seed_of(f), it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
+    rng light = rng_at(seed_of(f), 2 * it->presentation + f->validation, TRN_STREAM_MIXTURE);
+    const vec3 target = trn_draw_light(&r);
+    int orientation = f->validation ? 0 : rng_below(&r, ORIENTATIONS);
+    trn_camera lens = f->validation ? trn_camera_perfect() : trn_camera_draw(c, &r);
+    status s = trn_dataset_get(f->source.data, it->sample, orientation, &it->view);
+    if (s == OK && !f->validation) s = add_faults(f, it, &lens);
+    if (s != OK) return s;
+    trn_mixture mixture;
+    trn_mixture_draw(&it->view, &light, &lens, &mixture);
+    if (!f->validation) trn_camera_develop(&light, &lens);
+    return trn_prepare_any(&it->view, &mixture, &lens, target, &r);
+}
+
 static status fill_item(void *context, size_t i)
 {
     trn_feed *f = context;
     item *it = &f->items[i];
+    if (f->source.any) return fill_any(f, it);
     const train_config *c = f->source.config;
     rng r = rng_at(seed_of(f), it->presentation, f->validation ? TRN_STREAM_VALIDATION : TRN_STREAM_PRESENTATION);
     trn_lighting lighting = {.target = trn_draw_light(&r)};

@@ -14,6 +14,7 @@ typedef struct trn_source {
     const train_config *config;
     bool input_global;
     bool environment; /* setting B; the data set has environments */
+    bool any;         /* any light, any lens; the data set has lamps */
     size_t training_count;
 } trn_source;
 

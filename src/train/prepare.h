@@ -5,9 +5,9 @@
 
 #include "base/rng.h"
 #include "base/vec.h"
-#include "image/jpeg.h"
 #include "train/config.h"
 #include "train/dataset.h"
+#include "train/photograph.h"
 
 /* Streams of rng_at. */
 enum {
@@ -16,32 +16,9 @@ enum {
     TRN_STREAM_VALIDATION = 103,
     TRN_STREAM_ENVIRONMENT = 104,
     TRN_STREAM_MOTION = 105,
-    TRN_STREAM_FAULTS = 106
+    TRN_STREAM_FAULTS = 106,
+    TRN_STREAM_MIXTURE = 107
 };
-
-/* What spoils a photograph; trn_camera_perfect for none. */
-typedef struct trn_camera {
-    float gain[3];    /* error of exposure and colour balance */
-    float white;      /* radiance at which the sensor saturates, at least 1 */
-    float shot, read; /* noise of standard deviation sqrt(shot I + read²), I in [0, 1] of white */
-    bool eight_bit;   /* rounded to 8 bits of sRGB */
-    /* trn_camera_spoil: */
-    bool background;        /* something lies behind the object, which shows at its outline */
-    float behind[2][3];     /* its radiance, even between two ends of the frame ... */
-    float across[2];        /* ... which lie so far apart, in frames to the right and downwards */
-    int outline;            /* the mask is a pixel too large (1) or too small (-1) */
-    bool jpeg;              /* compressed ... */
-    img_jpeg jpeg_settings; /* ... like this */
-} trn_camera;
-
-trn_camera trn_camera_perfect(void);
-/* Exposure and colour as configured; noise up to 1.5 % of full scale and 8 bits in half of all photographs each. The
- * sensor's white lies between radiance 1, the published data's, at which two pixels in five of bright objects burn out,
- * and 2.5, where a white object keeps its shading as in a photograph exposed for it. */
-trn_camera trn_camera_draw(const train_config *c, rng *r);
-/* Adds background, errors of the outline and JPEG to the shares of photographs that the configuration says, and makes
- * the camera perfect for the share that is to be as in the paper. */
-void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens);
 
 /* What a presentation is lit by beside the flash. */
 typedef struct trn_lighting {
@@ -62,6 +39,10 @@ typedef struct trn_lighting {
  * The environment's highlights, as far as its coefficients know them (optics/ambient.h), are in the input alone, so
  * that they are not counted twice where the relighter samples a map. ERROR_MEMORY. */
 status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise);
+
+/* What is left to do for the point setting behind trn_photograph: the relit image, clipped direct light, binary masks,
+ * maps in the network's ranges. */
+void trn_finish(const trn_view *v, vec3 target);
 
 /* A target light on the frontal hemisphere (Sang & Chandraker 2020). */
 vec3 trn_draw_light(rng *r);

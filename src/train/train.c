@@ -108,9 +108,17 @@ static bool is_lit_by_both(const run *r)
     return r->model.lighting == MODEL_LIGHT_BOTH;
 }
 
+static bool is_lit_by_any(const run *r)
+{
+    return r->model.lighting == MODEL_LIGHT_ANY;
+}
+
 static status open_data(run *r)
 {
-    trn_dataset_options options = {r->training.size, r->training.memory_gib, is_lit_by_both(r)};
+    trn_dataset_options options = {.size = r->training.size,
+                                   .memory_gib = r->training.memory_gib,
+                                   .environment = is_lit_by_both(r),
+                                   .lamps = is_lit_by_any(r)};
     status s = trn_dataset_open(r->options->data, &options, &r->data);
     if (s != OK) return s;
     size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
@@ -150,7 +158,7 @@ static status build(run *r)
     const train_config *c = &r->training;
     nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
-    trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), r->training_count};
+    trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), is_lit_by_any(r), r->training_count};
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);

@@ -424,7 +424,7 @@ static void turned_maps_reflect_the_turned_environment(void **state)
 {
     fixture *f = *state;
     trn_dataset *d = with_environments(f);
-    const trn_view *v = &f->view;
+    trn_view *v = &f->view;
     for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
         assert_int_equal(trn_dataset_get(d, 2, orientation, v), OK);
         float sh[9][3], alone[9][3];
@@ -452,7 +452,7 @@ static void photograph_is_lit_by_both_and_targets_add_up(void **state)
 {
     fixture *f = *state;
     trn_dataset *d = with_environments(f);
-    const trn_view *v = &f->view;
+    trn_view *v = &f->view;
     float *raw = malloc(FLOATS * sizeof(float));
     assert_non_null(raw);
     assert_int_equal(trn_dataset_get(d, 0, 0, v), OK);
