@@ -59,6 +59,16 @@ void model_encode_image(const float *linear, float *encoded, size_t n)
     }
 }
 
+float model_encode_strength(float strength)
+{
+    return log1pf(strength);
+}
+
+float model_decode_strength(float code)
+{
+    return code > 0 ? expm1f(code) : 0;
+}
+
 void model_sight(const camera *lens, bool flash, int size, float *out)
 {
     const camera c = lens ? (camera){size, size, lens->fov, lens->slant} : (camera){0};

@@ -50,12 +50,12 @@ typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_r
 typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH, MODEL_LIGHT_ANY } model_lighting;
 
 /* Where the parts of "lights" begin. Strengths are in the photograph's radiance: 1 is what the lamp of power
- * MODEL_LIGHT_POWER gives at distance 1. Their roots are predicted, because they span orders of magnitude. */
+ * MODEL_LIGHT_POWER gives at distance 1. They span orders of magnitude, hence model_encode_strength. */
 enum {
-    MODEL_LIGHTS_FLASH = 0, /* the root of the flash's strength */
+    MODEL_LIGHTS_FLASH = 0, /* the flash's strength, encoded */
     MODEL_LIGHTS_LAMP = 1,  /* from the object's middle toward the strongest lamp, as long as the network is sure: 3 */
     MODEL_LIGHTS_DISTANCE = 4, /* the inverse of its distance from there; 0: far away */
-    MODEL_LIGHTS_STRENGTH = 5, /* the root of its strength in the object's middle, by channel: 3 */
+    MODEL_LIGHTS_STRENGTH = 5, /* its strength in the object's middle, encoded, by channel: 3 */
     MODEL_LIGHTS_REST = 8,     /* model_encode_sh of everything else: MODEL_SH */
     MODEL_LIGHTS = 8 + MODEL_SH
 };
@@ -100,6 +100,10 @@ void model_encode_image(const float *linear, float *encoded, size_t n);
  * place is fine. */
 void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
 void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
+
+/* A light's strength as the network says it, ln(1 + strength), and back, not below 0. */
+float model_encode_strength(float strength);
+float model_decode_strength(float code);
 
 /* What the network is told of how a photograph was taken: of a picture of size × size, MODEL_SIGHT values a pixel. lens
  * NULL: nothing is known of it. flash: the photograph is lit by a flash alone, as far as anybody knows. */

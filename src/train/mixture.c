@@ -210,7 +210,7 @@ static void put_lights(const trn_view *v, const trn_mixture *m, const trn_camera
 {
     const vec3 gain = vec3_of(lens->gain), flash = vec3_mul(m->flash, gain);
     memset(v->lights, 0, MODEL_LIGHTS * sizeof *v->lights);
-    v->lights[MODEL_LIGHTS_FLASH] = sqrtf(luminance_of(flash));
+    v->lights[MODEL_LIGHTS_FLASH] = model_encode_strength(luminance_of(flash));
     v->lamp_weight[0] = m->presence;
     put_rest(v, m, gain);
     if (m->strongest < 0) return;
@@ -220,7 +220,7 @@ static void put_lights(const trn_view *v, const trn_mixture *m, const trn_camera
     v->lights[MODEL_LIGHTS_DISTANCE] = v->lamp[m->strongest].distant ? 0 : 1 / distance;
     const float channel[3] = {strength.x, strength.y, strength.z};
     for (int c = 0; c < 3; c++)
-        v->lights[MODEL_LIGHTS_STRENGTH + c] = sqrtf(m->presence * channel[c]);
+        v->lights[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength(m->presence * channel[c]);
 }
 
 /* The strongest lamp's visibility counts where it would be seen, and where it matters. Maps are as unpacked. */
