@@ -31,7 +31,8 @@ static param_spec vector_spec(const nn_node *node, const char *suffix, float con
 static param_spec weight_spec(const nn_node *node)
 {
     int64_t in = node->in[0]->channels, out = node->channels, k = node->at.kernel;
-    param_spec spec = {.rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true, .zero = node->at.zero};
+    param_spec spec = {
+        .rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true, .zero = node->at.zero};
     spec.fan_in = (double)(in * k * k);
     if (node->op == OP_LINEAR) spec.shape[2] = spec.shape[3] = 0;
     snprintf(spec.name, sizeof spec.name, "%s.weight", node->name);
