@@ -95,8 +95,8 @@ static float background_at(const trn_camera *lens, int size, size_t pixel, int c
 static float vignette_at(const trn_camera *lens, int size, size_t pixel)
 {
     if (lens->vignette == 0) return 1;
-    float half = 0.5f * (float)size, right = ((float)(pixel % (size_t)size) + 0.5f) / half - 1;
-    float down = ((float)(pixel / (size_t)size) + 0.5f) / half - 1;
+    int x = (int)(pixel % (size_t)size), y = (int)(pixel / (size_t)size);
+    float half = 0.5f * (float)size, right = ((float)x + 0.5f) / half - 1, down = ((float)y + 0.5f) / half - 1;
     return 1 - lens->vignette * 0.5f * (right * right + down * down);
 }
 
