@@ -49,8 +49,44 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
     capture_drop(&c);
 }
 
+static void ignore(void *context, const char *what, double share)
+{
+    (void)what;
+    (void)share;
+    (*(int *)context)++;
+}
+
+static int give_up(void)
+{
+    return 1;
+}
+
+static void work_that_nobody_waits_for_any_more_stops(void **state)
+{
+    (void)state;
+    const relief how = {
+        .size = 96, .lights = 20, .channels = 1, .bump = 4, .specular = 0.5f, .roughness = 0.3f, .exposure = 1};
+    static const pst_method methods[] = {PST_ROBUST, PST_SEMI, PST_UNCALIBRATED};
+    int told = 0;
+    const watch w = {ignore, &told, give_up};
+    pst_capture c;
+    pst_surface found;
+    relief_capture(&how, &c);
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &found), ERROR_STOPPED);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &found), OK);
+    assert_int_equal(pst_surface_integrate(&c, true, true, &w, &found), ERROR_STOPPED);
+    assert_int_equal(pst_surface_integrate(&c, true, true, NULL, &found), OK);
+    assert_true(told > 0);
+    pst_surface_free(&found);
+    capture_drop(&c);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_solver_tells_how_far_it_is_and_finds_the_same)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_solver_tells_how_far_it_is_and_finds_the_same),
+        cmocka_unit_test(work_that_nobody_waits_for_any_more_stops),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
