@@ -65,6 +65,7 @@ typedef struct request {
     const photo_list *photos;
     bool *told; /* what was left aside of folders */
     stage_bar *bar;
+    const watch *watch; /* the bar's */
 } request;
 
 static status take_standard_input(const request *r, int count, char **photos)
@@ -204,13 +205,12 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
     mesh_work meshes = {r, job, inputs};
-    const watch shown = stage_bar_watch(r->bar);
     plan(r, (double)photo->width * photo->height);
-    object->watch = &shown;
+    object->watch = r->watch;
     maps_output to = {.folder = job->output,
                       .inputs = inputs,
                       .stop = cli_interrupted,
-                      .watch = &shown,
+                      .watch = r->watch,
                       .more = write_meshes,
                       .context = &meshes,
                       .written = &written};
@@ -221,7 +221,6 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) s = announce(r, job, &maps, &written, laps);
-    object->watch = NULL; /* it ends with this function */
     staged_files_free(&written);
     merlin_maps_free(&maps);
     return s;
@@ -269,8 +268,7 @@ static void begin_photo(const request *r, const photo_list *photos, size_t i, do
     double cost = expect_photo(photos->at[i].photo);
     stage_bar_span(r->bar, *done / all, fmin((*done + cost) / all, 1), i + 1, photos->count);
     plan(r, 0);
-    const watch shown = stage_bar_watch(r->bar);
-    watch_tell(&shown, "reading", 0);
+    watch_tell(r->watch, "reading", 0);
     *done += cost;
 }
 
@@ -319,7 +317,9 @@ int cmd_estimate(int argc, char **argv)
     s = photo_find_model(r.weights, &weights);
     stage_bar bar;
     stage_bar_begin(&bar, r.quiet);
+    const watch shown = stage_bar_watch(&bar);
     r.bar = &bar;
+    r.watch = &shown;
     int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
     stage_bar_end(&bar);
     merlin_model_close(r.model);
