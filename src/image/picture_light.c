@@ -128,6 +128,11 @@ static double decode(const picture_light *light, double v, double eighths)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
+float picture_light_of_float(const picture_light *light, float value)
+{
+    return copysignf((float)decode(light, fabs((double)value), 255), value);
+}
+
 float *picture_light_table(const picture_light *light, bool wide)
 {
     size_t count = wide ? 65536 : 256;

@@ -52,6 +52,9 @@ static inline bool picture_light_is_bright(const picture_light *light)
     return light->curve == PICTURE_CURVE_PQ || light->curve == PICTURE_CURVE_HLG;
 }
 
+/* Linear light of a float, in the file's primaries; what is below 0 or beyond 1 goes on as the curve does. */
+float picture_light_of_float(const picture_light *light, float value);
+
 /* Linear light, in the file's primaries, of all codes of 8 or 16 (wide) bits, whose owner frees it; NULL without
  * memory. */
 float *picture_light_table(const picture_light *light, bool wide);

@@ -14,6 +14,7 @@ struct picture_rows {
     bool decode;
     float full;    /* the code that is 1 */
     float *table;  /* of whole numbers that are decoded; else NULL */
+    bool coded;    /* floats have a curve, too */
     bool mixed;    /* by the matrix */
     double mix[9]; /* to sRGB's primaries */
     float *line;   /* colours of one row */
@@ -80,6 +81,7 @@ status picture_rows_new(const picture_layout *layout, picture_colour how, img *c
     r->channels = layout->bands - has_alpha(layout) < 3 ? 1 : 3;
     r->reduction = picture_reduction(layout->width, layout->height);
     r->decode = how == PICTURE_LINEARIZE;
+    r->coded = r->decode && layout->coded && layout->light.said && layout->sample == PICTURE_FLOAT;
     float full = layout->sample == PICTURE_UINT8 ? 255 : layout->sample == PICTURE_UINT16 ? 65535 : 1;
     r->full = full / (layout->scale > 0 ? layout->scale : 1);
     status s = set_mix(r);
@@ -142,7 +144,9 @@ static void take_values(picture_rows *r, const void *samples)
         float cover = divided && r->cover[x] > least ? r->cover[x] : 1;
         for (size_t c = 0; c < channels; c++) {
             float value = code_at(r, samples, x * bands + c) / cover;
-            r->line[x * channels + c] = r->table ? light_of(r, value) : value;
+            r->line[x * channels + c] = r->table   ? light_of(r, value)
+                                        : r->coded ? picture_light_of_float(&r->layout.light, value)
+                                                   : value;
         }
     }
 }

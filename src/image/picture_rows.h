@@ -29,7 +29,8 @@ typedef struct picture_layout {
     picture_sample sample;
     int orientation;     /* by the EXIF standard; 0 is upright, as 1 */
     float scale;         /* what whole numbers and floats are multiplied by; 0 is 1 */
-    picture_light light; /* of whole numbers; floats are linear, though their primaries may be others */
+    picture_light light; /* of whole numbers; floats are linear, though their primaries may be others ... */
+    bool coded;          /* ... but these, by light's curve where it is said */
 } picture_layout;
 
 typedef struct picture_rows picture_rows;

@@ -6,6 +6,7 @@
 #include "image/box_file.h"
 #include "image/exif.h"
 #include "image/picture_rows.h"
+#include "image/profile.h"
 #include "image/vips_library.h"
 
 /* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be
@@ -151,8 +152,7 @@ typedef struct request {
 /* Tells whether a profile says what the codes are, and is to be heeded. */
 static bool has_profile(VipsImage *image, const request *r)
 {
-    return r->by_profile && vips()->band_format_isint(vips()->image_get_format(image)) &&
-           vips()->image_get_typeof(image, VIPS_META_ICC_NAME);
+    return r->by_profile && vips()->band_format_isint(vips()->image_get_format(image)) && profile_is_fit(image);
 }
 
 /* Brings other colour spaces to sRGB: by the embedded profile, at 16 bits so that dark codes keep their steps, or by
@@ -162,9 +162,7 @@ static bool convert_space(VipsImage **image, const request *r)
     VipsImage *made = NULL;
     if (has_profile(*image, r)) {
         *r->profiled = true;
-        return replace(image, &made,
-                       vips()->icc_transform(*image, &made, "srgb", "embedded", TRUE, "depth", 16, "intent",
-                                             VIPS_INTENT_RELATIVE, NULL));
+        return replace(image, &made, !profile_apply(*image, &made));
     }
     if (is_plain(vips()->image_get_interpretation(*image))) return true;
     return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
@@ -217,8 +215,13 @@ static status decode_open(VipsImage **image, const request *r, picture_light lig
 {
     bool decode = r->how == PICTURE_LINEARIZE;
     picture_layout layout;
+    const bool floats = !vips()->band_format_isint(vips()->image_get_format(*image));
     if (has_profile(*image, r) || !is_plain(vips()->image_get_interpretation(*image)))
         light = (picture_light){.said = false};
+    if (decode && floats && vips()->image_get_typeof(*image, VIPS_META_ICC_NAME)) {
+        status known = profile_light(*image, r->path, &light);
+        if (known != OK) return known;
+    }
     if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(ERROR_INPUT, "read", r->path);
     VipsInterpretation space = vips()->image_get_interpretation(*image);
     if (!decode && !is_plain(space))
@@ -226,6 +229,7 @@ static status decode_open(VipsImage **image, const request *r, picture_light lig
                     vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = find_layout(*image, r->path, &layout);
     layout.light = light;
+    layout.coded = floats;
     return s == OK ? take_rows(image, r->path, &layout, r->how, r->color, r->alpha) : s;
 }
 

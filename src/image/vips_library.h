@@ -15,6 +15,7 @@
     USE(autorot)                                                                                                       \
     USE(band_format_get_type)                                                                                          \
     USE(band_format_isint)                                                                                             \
+    USE(bandjoin2)                                                                                                     \
     USE(cache_set_max)                                                                                                 \
     USE(cast)                                                                                                          \
     USE(colourspace)                                                                                                   \
@@ -30,6 +31,7 @@
     USE(icc_transform)                                                                                                 \
     USE(image_copy_memory)                                                                                             \
     USE(image_get_bands)                                                                                               \
+    USE(image_get_blob)                                                                                                \
     USE(image_get_coding)                                                                                              \
     USE(image_get_format)                                                                                              \
     USE(image_get_height)                                                                                              \
@@ -46,6 +48,7 @@
     USE(init)                                                                                                          \
     USE(interpretation_get_type)                                                                                       \
     USE(jpegload)                                                                                                      \
+    USE(linear1)                                                                                                       \
     USE(pngload)                                                                                                       \
     USE(premultiply)                                                                                                   \
     USE(rad2float)                                                                                                     \
