@@ -91,14 +91,29 @@ static float luminance_of(vec3 v)
     return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
 }
 
+/* The luminance of all light together, by what it does to the picture. */
+static float amount_of(const trn_view *v, const means *m, const trn_mixture *of)
+{
+    float all = luminance_of(of->flash) * m->flash + luminance_of(of->room) * m->room;
+    for (int k = 0; k < v->lamp_count; k++)
+        all += luminance_of(of->lamp[k]) * m->lamp[k];
+    return all;
+}
+
+/* Of lamps behind an object alone the camera sees nothing: nobody keeps such a photograph. */
+static void ensure_light(const trn_view *v, const means *m, trn_mixture *out)
+{
+    if (amount_of(v, m, out) < 1e-3f * m->flash + 1e-6f) *out = (trn_mixture){.kind = TRN_FLASH, .flash = {1, 1, 1}};
+}
+
 /* Which lamp gives most light, and how sure anybody can be that it is there. */
 static void find_strongest(const trn_view *v, const means *m, trn_mixture *out)
 {
-    float all = luminance_of(out->flash) * m->flash + luminance_of(out->room) * m->room, most = 0;
+    const float all = amount_of(v, m, out);
+    float most = 0;
     out->strongest = -1;
     for (int k = 0; k < v->lamp_count; k++) {
         float light = luminance_of(out->lamp[k]) * m->lamp[k];
-        all += light;
         if (light > most) {
             most = light;
             out->strongest = k;
@@ -165,6 +180,7 @@ void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *
     if (out->kind == TRN_FLASH) out->flash = vec3_make(1, 1, 1);
     if (out->kind == TRN_ROOM) out->room = vec3_make(1, 1, 1);
     if (out->kind == TRN_MIXED) draw_mixed(v, &m, r, out);
+    ensure_light(v, &m, out);
     find_strongest(v, &m, out);
     out->lens_known = known;
     out->told_flash = told && out->kind == TRN_FLASH;

@@ -233,6 +233,24 @@ static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
     }
 }
 
+static void nobody_photographs_darkness(void **state)
+{
+    fixture *f = *state;
+    trn_view *v = &f->view;
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    memset(v->lamps, 0, 16 * PIXELS * sizeof(float)); /* all of them behind it, and nothing else lit at night */
+    memset(v->env, 0, 3 * PIXELS * sizeof(float));
+    memset(v->sh, 0, 27 * sizeof(float));
+    for (int i = 0; i < 200; i++) {
+        rng r = rng_at(10, (uint64_t)i, 0);
+        trn_camera lens = trn_camera_perfect();
+        trn_mixture m;
+        trn_mixture_draw(v, &r, &lens, &m);
+        assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0 && m.flash.x > 0);
+        assert_int_equal(m.strongest, -1);
+    }
+}
+
 static void samples_without_lamps_are_refused(void **state)
 {
     (void)state;
@@ -262,6 +280,7 @@ int main(void)
         cmocka_unit_test(the_truth_about_a_lamp_makes_the_photograph),
         cmocka_unit_test(kinds_come_as_often_as_they_should),
         cmocka_unit_test(exposure_leaves_neither_darkness_nor_white_alone),
+        cmocka_unit_test(nobody_photographs_darkness),
         cmocka_unit_test(samples_without_lamps_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
