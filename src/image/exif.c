@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "image/exif_text.h"
 
 enum {
     FLASH = 37385,
@@ -102,6 +103,15 @@ static void parse_part(FILE *file, exif_place place, exif_facts *out)
     free(bytes);
 }
 
+static void parse_text(FILE *file, exif_facts *out)
+{
+    void *exif;
+    size_t size;
+    if (!exif_text_find(file, &exif, &size)) return;
+    exif_parse(exif, size, out);
+    free(exif);
+}
+
 void exif_read(const char *path, exif_facts *out)
 {
     *out = (exif_facts){.orientation = 1};
@@ -114,6 +124,8 @@ void exif_read(const char *path, exif_facts *out)
             parse_part(file, place, out);
         else if (tiff_open(&t, file))
             take_facts(&t, out);
+    } else {
+        parse_text(file, out);
     }
     fclose(file);
 }

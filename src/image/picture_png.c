@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "image/exif.h"
+#include "image/exif_text.h"
 #include "image/picture.h"
 #include "image/picture_rows.h"
 
@@ -76,6 +78,22 @@ static int orientation_in(int file, off_t at, uint32_t size)
     return orientation;
 }
 
+/* Of EXIF as text (exif_text.h); 0 of other texts. */
+static int orientation_in_text(int file, off_t at, uint32_t size, bool packed)
+{
+    char *content = size <= EXIF_TEXT_MOST ? malloc(size + 1) : NULL;
+    void *exif;
+    size_t exif_size;
+    exif_facts facts = {.orientation = 0};
+    if (content && pread(file, content, size, at) == (ssize_t)size &&
+        exif_text_decode(content, size, packed, &exif, &exif_size)) {
+        exif_parse(exif, exif_size, &facts);
+        free(exif);
+    }
+    free(content);
+    return facts.orientation;
+}
+
 static int frames_in(int file, off_t at)
 {
     unsigned char b[4];
@@ -86,18 +104,23 @@ static int frames_in(int file, off_t at)
 /* Goes over a file's chunks; what is damaged libpng says later. */
 static chunks find_chunks(int file)
 {
-    chunks found = {.orientation = 1};
+    chunks found = {.orientation = 0};
+    int by_text = 0;
     unsigned char head[8];
     for (off_t at = 8; pread(file, head, sizeof head, at) == (ssize_t)sizeof head;) {
         uint32_t size = (uint32_t)head[0] << 24 | (uint32_t)head[1] << 16 | (uint32_t)head[2] << 8 | head[3];
         const char *name = (const char *)head + 4;
         if (memcmp(name, "cICP", 4) == 0 && size == 4) found.has_cicp = pread(file, found.cicp, 4, at + 8) == 4;
         if (memcmp(name, "eXIf", 4) == 0) found.orientation = orientation_in(file, at + 8, size);
+        bool packed = memcmp(name, "zTXt", 4) == 0;
+        if (by_text == 0 && (packed || memcmp(name, "tEXt", 4) == 0))
+            by_text = orientation_in_text(file, at + 8, size, packed);
         if (memcmp(name, "IDAT", 4) == 0) found.packed += size;
         if (memcmp(name, "acTL", 4) == 0 && size == 8) found.frames = frames_in(file, at + 8);
         if (memcmp(name, "IEND", 4) == 0) break;
         at += 12 + (off_t)size;
     }
+    if (found.orientation == 0) found.orientation = by_text ? by_text : 1;
     return found;
 }
 

@@ -210,6 +210,14 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
     return s;
 }
 
+/* libvips does not look for it in a PNG's texts. */
+static int orientation_of(const char *path)
+{
+    exif_facts facts;
+    exif_read(path, &facts);
+    return facts.orientation;
+}
+
 /* light: the codes' own, which other spaces and profiles are brought to sRGB from. */
 static status decode_open(VipsImage **image, const request *r, picture_light light)
 {
@@ -228,6 +236,7 @@ static status decode_open(VipsImage **image, const request *r, picture_light lig
         return fail(ERROR_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
                     vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = find_layout(*image, r->path, &layout);
+    if (r->kind == PICTURE_PNG) layout.orientation = orientation_of(r->path);
     layout.light = light;
     layout.coded = floats;
     return s == OK ? take_rows(image, r->path, &layout, r->how, r->color, r->alpha) : s;

@@ -1,5 +1,6 @@
 #include "image/exif.h"
 
+#include <libdeflate.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -170,6 +171,52 @@ static bytes in_png(const bytes *exif)
     return b;
 }
 
+/* ImageMagick's: digits in lines. */
+static bytes as_digits(const bytes *exif)
+{
+    bytes text = {0};
+    char part[64];
+    int length = snprintf(part, sizeof part, "\nexif\n%8zu\n", exif->count + 6);
+    put_text(&text, part, (size_t)length);
+    put_text(&text, "457869660000", 12);
+    for (size_t i = 0; i < exif->count; i++) {
+        length = snprintf(part, sizeof part, "%02x%s", exif->at[i], i % 36 == 29 ? "\n" : "");
+        put_text(&text, part, (size_t)length);
+    }
+    return text;
+}
+
+static bytes in_png_chunk(const char name[4], const bytes *content)
+{
+    bytes b = {0};
+    put_text(&b, "\x89PNG\r\n\x1a\n\0\0\0\x02tEXtabCRC.", 22);
+    put(&b, (uint32_t)content->count, 4);
+    put_text(&b, name, 4);
+    put_bytes(&b, content);
+    put_text(&b, "CRC.\0\0\0\0IENDCRC.", 16);
+    return b;
+}
+
+static bytes in_png_text(const bytes *exif)
+{
+    bytes digits = as_digits(exif), content = {0};
+    put_text(&content, "Raw profile type exif", 22);
+    put_bytes(&content, &digits);
+    return in_png_chunk("tEXt", &content);
+}
+
+static bytes in_png_packed_text(const bytes *exif)
+{
+    bytes digits = as_digits(exif), content = {0};
+    put_text(&content, "Raw profile type APP1\0", 23);
+    struct libdeflate_compressor *c = libdeflate_alloc_compressor(6);
+    assert_non_null(c);
+    content.count += libdeflate_zlib_compress(c, digits.at, digits.count, content.at + content.count,
+                                              sizeof content.at - content.count);
+    libdeflate_free_compressor(c);
+    return in_png_chunk("zTXt", &content);
+}
+
 static bytes in_webp(const bytes *exif)
 {
     bytes b = {.little = true};
@@ -259,7 +306,8 @@ static bytes as_tiff(const bytes *exif)
     return *exif;
 }
 
-static bytes (*const kinds[])(const bytes *exif) = {in_jpeg, in_png, in_webp, in_heic, in_cr3, in_raf, as_tiff};
+static bytes (*const kinds[])(const bytes *exif) = {in_jpeg, in_png, in_png_text, in_png_packed_text, in_webp, in_heic,
+                                                    in_cr3,  in_raf, as_tiff};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static exif_facts facts_in_file(const bytes *b)
@@ -282,6 +330,7 @@ static void every_kind_of_file_keeps_it_where_it_is_found(void **state)
         bytes b = kinds[i](&exif);
         exif_facts facts = facts_in_file(&b);
         assert_int_equal(facts.flash, EXIF_FLASH_FIRED);
+        assert_int_equal(facts.orientation, 6);
         assert_float_equal(facts.focal_35mm, 26, 1e-6);
     }
 }
