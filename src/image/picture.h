@@ -56,6 +56,8 @@ status picture_check_sides(const char *path, long long width, long long height);
 /* Refuses what would take too much memory where a decoder has to hold all of it, so many bytes a pixel; advice:
  * how it is to be saved instead. */
 status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice);
+/* Refuses a picture of a kind that its decoder holds as a whole, where that would take too much memory. */
+status picture_check_held(const char *path, picture_kind kind, int width, int height);
 status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
 /* Upright and linear, in sRGB's primaries, white where the sensor saturates; 3 channels, 1 if it has no mosaic. White
