@@ -19,7 +19,8 @@
  *
  * Images are float, interleaved, rows from the top, on linear sRGB primaries. Space: the camera is at the origin and
  * looks along -z, x right, y up; the object stands near (0, 0, -1). The square `crop` around the object counts as the
- * whole frame of that camera: 60 degrees wide, its centre on the optical axis, whatever lens took the photograph.
+ * whole frame of a camera that looks at its centre: as wide as the photograph's lens makes it, or 60 degrees where that
+ * is not known.
  *
  * Functions return MERLIN_OK (0) or what went wrong; merlin_error() then says it in words, per thread. What a function
  * fills in is yours to free; it is overwritten, not freed first, and after a failure it is empty. Pointers must not be
@@ -118,7 +119,8 @@ typedef struct merlin_params {
                         * any unit), to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
-    merlin_shot shot;  /* of the photograph, for the doubts in its maps alone */
+    merlin_shot shot;  /* of the photograph: its lens, and doubts in its maps */
+    float fov;         /* degrees that the photograph is wide, from 1 to 150; 0: by shot, if that knows the lens */
     merlin_hint hint;  /* where the object is, if it is searched for; MERLIN_WRONG_USE with a mask */
 } merlin_params;
 
@@ -140,8 +142,8 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_NO_FLASH = 1 << 4,        /* params.shot says that no flash fired */
     MERLIN_DOUBT_HOLLOW = 1 << 5,          /* along the outline the normals turn inward, as of a bowl */
     MERLIN_DOUBT_DRAWING = 1 << 6,         /* most of it are areas of one colour: a drawing or a screenshot */
-    MERLIN_DOUBT_LENS_NARROW = 1 << 7,     /* lens_degrees is below 30: normals are some 6 degrees farther off */
-    MERLIN_DOUBT_LENS_WIDE = 1 << 8,       /* lens_degrees is above 95 */
+    MERLIN_DOUBT_LENS_NARROW = 1 << 7,     /* fov is below 5 */
+    MERLIN_DOUBT_LENS_WIDE = 1 << 8,       /* fov is above 95 */
     MERLIN_DOUBT_DARK = 1 << 9,            /* too few shades: nearly black */
     MERLIN_DOUBT_OBJECT_CUT = 1 << 10,     /* a quarter of the photograph's edge or more cuts through the object */
     MERLIN_DOUBT_OBJECT_SMALL = 1 << 11,   /* the object has fewer than 2500 pixels */
@@ -175,7 +177,9 @@ typedef struct merlin_maps {
     unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */
     float light_elsewhere; /* how likely the photograph was lit from elsewhere than the lens, in [0, 1] */
     int reduced, frames;   /* params.shot's */
-    float lens_degrees;    /* how wide the crop is by params.shot, which the maps take for 60 degrees; 0: unknown */
+    float fov; /* how wide the crop is, degrees, by params.fov or params.shot; 0: unknown, the maps take it for 60 */
+    float slant[2]; /* where the crop's middle is as seen from the lens, sines to the right and upwards; the maps' space
+                     * is that of a camera that looks at it */
 } merlin_maps;
 
 /* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size,

@@ -46,6 +46,7 @@ static const char help[] =
     "      --size N         side of the square the network sees, a multiple of 32 from 64 to 512 (default): where the\n"
     "                       photograph has more than 256 pixels of the object, for finer normals; 256 is quicker\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
+    "      --fov DEG        how wide the whole photograph is, in degrees (default: by its EXIF; unknown without)\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
     "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
@@ -90,6 +91,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"fov", .real = &r->params.fov, .low = 1, .high = 150},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name},
         {"json", .flag = &r->json},

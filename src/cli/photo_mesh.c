@@ -23,9 +23,13 @@ status photo_mesh_write(const merlin_maps *maps, const char *path)
     /* or a texture seen small would mix the zeros beside the object, a mirror, into its outline */
     if (s == OK) s = fill_outside(&shape.roughness, &shape.mask);
     bool by_vertex = file_ends_in(path, ".ply");
-    pst_mesh_source source = {&shape.depth,     &shape.mask,
-                              &shape.normal,    by_vertex ? &shape.albedo : &texture,
-                              &shape.roughness, pst_camera_of(side, side, SURFACE_FOV)};
+    pst_mesh_source source = {&shape.depth,
+                              &shape.mask,
+                              &shape.normal,
+                              by_vertex ? &shape.albedo : &texture,
+                              &shape.roughness,
+                              pst_camera_of(side, side, surface_lens(&shape).fov),
+                              surface_lens(&shape).slant};
     if (s == OK) s = pst_mesh_write(path, &source);
     surface_free(&shape);
     img_free(&texture);

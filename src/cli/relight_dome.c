@@ -42,11 +42,20 @@ static void print_lp(FILE *f, const void *context)
     }
 }
 
-/* Returns how wide the whole photograph is where the crop counts as 60 degrees. */
+/* Returns how wide the whole photograph is; where that is not known, if the crop counts as 60 degrees. */
 static double field_of_view(const merlin_maps *maps)
 {
-    double half = tan((double)SURFACE_FOV / 2 * M_PI / 180) * maps->mask.width / maps->crop.side;
+    const double right = (double)maps->slant[0], up = (double)maps->slant[1];
+    double wide = maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV, forward = sqrt(1 - right * right - up * up);
+    double half = tan(wide / 2 * M_PI / 180) / forward * maps->mask.width / maps->crop.side;
     return 2 * atan(half) * 180 / M_PI;
+}
+
+/* From the space of the maps, whose camera looks at the object, to that of the lens. */
+static vec3 in_lens_space(const merlin_maps *maps, vec3 v)
+{
+    const camera_plane plane = camera_plane_of((camera_slant){maps->slant[0], maps->slant[1]});
+    return vec3_make(vec3_dot(v, plane.right), vec3_dot(v, plane.up), vec3_dot(v, vec3_cross(plane.right, plane.up)));
 }
 
 static void print_places(FILE *f, const void *context)
@@ -55,7 +64,7 @@ static void print_places(FILE *f, const void *context)
     fprintf(f, PLACES "%s and on, x y z from the camera: for merlin stereo --near --fov %.2f\n", relight_ending(job),
             field_of_view(job->maps));
     for (int i = 0; i < job->dome.count; i++) {
-        vec3 l = relight_dome_lamp(job, i).at;
+        vec3 l = in_lens_space(job->maps, relight_dome_lamp(job, i).at);
         fprintf(f, "%.6f %.6f %.6f\n", (double)l.x, (double)l.y, (double)l.z);
     }
 }

@@ -118,7 +118,7 @@ static status write_overview(const stereo_result *r, const char *path)
 
 static status write_mesh(const stereo_result *r, const char *path)
 {
-    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera};
+    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera, {0, 0}};
     return pst_mesh_write(path, &source);
 }
 

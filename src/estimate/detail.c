@@ -55,7 +55,7 @@ static status look(network *n, const detail_request *r, img *guide, img *mask, i
 {
     status s = input_make(r->photo, r->mask, r->side, guide, mask);
     if (s == OK) input_expose(guide, r->gain);
-    if (s == OK) s = network_normals(n, guide, mask, r->views, r->stop, normal);
+    if (s == OK) s = network_normals(n, guide, mask, r->how, r->views, r->stop, normal);
     if (s == OK) surface_encode_guide(guide, 1);
     return s;
 }
@@ -68,7 +68,7 @@ status detail_add(network *n, const detail_request *r, surface *maps)
     if (s == OK) s = surface_refine(maps, &guide, &mask, &larger);
     if (s == OK) s = detail_fuse(&fine, &mask, &larger.normal);
     if (s == OK) surface_tidy(&larger);
-    if (s == OK) s = fuse_depth(&larger.normal, &larger.mask, SURFACE_FOV, &larger.depth);
+    if (s == OK) s = fuse_depth(&larger.normal, &larger.mask, surface_lens(&larger), &larger.depth);
     img_free(&guide);
     img_free(&mask);
     img_free(&fine);

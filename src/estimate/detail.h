@@ -15,7 +15,8 @@
 typedef struct detail_request {
     const img *photo, *mask; /* the crop, as photographed: linear, and coverage */
     float gain;              /* from its values to radiance */
-    int side, views;         /* as for network_normals */
+    const sight *how;        /* as for network_normals, all of these */
+    int side, views;
     int (*stop)(void);
 } detail_request;
 

@@ -14,9 +14,8 @@
 
 /* merlin.h says what they mean; docs/evaluation.md how they were found. */
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
-static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 30, WIDE = 95;
+static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 5, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;
-static const double DIAGONAL_35MM = 43.2666, DEGREES = 180 / 3.14159265358979;
 enum { SMALL = 2500, FEW_SHADES = 48 };
 
 /* ---- the mask ---- */
@@ -135,21 +134,13 @@ static unsigned doubts_of_light(const light_cues *cues, const merlin_shot *shot,
     return doubts;
 }
 
-static float lens_degrees(const merlin_shot *shot, const merlin_maps *maps)
-{
-    if (!(shot->focal_35mm > 0)) return 0;
-    double pixel = DIAGONAL_35MM / hypot(maps->photo.width, maps->photo.height);
-    return (float)(2 * atan(maps->crop.side * pixel / 2 / (double)shot->focal_35mm) * DEGREES);
-}
-
 void doubts_find(const light_cues *cues, const merlin_shot *shot, merlin_maps *maps)
 {
     maps->light_elsewhere = light_cues_elsewhere(cues);
-    maps->lens_degrees = lens_degrees(shot, maps);
     maps->doubts = doubts_of_mask(maps) | doubts_of_pixels(maps) | doubts_of_light(cues, shot, maps);
     if (maps->burnt_out >= MUCH_BURNT_OUT) maps->doubts |= MERLIN_DOUBT_BURNT_OUT;
-    if (maps->lens_degrees > 0 && maps->lens_degrees < NARROW) maps->doubts |= MERLIN_DOUBT_LENS_NARROW;
-    if (maps->lens_degrees > WIDE) maps->doubts |= MERLIN_DOUBT_LENS_WIDE;
+    if (maps->fov > 0 && maps->fov < NARROW) maps->doubts |= MERLIN_DOUBT_LENS_NARROW;
+    if (maps->fov > WIDE) maps->doubts |= MERLIN_DOUBT_LENS_WIDE;
     maps->reduced = shot->reduced;
     maps->frames = shot->frames;
     if (shot->reduced > 1) maps->doubts |= MERLIN_DOUBT_REDUCED;
@@ -191,9 +182,9 @@ static int lens_words(const merlin_maps *maps, char *text, size_t size)
 {
     return snprintf(
         text, size,
-        "by its EXIF the square around the object is %.0f degrees wide, which the model takes for 60: normals "
-        "and depth are off toward the outline",
-        (double)maps->lens_degrees);
+        "the square around the object is %.1f degrees wide, which no lens of a photograph of an object is: depth is a "
+        "guess",
+        (double)maps->fov);
 }
 
 static int mask_words(const merlin_maps *maps, char *text, size_t size)

@@ -22,6 +22,7 @@ typedef struct work {
     img photo, mask;     /* the photograph has no pixels any more once the object is taken out of it */
     merlin_image *owned; /* the photograph, if it is ours to free; else NULL */
     crop_square crop;
+    sight how;
     img crop_photo, crop_mask;
     img low_photo, low_mask;
     network_estimation low;
@@ -73,6 +74,8 @@ static status check_params(const merlin_params *p)
     if (p->size < NETWORK_LEAST_SIZE || p->size > NETWORK_LARGEST_SIZE || p->size % MODEL_SIZE_MULTIPLE != 0)
         return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
                     MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, p->size);
+    if (p->fov != 0 && !(p->fov >= 1 && p->fov <= 150))
+        return fail(ERROR_USAGE, "a field of view must be from 1 to 150 degrees, not %g", (double)p->fov);
     if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
     return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
 }
@@ -157,6 +160,15 @@ static status check_seen(const img *photo, const img *mask)
     return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
 }
 
+/* By what the caller says of the photograph, else by its EXIF. */
+static void find_lens(work *w, merlin_maps *maps)
+{
+    w->how = sight_of(w->params->fov, w->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
+    maps->fov = w->how.lens.fov;
+    maps->slant[0] = w->how.lens.slant.right;
+    maps->slant[1] = w->how.lens.slant.up;
+}
+
 /* The picture and mask that the network sees. */
 static status make_input(work *w, merlin_maps *maps)
 {
@@ -196,6 +208,7 @@ static status add_detail(network *n, work *w, int side, float gain)
     detail_request r = {.photo = &w->crop_photo,
                         .mask = &w->crop_mask,
                         .gain = gain,
+                        .how = &w->how,
                         .side = side,
                         .views = detail_views(p->views),
                         .stop = p->stop};
@@ -284,7 +297,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     t->compile = network_take_compile_seconds(n);
     if (s == OK) s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
-    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, views, w->params->stop, &w->low);
+    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
     if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
@@ -312,6 +325,7 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
     maps->size = network_side(w.params->size);
     snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
     take_object(&w, object, maps);
+    find_lens(&w, maps);
     status s = check_params(w.params);
     if (s == OK) s = estimate(model, &w, maps);
     object->cues = w.cues;

@@ -195,12 +195,12 @@ static void solve(fusion *f)
     }
 }
 
-status fuse_depth(const img *normal, const img *mask, float fov, img *depth)
+status fuse_depth(const img *normal, const img *mask, camera_lens lens, img *depth)
 {
     fusion f;
     status s = fusion_new(mask, &f);
     if (s != OK) return s;
-    camera view = {.width = mask->width, .height = mask->height, .fov = fov};
+    const camera view = camera_through(lens, mask->width, mask->height);
     for (size_t i = 0; i < f.count; i++)
         f.u[i] = mask->data[i] >= 0.5f ? logf(depth->data[i]) : 0;
     joining all = {&f, normal, mask, &view};

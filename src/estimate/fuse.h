@@ -15,9 +15,10 @@
 #define MERLIN_ESTIMATE_FUSE_H
 
 #include "image/image.h"
+#include "optics/camera.h"
 
 /* normal: 3 channels, unit. mask: pixels from 0.5 on belong to the surface. depth: positive inside, changed there.
- * fov in degrees. */
-status fuse_depth(const img *normal, const img *mask, float fov, img *depth);
+ */
+status fuse_depth(const img *normal, const img *mask, camera_lens lens, img *depth);
 
 #endif

@@ -194,8 +194,8 @@ static status cut_out(const shadow_caster *c, img *out)
 status horizon_new(const shadow_caster *caster, horizon *out)
 {
     int side = caster->depth.width < MOST_SIDE ? caster->depth.width : MOST_SIDE;
-    making m = {caster, {.width = caster->depth.width, .height = caster->depth.height, .fov = caster->fov}, {0}, out};
-    *out = (horizon){.fov = caster->fov};
+    making m = {caster, camera_through(caster->lens, caster->depth.width, caster->depth.height), {0}, out};
+    *out = (horizon){.lens = caster->lens};
     status s = img_new(&out->cosine, side, side, HORIZON_AZIMUTHS);
     size_t count = (size_t)side * (size_t)side * HORIZON_AZIMUTHS;
     for (size_t i = 0; s == OK && i < count; i++)
@@ -221,7 +221,7 @@ void horizon_free(horizon *h)
 void horizon_at(const horizon *h, float x, float y, horizon_view *out)
 {
     int width = h->cosine.width, height = h->cosine.height;
-    camera eye = {.width = width, .height = height, .fov = h->fov};
+    const camera eye = camera_through(h->lens, width, height);
     frame f = frame_of(camera_ray(&eye, x * (float)width, y * (float)height));
     out->view = f.view;
     out->right = f.right;

@@ -24,7 +24,7 @@ enum { HORIZON_AZIMUTHS = 24 };
 typedef struct horizon {
     img cosine;       /* HORIZON_AZIMUTHS channels, cosines of the angle to the line of sight; -1: nothing hides */
     uint32_t *closed; /* as many: bit i: hidden where the cosine is (i + 1/2) / 16 - 1; all above the horizon are set */
-    float fov;        /* degrees */
+    camera_lens lens;
 } horizon;
 
 /* Of one place, between four of the horizon's. */

@@ -135,7 +135,7 @@ static bool is_burnt(const float color[3], float white)
 
 static status fill_planes(const surface *maps, const img *photo, const light_frame *frame, planes *p, light_cues *out)
 {
-    const camera view = {.width = p->width, .height = p->height, .fov = SURFACE_FOV};
+    const camera view = surface_camera(maps);
     for (size_t i = 0; i < img_value_count(&p->inside); i++) {
         const float *color = photo->data + 3 * i;
         p->inside.data[i] = maps->mask.data[i] >= 0.5f;
@@ -286,7 +286,7 @@ static status judge_shape(const surface *maps, const planes *p, light_cues *out)
     out->known = out->known && rim >= FEWEST && core > 0;
     out->outward = rim ? (float)(outward / (double)rim) : 0;
     out->inward = rim ? (float)inward / (float)rim : 0;
-    const camera view = {.width = p->width, .height = p->height, .fov = SURFACE_FOV};
+    const camera view = surface_camera(maps);
     float middle = quantile(core_depths, core, 0.5f), size = p->radius * camera_pixel_size(&view) * middle;
     out->rise = rim && size > 0 ? (quantile(depths, rim, 0.5f) - middle) / size : 0;
     free(depths);

@@ -56,8 +56,13 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     square.values[2] = (float)maps->crop.side;
     exr_attribute environment = {.name = "merlinEnvironment", .count = 27};
     memcpy(environment.values, maps->environment, sizeof maps->environment);
+    exr_attribute lens = {.name = "merlinLens", .count = 3}; /* field of view and slant; 0: not known */
+    lens.values[0] = maps->fov;
+    lens.values[1] = maps->slant[0];
+    lens.values[2] = maps->slant[1];
     exr_attribute attributes[] = {
         square,
+        lens,
         exr_number("merlinSize", (float)maps->size),
         exr_number("merlinGain", maps->gain),
         exr_number("merlinMaskFound", maps->mask_source == MERLIN_MASK_FOUND),
@@ -67,6 +72,17 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     };
     size_t count = sizeof attributes / sizeof attributes[0] - (maps->has_environment ? 0 : 1);
     return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
+}
+
+/* What cannot be is not known; files of older versions do not say. */
+static void read_lens(const exr_file *f, merlin_maps *maps)
+{
+    float lens[3];
+    if (!exr_get_numbers(f, "merlinLens", lens, 3)) return;
+    bool sound = lens[0] >= 1 && lens[0] <= 150 && lens[1] * lens[1] + lens[2] * lens[2] < 0.9f;
+    maps->fov = sound ? lens[0] : 0;
+    maps->slant[0] = sound ? lens[1] : 0;
+    maps->slant[1] = sound ? lens[2] : 0;
 }
 
 static status read_attributes(const exr_file *f, const char *path, merlin_maps *maps)
@@ -89,6 +105,7 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     maps->mask_source = found != 0 ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
     snprintf(maps->model, sizeof maps->model, "%s", model);
+    read_lens(f, maps);
     maps->has_environment = exr_get_numbers(f, "merlinEnvironment", &maps->environment[0][0], 27);
     return OK;
 }

@@ -26,8 +26,8 @@ struct network {
 };
 
 /* What each program is made for; the rest of the whole network is left out of it. */
-static const char *const single_outputs[] = {"albedo",   "normal",           "roughness", "depth",
-                                             "indirect", "environment_code", NULL};
+static const char *const single_outputs[] = {"albedo",           "normal", "roughness",  "depth", "indirect",
+                                             "environment_code", "lights", "visibility", NULL};
 static const char *const normal_outputs[] = {"normal", NULL};
 
 struct network_look {
@@ -167,13 +167,21 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     return OK;
 }
 
+/* A photograph as all views show it. */
+typedef struct subject {
+    const img *photo, *mask;
+    const sight *how;
+} subject;
+
 /* The network on a photograph by its flash, in an orientation. */
-static status run_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs, compiled *c)
+static status run_view(network *n, const subject *at, int view, const char *const *outputs, compiled *c)
 {
+    const img *photo = at->photo, *mask = at->mask;
     status s = compile(n, MODEL_MAPS, outputs, photo->width, c);
     if (s != OK) return s;
     view_put(c->program, 0, view, photo, mask);
     view_put_light(c->program, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
+    if (n->config.lighting == MODEL_LIGHT_ANY) view_put_sight(c->program, 0, view, at->how, photo->width);
     return nn_forward(c->program);
 }
 
@@ -198,46 +206,56 @@ static void take_environment(nn_program *p, float sh[9][3])
 }
 
 /* What the network says of the photograph in an orientation, as it lies there. */
-static status estimate_view(network *n, const img *photo, const img *mask, int view, const char *const *outputs,
+static status estimate_view(network *n, const subject *at, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    status s = run_view(n, photo, mask, view, outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, photo->width, &out->maps);
+    status s = run_view(n, at, view, outputs, &n->maps);
+    if (s == OK) s = take_maps(n->maps.program, at->photo->width, &out->maps);
     if (s == OK) take_environment(n->maps.program, out->environment);
-    return s;
+    const float *lights = nn_output_data(n->maps.program, "lights");
+    if (s != OK || !lights) return s;
+    memcpy(out->lights, lights, sizeof out->lights);
+    return take(n->maps.program, "visibility", at->photo->width, 1, 1, 0, &out->visibility);
 }
 
-static status estimate_single(network *n, const img *photo, const img *mask, network_estimation *out)
+static status estimate_single(network *n, const subject *at, network_estimation *out)
 {
-    int size = photo->width;
-    status s = estimate_view(n, photo, mask, 0, single_outputs, out);
+    int size = at->photo->width;
+    status s = estimate_view(n, at, 0, single_outputs, out);
     if (s != OK) return s;
     if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
     return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
 }
 
-static status estimate_views(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
-                             network_estimation *out)
+static status estimate_views(network *n, const subject *at, int views, int (*stop)(void), network_estimation *out)
 {
-    if (views == 1) return estimate_single(n, photo, mask, out);
-    status s = view_mean_new(photo->width, out);
+    if (views == 1) return estimate_single(n, at, out);
+    status s = view_mean_new(&n->config, at->photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};
         if (stop && stop()) s = fail(ERROR_STOPPED, "stopped");
-        if (s == OK) s = estimate_view(n, photo, mask, view, view_outputs, &turned);
+        if (s == OK) s = estimate_view(n, at, view, view_outputs, &turned);
         if (s == OK) view_mean_add(out, &turned, view, 1.0f / (float)views);
         network_estimation_free(&turned);
     }
     return s;
 }
 
-static status finish(const img *mask, surface *maps)
+static camera_lens lens_of(const sight *how)
 {
+    return how ? how->lens : (camera_lens){.fov = 0};
+}
+
+static status finish(const network *n, const subject *at, surface *maps)
+{
+    maps->lens = lens_of(at->how);
     img_free(&maps->mask);
-    status s = img_copy(&maps->mask, mask);
+    status s = img_copy(&maps->mask, at->mask);
+    if (s == OK) sight_take_relief(maps->lens, at->mask, &maps->depth);
+    if (s == OK && n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(maps->lens, at->mask, &maps->normal);
     if (s == OK) s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);
-    if (s == OK) s = fuse_depth(&maps->normal, &maps->mask, SURFACE_FOV, &maps->depth);
+    if (s == OK) s = fuse_depth(&maps->normal, &maps->mask, surface_lens(maps), &maps->depth);
     return s;
 }
 
@@ -247,39 +265,42 @@ static status check_views(int views)
     return fail(ERROR_USAGE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
 }
 
-status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
+status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out)
 {
+    const subject at = {photo, mask, how};
     *out = (network_estimation){0};
     status s = check_views(views);
     pthread_mutex_lock(&n->lock);
-    if (s == OK) s = estimate_views(n, photo, mask, views, stop, out);
+    if (s == OK) s = estimate_views(n, &at, views, stop, out);
     pthread_mutex_unlock(&n->lock);
-    if (s == OK) s = finish(mask, &out->maps);
+    if (s == OK) s = finish(n, &at, &out->maps);
     if (s != OK) network_estimation_free(out);
     return s;
 }
 
-static status add_normals(network *n, const img *photo, const img *mask, int view, float weight, img *mean)
+static status add_normals(network *n, const subject *at, int view, float weight, img *mean)
 {
     img turned = {0};
-    status s = run_view(n, photo, mask, view, normal_outputs, &n->normals);
-    if (s == OK) s = take(n->normals.program, "normal", photo->width, 3, 1, 0, &turned);
+    status s = run_view(n, at, view, normal_outputs, &n->normals);
+    if (s == OK) s = take(n->normals.program, "normal", at->photo->width, 3, 1, 0, &turned);
     if (s == OK) view_add_normals(mean, &turned, view, weight);
     img_free(&turned);
     return s;
 }
 
-status network_normals(network *n, const img *photo, const img *mask, int views, int (*stop)(void), img *normal)
+status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
+                       img *normal)
 {
+    const subject at = {photo, mask, how};
     *normal = (img){0};
     status s = check_views(views);
     if (s == OK) s = img_new(normal, photo->width, photo->height, 3);
     pthread_mutex_lock(&n->lock);
     for (int view = 0; view < views && s == OK; view++)
-        s = stop && stop() ? fail(ERROR_STOPPED, "stopped")
-                           : add_normals(n, photo, mask, view, 1.0f / (float)views, normal);
+        s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : add_normals(n, &at, view, 1.0f / (float)views, normal);
     pthread_mutex_unlock(&n->lock);
+    if (s == OK && n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(lens_of(how), mask, normal);
     if (s == OK) s = smooth_inside(normal, mask);
     if (s == OK)
         surface_tidy_normals(mask, normal);
@@ -292,30 +313,32 @@ void network_estimation_free(network_estimation *e)
 {
     surface_free(&e->maps);
     img_free(&e->indirect);
+    img_free(&e->visibility);
 }
 
-static status look_from(network *n, const img *photo, const img *mask, int view, view_features *out)
+static status look_from(network *n, const subject *at, int view, view_features *out)
 {
-    status s = run_view(n, photo, mask, view, model_features, &n->look);
-    return s == OK ? view_features_take(n->look.program, &n->config, photo->width, out) : s;
+    status s = run_view(n, at, view, model_features, &n->look);
+    return s == OK ? view_features_take(n->look.program, &n->config, at->photo->width, out) : s;
 }
 
-status network_look_new(network *n, const img *photo, const img *mask, network_look **out)
+status network_look_new(network *n, const img *photo, const img *mask, const sight *how, network_look **out)
 {
+    const subject at = {photo, mask, how};
     *out = NULL;
     if (n->config.relight != MODEL_RELIGHT_NETWORK)
         return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
-    network_look *look = calloc(1, sizeof *look);
-    if (!look) return fail(ERROR_MEMORY, "no memory for what the network sees");
-    status s = img_copy(&look->mask, mask);
+    network_look *seen = calloc(1, sizeof *seen);
+    if (!seen) return fail(ERROR_MEMORY, "no memory for what the network sees");
+    status s = img_copy(&seen->mask, mask);
     pthread_mutex_lock(&n->lock);
     for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
-        s = look_from(n, photo, mask, view, &look->views[view]);
+        s = look_from(n, &at, view, &seen->views[view]);
     pthread_mutex_unlock(&n->lock);
     if (s != OK)
-        network_look_free(look);
+        network_look_free(seen);
     else
-        *out = look;
+        *out = seen;
     return s;
 }
 

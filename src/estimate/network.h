@@ -2,13 +2,14 @@
  *
  *     network *n;
  *     status s = network_open("merlin-point.safetensors", &n);
- *     s = network_estimate(n, &photo, &mask, NETWORK_VIEWS, NULL, &estimation);
+ *     s = network_estimate(n, &photo, &mask, &how, NETWORK_VIEWS, NULL, &estimation);
  *     network_close(n);
  *
  * Images are square, a multiple of 32 pixels a side, linear. Calls from several threads take turns. */
 #ifndef MERLIN_ESTIMATE_NETWORK_H
 #define MERLIN_ESTIMATE_NETWORK_H
 
+#include "estimate/sight.h"
 #include "estimate/surface.h"
 #include "image/image.h"
 #include "model/model.h"
@@ -46,21 +47,25 @@ typedef struct network_estimation {
     surface maps;
     img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
                      more views has highlights of its own: empty here, to be asked of network_indirect */
-    float environment[9][3]; /* the photograph's (optics/sh.h), by models of setting B; zero for others */
+    float environment[9][3];    /* the photograph's (optics/sh.h), by models of setting B; zero for others */
+    float lights[MODEL_LIGHTS]; /* what lit the photograph, by models of any light (model.h); zero for others */
+    img visibility;             /* by these: of the strongest lamp, 1 channel in [0, 1]; else empty */
 } network_estimation;
 
-/* photo: 3 channels, radiance (exposure.h), zero outside the mask, which is 0 or 1. The mean of what the network says
- * of its first `views` orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
-status network_estimate(network *n, const img *photo, const img *mask, int views, int (*stop)(void),
+/* how: of the square; the maps are for its lens, that of SURFACE_FOV where it is not known. photo: 3 channels, radiance
+ * (exposure.h), zero outside the mask, which is 0 or 1. The mean of what the network says of its first `views`
+ * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
+status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
 void network_estimation_free(network_estimation *e);
 /* The normals alone, as of network_estimate: for what is fine in a larger picture. */
-status network_normals(network *n, const img *photo, const img *mask, int views, int (*stop)(void), img *normal);
+status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
+                       img *normal);
 
 /* What the relighting decoder takes of a photograph, whatever the light; as photo and mask of network_estimate.
  * ERROR_USAGE if the model has no such decoder. */
 typedef struct network_look network_look;
-status network_look_new(network *n, const img *photo, const img *mask, network_look **out);
+status network_look_new(network *n, const img *photo, const img *mask, const sight *how, network_look **out);
 void network_look_free(network_look *look);
 
 /* That photograph under other light, by the relighting decoder of the same network, the mean of NETWORK_VIEWS

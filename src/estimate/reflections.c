@@ -246,7 +246,7 @@ static void add_block(void *context, size_t i)
 
 void surface_add_reflections(const surface *s, const env_map *env, const horizon *h, img *image)
 {
-    job j = {.s = s, .eye = {.width = s->mask.width, .height = s->mask.height, .fov = SURFACE_FOV}, .image = image};
+    job j = {.s = s, .eye = surface_camera(s), .image = image};
     lobe_over(env, h, &j.lobe);
     j.largest = h ? HORIZONS * j.eye.width / h->cosine.width : LARGEST;
     if (j.largest > LARGEST) j.largest = LARGEST;

@@ -60,7 +60,7 @@ static void add_rows(void *context, size_t begin, size_t end)
 
 static void add(job *j)
 {
-    j->eye = (camera){.width = j->s->mask.width, .height = j->s->mask.height, .fov = SURFACE_FOV};
+    j->eye = surface_camera(j->s);
     parallel_blocks((size_t)j->s->mask.height, add_rows, j);
 }
 

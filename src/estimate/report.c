@@ -95,6 +95,16 @@ static void put_environment(cJSON *root, const merlin_maps *maps)
     }
 }
 
+/* The lens of the crop, and where the lens's axis is. */
+static void put_lens(cJSON *root, const merlin_maps *maps)
+{
+    cJSON_AddStringToObject(root, "lens", maps->fov > 0 ? "known" : "assumed");
+    cJSON_AddNumberToObject(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV);
+    cJSON *slant = cJSON_AddArrayToObject(root, "slant");
+    for (int i = 0; i < 2; i++)
+        cJSON_AddItemToArray(slant, cJSON_CreateNumber((double)maps->slant[i]));
+}
+
 cJSON *report_begin(const warnings *doubts)
 {
     cJSON *root = cJSON_CreateObject();
@@ -122,7 +132,7 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
     cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
     cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
-    if (maps->lens_degrees > 0) cJSON_AddNumberToObject(root, "lens_degrees", maps->lens_degrees);
+    put_lens(root, maps);
     put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);

@@ -16,12 +16,12 @@ static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
 /* Slope of a surface, in pixels a pixel. */
 static const float STEEPEST = 16;
 
-status shadow_caster_new(const img *depth, const img *normal, const img *mask, float fov, shadow_caster *out)
+status shadow_caster_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_caster *out)
 {
-    *out = (shadow_caster){.fov = fov, .nearest = INFINITY};
+    *out = (shadow_caster){.lens = lens, .nearest = INFINITY};
     status s = img_copy(&out->mask, mask);
     if (s == OK) s = img_copy(&out->depth, depth);
-    if (s == OK) s = fuse_depth(normal, mask, fov, &out->depth);
+    if (s == OK) s = fuse_depth(normal, mask, lens, &out->depth);
     if (s == OK) s = fill_outside(&out->depth, mask);
     if (s != OK) {
         shadow_caster_free(out);
@@ -123,7 +123,7 @@ static bool march_begin(const shadow_caster *c, float x, float y, const lamp *l,
 {
     corners around = corners_of(&c->depth, x, y);
     float depth = value_at(&c->depth, &around, 0);
-    camera view = {.width = c->depth.width, .height = c->depth.height, .fov = c->fov};
+    const camera view = camera_through(c->lens, c->depth.width, c->depth.height);
     vec3 p = camera_point(&view, x + 0.5f, y + 0.5f, depth), to_light = way_to(c, p, l);
     float part = part_with_occluders(c, p, to_light);
     if (!(part > 0)) return false;

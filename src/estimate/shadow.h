@@ -19,6 +19,7 @@
 
 #include "base/vec.h"
 #include "image/image.h"
+#include "optics/camera.h"
 #include "optics/light.h"
 
 /* Of what is seen, in scene units, of which an object is about one wide. Found by trying on samples with path-traced
@@ -26,14 +27,14 @@
 #define SHADOW_THICKNESS 0.15f
 
 typedef struct shadow_caster {
-    img depth;               /* 1 channel, fused; continued outside the mask */
-    img mask;                /* 1 channel */
-    float fov;               /* degrees */
+    img depth; /* 1 channel, fused; continued outside the mask */
+    img mask;  /* 1 channel */
+    camera_lens lens;
     float nearest, farthest; /* depths inside the mask */
 } shadow_caster;
 
 /* depth 1 channel, normal 3, mask 1, all of one size; 0.5 and more of the mask is surface. Everything is copied. */
-status shadow_caster_new(const img *depth, const img *normal, const img *mask, float fov, shadow_caster *out);
+status shadow_caster_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_caster *out);
 void shadow_caster_free(shadow_caster *caster);
 
 /* How much of a point light at `light` (camera space) each pixel sees: 1 channel in [0, 1], made here, width × height

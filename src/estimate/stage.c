@@ -36,6 +36,11 @@ status maps_check(const merlin_maps *maps)
     return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");
 }
 
+static camera_lens lens_of(const merlin_maps *maps)
+{
+    return (camera_lens){maps->fov, {maps->slant[0], maps->slant[1]}};
+}
+
 static status crop_surface(const merlin_maps *maps, surface *out)
 {
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
@@ -46,6 +51,7 @@ static status crop_surface(const merlin_maps *maps, surface *out)
         img whole = img_of(from[i]);
         s = crop_take(&whole, crop_of(maps), &mask, to[i]);
     }
+    out->lens = lens_of(maps);
     if (s == OK) surface_tidy(out); /* anybody may have edited the maps */
     return s;
 }
@@ -82,6 +88,7 @@ static status take_surface(const merlin_maps *maps, const img *mask, int side, b
 {
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth};
     img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth};
+    out->lens = lens_of(maps);
     status s = img_resize(mask, side, side, &out->mask);
     if (s == OK && hard) harden_mask(NULL, &out->mask);
     if (s == OK && side > mask->width) mask_clean(&out->mask);
@@ -136,7 +143,7 @@ static status caster_of(const surface *low, shadow_caster *out)
     bool large = low->mask.width > CASTER_SIDE;
     status s = large ? surface_at(low, CASTER_SIDE, &less) : OK;
     const surface *from = large ? &less : low;
-    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, SURFACE_FOV, out);
+    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, surface_lens(from), out);
     surface_free(&less);
     return s;
 }
@@ -167,7 +174,7 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
     if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
     if (result == OK && s->how == MERLIN_BY_NETWORK)
-        result = network_look_new(n, &s->low_photo, &s->low.mask, &s->look);
+        result = network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, &s->look);
     if (result == OK && s->how == MERLIN_BY_BRDF) result = caster_of(&s->low, &s->caster);
     return result;
 }

@@ -163,7 +163,7 @@ status surface_resize_indirect(const img *from, const img *mask, const img *cove
 
 status surface_resize(const surface *from, const img *mask, surface *out)
 {
-    *out = (surface){0};
+    *out = (surface){.lens = from->lens};
     status s = img_resize_covered(mask, mask, &out->mask);
     if (s == OK) s = surface_resize_image(&from->albedo, &from->mask, mask, &out->albedo);
     if (s == OK) s = surface_resize_image(&from->normal, &from->mask, mask, &out->normal);
@@ -213,7 +213,7 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
 {
     const float albedo_epsilon = 1e-4f, roughness_epsilon = 1e-2f;
     if (guide->width < from->mask.width) return surface_resize(from, mask, out);
-    *out = (surface){0};
+    *out = (surface){.lens = from->lens};
     refinement r = {&from->mask, guide, mask};
     status s = img_resize_covered(mask, mask, &out->mask);
     if (s == OK) s = refine(&r, &from->albedo, albedo_epsilon, &out->albedo);
@@ -229,15 +229,16 @@ status surface_refine(const surface *from, const img *guide, const img *mask, su
 
 typedef struct shading {
     const float *albedo, *normal, *roughness, *depth, *mask;
-    vec3 light, first; /* first: of the row's first pixel, at depth 1 */
-    float step;        /* from there to the next */
-    float afar;        /* 1: the light stands so from every pixel's point; 0: from the camera */
+    vec3 light;
+    camera_plane plane;
+    float first, step, up; /* the row's first pixel in the plane, from there to the next, and the row */
+    float afar;            /* 1: the light stands so from every pixel's point; 0: from the camera */
 } shading;
 
 /* GCC makes vectors of a loop only where nothing declared in it has its address taken: its body is a function. */
 ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, bool matte, float *out)
 {
-    const vec3 ray = vec3_make(s->first.x + (float)x * s->step, s->first.y, s->first.z);
+    const vec3 ray = camera_on_plane(&s->plane, s->first + (float)x * s->step, s->up);
     shade_input in = {
         .albedo = vec3_of(s->albedo + 3 * i),
         .roughness = s->roughness[i],
@@ -264,20 +265,23 @@ static void shade_rows(void *context, size_t begin, size_t end)
 {
     const lighting *job = context;
     const surface *s = job->s;
-    const camera view = {.width = s->mask.width, .height = s->mask.height, .fov = SURFACE_FOV};
+    const camera view = surface_camera(s);
+    const float pixel = camera_pixel_size(&view);
     shading row = {s->albedo.data,
                    s->normal.data,
                    s->roughness.data,
                    s->depth.data,
                    s->mask.data,
                    job->light,
-                   .step = camera_pixel_size(&view),
+                   camera_plane_of(view.slant),
+                   .first = (0.5f - (float)view.width / 2) * pixel,
+                   .step = pixel,
                    .afar = job->distant ? 1 : 0};
     float *out = job->out->data;
     for (size_t y = begin; y < end; y++) {
         const img_span span = img_row_span(&s->mask, (int)y);
         const size_t at = y * (size_t)s->mask.width;
-        row.first = camera_point(&view, 0.5f, (float)y + 0.5f, 1);
+        row.up = ((float)view.height / 2 - (float)y - 0.5f) * pixel;
         const shading of = row;
         if (s->matte) {
 #pragma omp simd

@@ -6,8 +6,8 @@
  *     surface_shade(&full, light, &direct);        under a point light
  *     surface_free(&low);
  *
- * The frame is the camera of docs/conventions.md: 60 degrees wide, the optical axis through its centre. Maps are zero
- * outside the mask, normals unit with z > 0, everything finite; albedo and roughness in [0, 1]. */
+ * The frame is a camera's of docs/conventions.md that looks at its centre: 60 degrees wide where nothing is known. Maps
+ * are zero outside the mask, normals unit with z > 0, everything finite; albedo and roughness in [0, 1]. */
 #ifndef MERLIN_ESTIMATE_SURFACE_H
 #define MERLIN_ESTIMATE_SURFACE_H
 
@@ -15,19 +15,32 @@
 
 #include "base/vec.h"
 #include "image/image.h"
+#include "optics/camera.h"
 #include "optics/light.h"
 
-/* Degrees. */
+/* Degrees; what a surface is seen by whose lens is not known. */
 #define SURFACE_FOV 60.0f
 
 typedef struct surface {
-    img albedo;    /* 3 */
-    img normal;    /* 3 */
-    img roughness; /* 1 */
-    img depth;     /* 1 */
-    img mask;      /* 1, coverage */
-    bool matte;    /* lamps light its diffuse part alone */
+    img albedo;       /* 3 */
+    img normal;       /* 3 */
+    img roughness;    /* 1 */
+    img depth;        /* 1 */
+    img mask;         /* 1, coverage */
+    bool matte;       /* lamps light its diffuse part alone */
+    camera_lens lens; /* fov 0: SURFACE_FOV, no slant */
 } surface;
+
+static inline camera_lens surface_lens(const surface *s)
+{
+    return s->lens.fov > 0 ? s->lens : (camera_lens){.fov = SURFACE_FOV};
+}
+
+/* The camera that sees the maps. */
+static inline camera surface_camera(const surface *s)
+{
+    return camera_through(surface_lens(s), s->mask.width, s->mask.height);
+}
 
 /* Zero maps of width × height. */
 status surface_new(int width, int height, surface *out);

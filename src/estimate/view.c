@@ -6,12 +6,14 @@
 #include "base/parallel.h"
 #include "optics/orientation.h"
 
-const char *const view_outputs[] = {"albedo", "normal", "roughness", "depth", "environment_code", NULL};
+const char *const view_outputs[] = {"albedo",           "normal", "roughness",  "depth",
+                                    "environment_code", "lights", "visibility", NULL};
 
-status view_mean_new(int size, network_estimation *mean)
+status view_mean_new(const model_config *config, int size, network_estimation *mean)
 {
     *mean = (network_estimation){0};
-    return surface_new(size, size, &mean->maps);
+    status s = surface_new(size, size, &mean->maps);
+    return s == OK && config->lighting == MODEL_LIGHT_ANY ? img_new(&mean->visibility, size, size, 1) : s;
 }
 
 static size_t pixel_count(const img *image)
@@ -54,6 +56,21 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
     if (light->sh) memcpy(sh, light->sh, sizeof sh);
     orientation_turn_sh(view, sh);
     model_encode_sh((const float(*)[3])sh, code + 3);
+}
+
+void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size)
+{
+    camera_lens lens = how && how->lens.fov > 0 ? how->lens : (camera_lens){.fov = SURFACE_FOV};
+    float slant[3] = {lens.slant.right, lens.slant.up, 0};
+    orientation_turn(view, slant);
+    lens.slant = (camera_slant){slant[0], slant[1]};
+    const camera seen = camera_through(lens, size, size);
+    const bool known = how && how->lens.fov > 0;
+    float *told = nn_input_data(p, "sight"), *values = nn_input_data(p, "lens");
+    model_sight(known ? &seen : NULL, how && how->flash, size, told + slot * MODEL_SIGHT * (size_t)size * (size_t)size);
+    values[3 * slot] = camera_tangent(lens.fov);
+    values[3 * slot + 1] = lens.slant.right;
+    values[3 * slot + 2] = lens.slant.up;
 }
 
 status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out)
@@ -128,6 +145,21 @@ void view_add_normals(img *mean, const img *turned, int view, float weight)
     parallel_blocks(pixel_count(mean), add_normals, &(addition){mean, turned, view, weight});
 }
 
+/* What lit a photograph, by a model of any light. */
+static void add_lights(network_estimation *mean, const network_estimation *turned, int view, float weight)
+{
+    float lights[MODEL_LIGHTS], sh[9][3];
+    if (!mean->visibility.data) return;
+    memcpy(lights, turned->lights, sizeof lights);
+    orientation_turn(orientation_inverse(view), lights + MODEL_LIGHTS_LAMP);
+    model_decode_sh(lights + MODEL_LIGHTS_REST, sh);
+    orientation_turn_sh(orientation_inverse(view), sh);
+    model_encode_sh((const float(*)[3])sh, lights + MODEL_LIGHTS_REST);
+    for (int i = 0; i < MODEL_LIGHTS; i++)
+        mean->lights[i] += weight * lights[i];
+    view_add(&mean->visibility, &turned->visibility, view, weight);
+}
+
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight)
 {
     float sh[9][3];
@@ -135,6 +167,7 @@ void view_mean_add(network_estimation *mean, const network_estimation *turned, i
     orientation_turn_sh(orientation_inverse(view), sh);
     for (int i = 0; i < 27; i++)
         mean->environment[i / 3][i % 3] += weight * sh[i / 3][i % 3];
+    add_lights(mean, turned, view, weight);
     view_add(&mean->maps.albedo, &turned->maps.albedo, view, weight);
     view_add_normals(&mean->maps.normal, &turned->maps.normal, view, weight);
     view_add(&mean->maps.roughness, &turned->maps.roughness, view, weight);

@@ -1,6 +1,6 @@
 /* A photograph seen by the network in several orientations, and the mean of what it says of them.
  *
- *     view_mean_new(size, &mean);
+ *     view_mean_new(config, size, &mean);
  *     for (int view = 0; view < views; view++) {
  *         view_put(program, 0, view, &photo, &mask);
  *         ... nn_forward, and an estimation out of its outputs ...
@@ -20,6 +20,9 @@ void view_put(nn_program *p, size_t slot, int view, const img *photo, const img 
 void view_put_mask(nn_program *p, size_t slot, int view, const img *mask);
 void view_put_light(nn_program *p, const model_config *config, size_t slot, int view, const illumination *light);
 
+/* What a model of any light is told of how the photograph was taken; how may be NULL. */
+void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size);
+
 /* What the relighting decoder takes of a view (model_features), whatever the light: from picture 0 of a program of
  * MODEL_MAPS that has run, into picture `slot` of one of MODEL_RELIGHT, before every run. What out held is freed.
  * ERROR_MEMORY. */
@@ -38,7 +41,7 @@ void view_add_normals(img *mean, const img *turned, int view, float weight);
 /* What a program that looks at one of several views is made for (nn_options): not bounces, which are the mean's own. */
 extern const char *const view_outputs[];
 /* The same for all of these. Zero maps of size × size: */
-status view_mean_new(int size, network_estimation *mean);
+status view_mean_new(const model_config *config, int size, network_estimation *mean);
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight);
 
 #endif

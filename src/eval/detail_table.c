@@ -59,7 +59,7 @@ static status see(network *n, const subject *on, int size, int views, surface *o
     img picture = {0}, mask = {0};
     network_estimation e = {0};
     status s = input_make(&on->photo, &on->mask, size, &picture, &mask);
-    if (s == OK) s = network_estimate(n, &picture, &mask, views, NULL, &e);
+    if (s == OK) s = network_estimate(n, &picture, &mask, NULL, views, NULL, &e);
     if (s == OK) {
         *out = e.maps;
         e.maps = (surface){0};

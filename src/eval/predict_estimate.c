@@ -30,7 +30,7 @@ static status look(eval_model *m, const img *image, const img *mask, int view, v
 static status mean_of_views(eval_model *m, const img *image, const img *mask, view_features *seen,
                             network_estimation *mean)
 {
-    status s = view_mean_new(m->size, mean);
+    status s = view_mean_new(&m->config, m->size, mean);
     for (int view = 0; view < m->views && s == OK; view++) {
         network_estimation turned = {0};
         s = look(m, image, mask, view, &seen[view], &turned);

@@ -121,7 +121,7 @@ static status caster_of(const eval_maps *maps, const img *mask, float fov, shado
     if (s == OK) s = img_copy(&normal, &maps->normal);
     if (s == OK) s = smooth_inside(&depth, mask);
     if (s == OK) s = smooth_inside(&normal, mask);
-    if (s == OK) s = shadow_caster_new(&depth, &normal, mask, fov, out);
+    if (s == OK) s = shadow_caster_new(&depth, &normal, mask, (camera_lens){.fov = fov}, out);
     img_free(&depth);
     img_free(&normal);
     return s;

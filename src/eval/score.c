@@ -160,7 +160,8 @@ static status score_shadows(eval_scorer *e, eval_subject *on, int first, const e
     const eval_maps *truth = &on->truth;
     shadow_caster caster;
     status s = eval_relight_shadows(e->model, &on->mask, on->sample->fov, r->lights, &e->prediction);
-    if (s == OK) s = shadow_caster_new(&truth->depth, &truth->normal, &on->mask, on->sample->fov, &caster);
+    if (s == OK)
+        s = shadow_caster_new(&truth->depth, &truth->normal, &on->mask, (camera_lens){.fov = on->sample->fov}, &caster);
     if (s != OK) return s;
     for (int i = 0; s == OK && i < r->count; i++) {
         const img *target = &r->targets[i];

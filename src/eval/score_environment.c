@@ -97,7 +97,7 @@ static status light_with_shadows(const surface *s, const env_map *env, img *lit)
 {
     shadow_caster caster;
     horizon h = {0};
-    status st = shadow_caster_new(&s->depth, &s->normal, &s->mask, SURFACE_FOV, &caster);
+    status st = shadow_caster_new(&s->depth, &s->normal, &s->mask, surface_lens(s), &caster);
     if (st != OK) return st;
     st = horizon_new(&caster, &h);
     if (st == OK) st = surface_add_shadowed_environment(s, s, &h, env, lit);

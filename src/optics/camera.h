@@ -23,11 +23,22 @@ typedef struct camera_slant {
     real right, up;
 } camera_slant;
 
-typedef struct camera {
-    int width, height;
+/* What a picture was taken with, whatever its size. */
+typedef struct camera_lens {
     real fov; /* horizontal, degrees, by the size of a pixel in the middle */
     camera_slant slant;
+} camera_lens;
+
+typedef struct camera {
+    int width, height;
+    real fov; /* as of camera_lens, both */
+    camera_slant slant;
 } camera;
+
+static inline camera camera_through(camera_lens lens, int width, int height)
+{
+    return (camera){width, height, lens.fov, lens.slant};
+}
 
 /* The angles by which the middle of the picture lies beside the lens's axis, in degrees, together less than 90. */
 static inline camera_slant camera_tilt(real right, real up)

@@ -17,16 +17,24 @@ static float pixel_size(const pst_mesh_source *from, float depth)
     return from->camera.perspective ? fabsf(depth) / from->camera.focal : 1;
 }
 
+/* So many pixels right of the principal point, and above it. */
+static vec3 point_at(const pst_mesh_source *from, float right, float up, float depth)
+{
+    const float size = pixel_size(from, depth);
+    if (from->slant.right == 0 && from->slant.up == 0) return vec3_make(right * size, up * size, -depth);
+    const camera_plane plane = camera_plane_of(from->slant);
+    return vec3_scale(camera_on_plane(&plane, right / from->camera.focal, up / from->camera.focal), depth);
+}
+
 static void place(const pst_mesh_source *from, size_t pixel, float *position, float *texture)
 {
     int width = from->depth->width, height = from->depth->height;
     size_t column = pixel % (size_t)width, row = pixel / (size_t)width;
     float x = (float)column + 0.5f, y = (float)row + 0.5f;
-    float depth = from->depth->data[pixel], size = pixel_size(from, depth);
     const pst_camera *c = &from->camera;
-    position[0] = (x - (c->perspective ? c->center_x : (float)width / 2)) * size;
-    position[1] = ((c->perspective ? c->center_y : (float)height / 2) - y) * size;
-    position[2] = -depth;
+    const float right = x - (c->perspective ? c->center_x : (float)width / 2),
+                up = (c->perspective ? c->center_y : (float)height / 2) - y;
+    vec3_put(point_at(from, right, up, from->depth->data[pixel]), position);
     texture[0] = x / (float)width;
     texture[1] = y / (float)height;
 }

@@ -49,7 +49,8 @@ static void put_sphere(surface *s, vec3 centre, float radius, bool inside, float
 static void horizon_of(const surface *s, horizon *out)
 {
     shadow_caster caster;
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, SURFACE_FOV, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = SURFACE_FOV}, &caster),
+                     OK);
     assert_int_equal(horizon_new(&caster, out), OK);
     shadow_caster_free(&caster);
 }

@@ -80,20 +80,18 @@ static void what_the_pixels_show_is_told(void **state)
     merlin_maps_free(&maps);
 }
 
-/* 26 mm show 79.5 degrees of a diagonal, and 67.4 of the longer side of 120 x 90; 135 mm show 14.6 of it. */
 static void what_exif_says_is_told(void **state)
 {
     (void)state;
     merlin_maps maps;
     make(&maps, 20, 10, 100, 80);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_NONE, .focal_35mm = 26}),
-                     MERLIN_DOUBT_NO_FLASH);
-    assert_float_equal(maps.lens_degrees, 67.3, 0.2);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED, .focal_35mm = 135}),
-                     MERLIN_DOUBT_LENS_NARROW);
-    assert_float_equal(maps.lens_degrees, 14.6, 0.1);
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED, .focal_35mm = 12}),
-                     MERLIN_DOUBT_LENS_WIDE);
+    maps.fov = 67;
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_NONE}), MERLIN_DOUBT_NO_FLASH);
+    maps.fov = 3;
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED}), MERLIN_DOUBT_LENS_NARROW);
+    maps.fov = 100;
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_FIRED}), MERLIN_DOUBT_LENS_WIDE);
+    maps.fov = 0;
     assert_int_equal(doubts_of(&maps, &(merlin_shot){.reduced = 2}), MERLIN_DOUBT_REDUCED);
     assert_int_equal(doubts_of(&maps, &(merlin_shot){.reduced = 1, .frames = 3}), MERLIN_DOUBT_FIRST_FRAME);
     merlin_maps_free(&maps);

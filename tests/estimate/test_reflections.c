@@ -116,7 +116,7 @@ static void interpolated_reflections_know_the_horizon(void **state)
         s.depth.data[i] = i % SIZE > SIZE / 2 ? 0.7f : 1;
     shadow_caster caster;
     horizon h;
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, SURFACE_FOV, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = SURFACE_FOV}, &caster), OK);
     assert_int_equal(horizon_new(&caster, &h), OK);
     difference d = error_of(&s, &h);
     assert_true(d.rms > 0 && d.rms < 0.02);

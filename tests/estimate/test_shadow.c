@@ -73,7 +73,7 @@ static void put_plane(scene *s, vec3 n, float offset)
 static void cast(const scene *s, vec3 light, int side, img *seen)
 {
     shadow_caster caster;
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, view.fov, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &caster), OK);
     assert_int_equal(shadow_cast(&caster, light, side, side, seen), OK);
     shadow_caster_free(&caster);
 }
@@ -334,7 +334,7 @@ static void fusion_takes_noise_out_of_a_slope_and_leaves_a_jump(void **state)
         noisy.depth.data[i] = smooth.depth.data[i] + pixel * rng_range(&r, -0.5f, 0.5f);
         before += pow((double)(noisy.depth.data[i] - smooth.depth.data[i]), 2);
     }
-    assert_int_equal(fuse_depth(&noisy.normal, &noisy.mask, view.fov, &noisy.depth), OK);
+    assert_int_equal(fuse_depth(&noisy.normal, &noisy.mask, (camera_lens){.fov = view.fov}, &noisy.depth), OK);
     for (int i = 0; i < PIXELS; i++)
         after += pow((double)(noisy.depth.data[i] - smooth.depth.data[i]), 2);
     /* white noise over a reach of 20 pixels would fall to a few percent; the normals' pairs next to the jump are lost
@@ -351,7 +351,7 @@ static double unlike(const scene *s, vec3 direction, real distance)
     img far_seen, near_seen;
     const lamp afar = lamp_toward(direction);
     const vec3 place = vec3_fma(vec3_make(0, 0, -1), distance, vec3_normalize(direction));
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, view.fov, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &caster), OK);
     assert_int_equal(shadow_cast_lamp(&caster, &afar, SIDE, SIDE, &far_seen), OK);
     assert_int_equal(shadow_cast(&caster, place, SIDE, SIDE, &near_seen), OK);
     double count = 0, shadowed = 0;

@@ -76,12 +76,12 @@ static void the_mean_over_all_views_turns_with_the_photograph(void **state)
     assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
-    assert_int_equal(network_estimate(n, &photo, &mask, ORIENTATIONS, NULL, &one), OK);
+    assert_int_equal(network_estimate(n, &photo, &mask, NULL, ORIENTATIONS, NULL, &one), OK);
     for (int o = 1; o < ORIENTATIONS; o += 3) {
         img albedo, normal;
         turn(&photo, o, &turned_photo);
         turn(&mask, o, &turned_mask);
-        assert_int_equal(network_estimate(n, &turned_photo, &turned_mask, ORIENTATIONS, NULL, &other), OK);
+        assert_int_equal(network_estimate(n, &turned_photo, &turned_mask, NULL, ORIENTATIONS, NULL, &other), OK);
         assert_int_equal(img_new(&albedo, SIZE, SIZE, 3), OK);
         assert_int_equal(img_new(&normal, SIZE, SIZE, 3), OK);
         view_add(&albedo, &other.maps.albedo, o, 1);
@@ -115,7 +115,7 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     network_look *look;
-    assert_int_equal(network_look_new(n, &photo, &mask, &look), OK);
+    assert_int_equal(network_look_new(n, &photo, &mask, NULL, &look), OK);
     assert_int_equal(network_relight(n, look, &light, &relit), OK);
     network_look_free(look);
     for (int o = 1; o < 4; o++) {
@@ -127,7 +127,7 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
         const illumination turned = {vec3_of(place), (const float(*)[3])turned_environment};
         turn(&photo, o, &turned_photo);
         turn(&mask, o, &turned_mask);
-        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, &look), OK);
+        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, NULL, &look), OK);
         assert_int_equal(network_relight(n, look, &light, &other), OK);
         assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
         view_add(&back, &other, o, 1);
@@ -164,14 +164,14 @@ static void normals_alone_are_those_of_all_maps(void **state)
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     for (int views = 1; views <= 3; views++) {
-        assert_int_equal(network_estimate(n, &photo, &mask, views, NULL, &e), OK);
-        assert_int_equal(network_normals(n, &photo, &mask, views, NULL, &normal), OK);
+        assert_int_equal(network_estimate(n, &photo, &mask, NULL, views, NULL, &e), OK);
+        assert_int_equal(network_normals(n, &photo, &mask, NULL, views, NULL, &normal), OK);
         assert_int_equal(normal.channels, 3);
         assert_memory_equal(normal.data, e.maps.normal.data, img_value_count(&normal) * sizeof(float));
         network_estimation_free(&e);
         img_free(&normal);
     }
-    assert_int_equal(network_normals(n, &photo, &mask, 2, at_once, &normal), ERROR_STOPPED);
+    assert_int_equal(network_normals(n, &photo, &mask, NULL, 2, at_once, &normal), ERROR_STOPPED);
     assert_null(normal.data);
     img_free(&photo);
     img_free(&mask);
@@ -187,9 +187,9 @@ static void a_wrong_number_of_views_is_refused(void **state)
     assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
-    assert_int_equal(network_estimate(n, &photo, &mask, 0, NULL, &e), ERROR_USAGE);
-    assert_int_equal(network_estimate(n, &photo, &mask, 9, NULL, &e), ERROR_USAGE);
-    assert_int_equal(network_normals(n, &photo, &mask, 0, NULL, &normal), ERROR_USAGE);
+    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 0, NULL, &e), ERROR_USAGE);
+    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 9, NULL, &e), ERROR_USAGE);
+    assert_int_equal(network_normals(n, &photo, &mask, NULL, 0, NULL, &normal), ERROR_USAGE);
     img_free(&photo);
     img_free(&mask);
     network_close(n);

@@ -118,7 +118,7 @@ static void judge_folded(uint64_t index, double *without, double *with)
     double similarity;
     render_folded(index, &truth, &map);
     surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask, .matte = false};
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, SURFACE_FOV, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = SURFACE_FOV}, &caster), OK);
     assert_int_equal(horizon_new(&caster, &h), OK);
     relight_folded(&s, &map, NULL, &plain);
     relight_folded(&s, &map, &h, &shadowed);
