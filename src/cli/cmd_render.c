@@ -29,6 +29,7 @@ static const char help[] =
     "  --no-env           no environment image\n"
     "  --targets K        also K images under random lights in front, with cast shadows\n"
     "  --lamps K          also K images under random lamps, near and far, in front and beside, points and discs\n"
+    "  --lamp-angles A,.. these lamps instead: points as far as the camera, so many degrees from the line to it\n"
     "  --bounces          also keep bounce 2 and bounce 3 apart\n"
     "  --spp N            camera rays a pixel: 1, 4, 16, 36 or 64 (default 16)\n"
     "  --paths N          indirect paths a pixel (default 8); environment light takes five for every eight\n"
@@ -72,6 +73,25 @@ static status take_fov(const char *text, void *to)
     return s;
 }
 
+/* Degrees with commas between. */
+static status take_angles(const char *text, void *to)
+{
+    image_settings *image = &((render_options *)to)->image;
+    image->lamp_angles = 0;
+    for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        char one[32];
+        double angle = 0;
+        snprintf(one, sizeof one, "%.*s", (int)strcspn(at, ","), at);
+        if (image->lamp_angles == SAMPLE_MAX_LAMPS)
+            return fail(ERROR_USAGE, "--lamp-angles: at most %d lamps", SAMPLE_MAX_LAMPS);
+        status s = cli_float("--lamp-angles", one, 0, 180, &angle);
+        if (s != OK) return s;
+        image->lamp_angle[image->lamp_angles++] = (float)angle;
+    }
+    image->lamps = image->lamp_angles;
+    return OK;
+}
+
 static status read_options(int *argc, char ***argv, request *r)
 {
     render_options *o = &r->options;
@@ -89,6 +109,7 @@ static status read_options(int *argc, char ***argv, request *r)
         {"no-env", .flag = &r->no_environment},
         {"targets", .integer = &o->image.targets, .low = 0, .high = SAMPLE_MAX_TARGETS},
         {"lamps", .integer = &o->image.lamps, .low = 0, .high = SAMPLE_MAX_LAMPS},
+        {"lamp-angles", .take = take_angles, .into = o},
         {"bounces", .flag = &o->image.bounces},
         {"spp", .take = take_strata, .into = &o->image.strata},
         {"paths", .integer = &o->image.paths, .low = 1, .high = 4096},

@@ -20,4 +20,7 @@ int eval_doubts(int argc, char **argv);
 /* merlin eval masks; argv[0] is "masks". Returns the exit status. */
 int eval_masks(int argc, char **argv);
 
+/* merlin eval lights; argv[0] is "lights". Returns the exit status. */
+int eval_lights(int argc, char **argv);
+
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -19,6 +20,7 @@ typedef struct chunks {
     unsigned char cicp[4]; /* primaries, transfer, matrix, full range */
     int orientation;
     int frames;      /* of an animation */
+    bool overfull;   /* one beside the pixels claims more bytes than the file has, which decoders would make room for */
     uint64_t packed; /* bytes of all pixels */
 } chunks;
 
@@ -104,6 +106,8 @@ static int frames_in(int file, off_t at)
 /* Goes over a file's chunks; what is damaged libpng says later. */
 static chunks find_chunks(int file)
 {
+    struct stat about;
+    const off_t end = fstat(file, &about) == 0 ? about.st_size : 0;
     chunks found = {.orientation = 0};
     int by_text = 0;
     unsigned char head[8];
@@ -112,6 +116,7 @@ static chunks find_chunks(int file)
         const char *name = (const char *)head + 4;
         if (memcmp(name, "cICP", 4) == 0 && size == 4) found.has_cicp = pread(file, found.cicp, 4, at + 8) == 4;
         if (memcmp(name, "eXIf", 4) == 0) found.orientation = orientation_in(file, at + 8, size);
+        found.overfull |= memcmp(name, "IDAT", 4) != 0 && (off_t)size > end - at;
         bool packed = memcmp(name, "zTXt", 4) == 0;
         if (by_text == 0 && (packed || memcmp(name, "tEXt", 4) == 0))
             by_text = orientation_in_text(file, at + 8, size, packed);
@@ -256,6 +261,7 @@ static status check_budget(const reader *r, const char *path)
 static status read_open(reader *r, const char *path, picture_colour how, img *color, img *alpha)
 {
     r->chunks = find_chunks(fileno(r->file));
+    if (r->chunks.overfull) return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
     if (!read_head(r)) return fail(ERROR_INPUT, "cannot read %s: %s", path, r->words);
     status s = check_budget(r, path);
     if (s == OK) s = find_light(r, path);

@@ -158,6 +158,8 @@ static void describe_more(const render_options *o, char *out, size_t size)
 {
     int length = 0;
     if (o->image.lamps) length += snprintf(out, size, "lamps %d\n", o->image.lamps);
+    for (int i = 0; i < o->image.lamp_angles; i++)
+        length += snprintf(out + length, size - (size_t)length, "lamp at %g\n", (double)o->image.lamp_angle[i]);
     if (o->widest_fov > 0)
         length += snprintf(out + length, size - (size_t)length, "widest fov %g\n", (double)o->widest_fov);
     if (o->off_axis > 0) snprintf(out + length, size - (size_t)length, "off axis %g\n", (double)o->off_axis);

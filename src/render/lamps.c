@@ -45,6 +45,13 @@ void lamp_draw(rng *r, const scn_object *object, sample_lamp *out)
     out->radius = disc ? size * (distant ? 1 : far) : 0;
 }
 
+void lamp_draw_at(rng *r, float angle, sample_lamp *out)
+{
+    float turn = 2 * BRDF_PI * rng_uniform(r), sine = sinf(angle * CAMERA_RADIAN);
+    vec3 toward = vec3_make(sine * cosf(turn), sine * sinf(turn), cosf(angle * CAMERA_RADIAN));
+    out->at = vec3_add(middle, toward);
+}
+
 point_light lamp_light(const sample_lamp *of)
 {
     vec3 way = of->distant ? vec3_scale(of->at, INFINITE) : vec3_sub(of->at, middle);

@@ -18,6 +18,9 @@
  * degrees' radius. */
 void lamp_draw(rng *r, const scn_object *object, sample_lamp *out);
 
+/* Places a point as far from the object's middle as the camera, at this angle (degrees) from the line to it. */
+void lamp_draw_at(rng *r, float angle, sample_lamp *out);
+
 /* What lights the object: as bright in its middle as the flash is. */
 point_light lamp_light(const sample_lamp *of);
 

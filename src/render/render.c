@@ -322,7 +322,10 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     }
     rng lamps = rng_at(seed, index, STREAM_LAMP_PLACES);
     for (int i = 0; i < settings->lamps; i++) {
-        lamp_draw(&lamps, scene->object, &out->lamps[i]);
+        if (settings->lamp_angles > 0)
+            lamp_draw_at(&lamps, settings->lamp_angle[i], &out->lamps[i]);
+        else
+            lamp_draw(&lamps, scene->object, &out->lamps[i]);
         r.lamps[i] = lamp_light(&out->lamps[i]);
     }
     if (env) memcpy(out->sh, env->sh, sizeof out->sh);

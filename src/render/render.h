@@ -21,11 +21,13 @@ typedef struct image_settings {
     int size;  /* pixels, square */
     float fov; /* horizontal, degrees */
     camera_slant slant;
-    int strata;   /* 1 or even, at most VISIBILITY_MAX_STRATA */
-    int paths;    /* per pixel, for indirect light and each target */
-    int targets;  /* images under lights of the frontal hemisphere, at most SAMPLE_MAX_TARGETS */
-    int lamps;    /* images under lamps of any place and size (render/lamps.h), at most SAMPLE_MAX_LAMPS */
-    bool bounces; /* keep bounce 2 and bounce 3 apart as well */
+    int strata;                         /* 1 or even, at most VISIBILITY_MAX_STRATA */
+    int paths;                          /* per pixel, for indirect light and each target */
+    int targets;                        /* images under lights of the frontal hemisphere, at most SAMPLE_MAX_TARGETS */
+    float lamp_angle[SAMPLE_MAX_LAMPS]; /* degrees; see lamp_angles */
+    int lamp_angles; /* > 0: so many lamps, points as far as the camera, at these angles from the line to it */
+    int lamps;       /* images under lamps of any place and size (render/lamps.h), at most SAMPLE_MAX_LAMPS */
+    bool bounces;    /* keep bounce 2 and bounce 3 apart as well */
 } image_settings;
 
 /* Renders the scene's object; environment may be NULL (no env layer). On failure out is empty. */

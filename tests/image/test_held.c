@@ -83,11 +83,21 @@ static void a_jpeg_in_one_scan_is_not_refused_for_its_size(void **state)
     assert_null(strstr(status_message(), "held as a whole"));
 }
 
+/* Of two pixels, whose text claims two billion bytes: libpng would make room for them. */
+static void a_png_whose_text_is_longer_than_the_file_is_refused(void **state)
+{
+    (void)state;
+    static const unsigned char file[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\2\b\2\0\0\0\xfd\xd4\x9as"
+                                        "\x7e\0\0\1tEXta\0b....";
+    expect_refusal(write_bytes("long.png", file, sizeof file - 1), "damaged or cut short");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_webp_of_too_many_pixels_is_refused_by_its_head),
         cmocka_unit_test(a_jpeg_in_scans_of_too_many_pixels_is_refused_by_its_head),
+        cmocka_unit_test(a_png_whose_text_is_longer_than_the_file_is_refused),
         cmocka_unit_test(a_jpeg_in_one_scan_is_not_refused_for_its_size),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
