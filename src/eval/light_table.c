@@ -195,8 +195,8 @@ static void add_figures(const network_estimation *e, const subject *on, double s
 
 static status measure(run *r, const subject *on, const mixture *m, light_kind kind)
 {
-    const sight how = {.lens = r->options->lens_unknown ? (camera_lens){.fov = 0}
-                                                        : (camera_lens){on->s->fov, on->s->slant}};
+    sight how = {.lens = {on->s->fov, on->s->slant}};
+    if (r->options->lens_unknown) how.lens.fov = 0;
     network_estimation e = {0};
     img photo = {0};
     status s = photograph(on, m, &photo);
