@@ -24,6 +24,8 @@ static const char help[] =
     "  --fov DEG[-DEG]    horizontal field of view (default 60); two: every sample has one between them\n"
     "  --off-axis DEG     pictures are cut out of larger ones, up to so far beside the lens's axis\n"
     "  --mesh F           this OBJ, PLY or glTF object, with procedural materials, instead of procedural shapes\n"
+    "  --mesh-dir D       meshes of this folder, deformed, for a share of the objects\n"
+    "  --mesh-share S     how large that share is (default 0.5)\n"
     "  --env-dir D        environment maps from this folder instead of procedural ones\n"
     "  --material-dir D   photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
     "  --no-env           no environment image\n"
@@ -73,6 +75,14 @@ static status take_fov(const char *text, void *to)
     return s;
 }
 
+static status take_share(const char *text, void *to)
+{
+    double share = 0;
+    status s = cli_float("--mesh-share", text, 0.001, 1, &share);
+    *(float *)to = (float)share;
+    return s;
+}
+
 /* Degrees with commas between. */
 static status take_angles(const char *text, void *to)
 {
@@ -104,6 +114,8 @@ static status read_options(int *argc, char ***argv, request *r)
         {"fov", .take = take_fov, .into = o},
         {"off-axis", .real = &o->off_axis, .low = 0, .high = 40},
         {"mesh", .text = &o->mesh},
+        {"mesh-dir", .text = &o->mesh_folder},
+        {"mesh-share", .take = take_share, .into = &o->mesh_share},
         {"env-dir", .text = &o->environment_folder},
         {"material-dir", .text = &o->material_folder},
         {"no-env", .flag = &r->no_environment},
@@ -130,6 +142,10 @@ static status parse(int argc, char **argv, request *r)
     if (!r->options.folder) return fail(ERROR_USAGE, "an output folder is required: -o DIR");
     if (r->no_environment && r->options.environment_folder)
         return fail(ERROR_USAGE, "--env-dir and --no-env contradict each other");
+    if (r->options.mesh && r->options.mesh_folder)
+        return fail(ERROR_USAGE, "--mesh and --mesh-dir contradict each other");
+    if (r->options.mesh_share > 0 && !r->options.mesh_folder)
+        return fail(ERROR_USAGE, "--mesh-share is of the meshes in --mesh-dir D");
     r->options.environment = !r->no_environment;
     return OK;
 }
@@ -139,11 +155,13 @@ static status print_json(const request *r, const render_stats *stats, double sam
     warnings told = {0};
     skipped_warn(&stats->skipped_maps, &told);
     skipped_warn(&stats->skipped_materials, &told);
+    skipped_warn(&stats->skipped_meshes, &told);
     cJSON *report = report_begin(&told);
     if (told.count) {
         cJSON *all = cJSON_AddArrayToObject(report, "skipped");
         skipped_json(&stats->skipped_maps, r->options.environment_folder, all);
         skipped_json(&stats->skipped_materials, r->options.material_folder, all);
+        skipped_json(&stats->skipped_meshes, r->options.mesh_folder, all);
     }
     json_line_text(report, "output", r->options.folder);
     cJSON_AddNumberToObject(report, "rendered", (double)stats->rendered);
@@ -190,6 +208,7 @@ int cmd_render(int argc, char **argv)
     if (s == OK && !r.options.quiet) {
         skipped_print(&stats.skipped_maps, "render", r.options.environment_folder);
         skipped_print(&stats.skipped_materials, "render", r.options.material_folder);
+        skipped_print(&stats.skipped_meshes, "render", r.options.mesh_folder);
     }
     if (s == OK) s = report(&r, &stats);
     render_stats_free(&stats);

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "render/streams.h"
+#include "scene/model_folder.h"
 #include "scene/texture.h"
 
 /* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
@@ -19,7 +20,8 @@ typedef struct run {
     trace_device *device;
     environment_folder maps;
     scn_textures textures;
-    scn_model *model; /* NULL: procedural objects */
+    scn_model *model;  /* NULL: procedural objects, or */
+    scn_models models; /* these for a share of them */
     render_stats *stats;
     progress bar;
     status failed;
@@ -59,8 +61,14 @@ static image_settings lens_of(const render_options *o, uint64_t index)
 static status make_object(const run *r, uint64_t index, float fov, scn_object *out)
 {
     const render_options *o = r->options;
-    status s = r->model ? scn_object_from_model(r->model, o->seed, index, fov, out)
-                        : scn_object_generate(o->seed, index, fov, out);
+    const float share = o->mesh_share > 0 ? o->mesh_share : 0.5f;
+    status s;
+    if (r->model)
+        s = scn_object_from_model(r->model, o->seed, index, fov, out);
+    else if (r->models.count && scn_models_chosen(o->seed, index, share))
+        s = scn_object_from_models(&r->models, o->seed, index, fov, out);
+    else
+        s = scn_object_generate(o->seed, index, fov, out);
     if (s == OK && r->textures.count) scn_object_wear(out, &r->textures, o->seed, index);
     return s;
 }
@@ -162,7 +170,10 @@ static void describe_more(const render_options *o, char *out, size_t size)
         length += snprintf(out + length, size - (size_t)length, "lamp at %g\n", (double)o->image.lamp_angle[i]);
     if (o->widest_fov > 0)
         length += snprintf(out + length, size - (size_t)length, "widest fov %g\n", (double)o->widest_fov);
-    if (o->off_axis > 0) snprintf(out + length, size - (size_t)length, "off axis %g\n", (double)o->off_axis);
+    if (o->off_axis > 0) length += snprintf(out + length, size - (size_t)length, "off axis %g\n", (double)o->off_axis);
+    if (o->mesh_folder)
+        snprintf(out + length, size - (size_t)length, "meshes %s\nmesh share %g\n", o->mesh_folder,
+                 (double)o->mesh_share);
 }
 
 static void describe(const render_options *o, char *out, size_t size)
@@ -262,6 +273,7 @@ static status check_options(const render_options *o)
 static void close_run(run *r)
 {
     scn_model_free(r->model);
+    scn_models_free(&r->models);
     scn_textures_free(&r->textures);
     environment_folder_free(&r->maps);
     trace_device_free(r->device);
@@ -276,6 +288,7 @@ static status open_run(const render_options *o, run *r)
         s = environment_folder_read(o->environment_folder, &r->maps);
     if (s == OK && o->material_folder) s = scn_textures_read(o->material_folder, &r->textures);
     if (s == OK && o->mesh) s = scn_model_read(o->mesh, &r->model);
+    if (s == OK && o->mesh_folder) s = scn_models_read(o->mesh_folder, &r->models);
     if (s != OK) close_run(r);
     return s;
 }
@@ -295,6 +308,7 @@ void render_stats_free(render_stats *stats)
 {
     skipped_free(&stats->skipped_maps);
     skipped_free(&stats->skipped_materials);
+    skipped_free(&stats->skipped_meshes);
 }
 
 status render_samples(const render_options *options, render_stats *stats)
@@ -306,7 +320,8 @@ status render_samples(const render_options *options, render_stats *stats)
     r.stats = stats;
     stats->skipped_maps = r.maps.skipped;
     stats->skipped_materials = r.textures.skipped;
-    r.maps.skipped = r.textures.skipped = (skipped_files){0};
+    stats->skipped_meshes = r.models.skipped;
+    r.maps.skipped = r.textures.skipped = r.models.skipped = (skipped_files){0};
     if (options->folder) s = check_mesh(&r);
     if (s == OK && options->folder) s = claim_folder(options);
     if (s == OK) {

@@ -28,6 +28,8 @@ typedef struct render_options {
     bool environment;               /* an environment image and its SH coefficients as well */
     const char *environment_folder; /* maps from files instead of procedural ones; or NULL */
     const char *material_folder;    /* photographed materials on most objects; or NULL */
+    const char *mesh_folder;        /* meshes instead of procedural objects for a share of them; or NULL */
+    float mesh_share;               /* of the objects; 0 counts as one half */
     const char *mesh;               /* a mesh file instead of procedural objects; or NULL */
     bool quiet;                     /* no progress bar */
     int (*interrupted)(void);       /* polled between samples; may be NULL */
@@ -37,7 +39,7 @@ typedef struct render_stats {
     size_t rendered, kept; /* kept: were there already */
     uint64_t rays;
     double seconds;
-    skipped_files skipped_maps, skipped_materials; /* of the folders of both; for render_stats_free */
+    skipped_files skipped_maps, skipped_materials, skipped_meshes; /* of their folders; for render_stats_free */
 } render_stats;
 void render_stats_free(render_stats *stats);
 

@@ -3,12 +3,13 @@
 #include <string.h>
 
 #include "scene/material.h"
+#include "scene/mesh_deform.h"
 #include "scene/mesh_file.h"
 #include "scene/pose.h"
 #include "scene/scene.h"
 
 /* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
-enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE };
+enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, STREAM_DEFORM };
 
 static status check_fov(float fov)
 {
@@ -102,6 +103,22 @@ status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t ind
     scn_mesh mesh;
     const shape_traits traits = {.name = "mesh", .upright = true, .crease_cosine = 0.6f, .parts = model->parts};
     mesh_copy(&model->mesh, &mesh);
+    s = complete(&mesh, &traits, seed, index, fov, out);
+    mesh_free(&mesh);
+    return s == OK ? OK : fail_in(s, "%s", model->path);
+}
+
+status scn_object_from_deformed(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
+{
+    *out = (scn_object){0};
+    status s = check_fov(fov);
+    if (s != OK) return s;
+    rng r = rng_at(seed, index, STREAM_DEFORM);
+    scn_mesh mesh;
+    shape_traits traits = {.name = "mesh", .upright = true, .parts = model->parts};
+    traits.crease_cosine = rng_range(&r, 0.3f, 0.85f);
+    mesh_copy(&model->mesh, &mesh);
+    if (!mesh.failed) mesh_deform(&r, &mesh);
     s = complete(&mesh, &traits, seed, index, fov, out);
     mesh_free(&mesh);
     return s == OK ? OK : fail_in(s, "%s", model->path);

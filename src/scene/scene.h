@@ -50,6 +50,9 @@ void scn_model_free(scn_model *model);
 /* The model, scaled and posed at random from (seed, index) like a generated object, with a procedural material. */
 status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out);
 
+/* The same of another shape made out of it (scene/mesh_deform.h). */
+status scn_object_from_deformed(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out);
+
 void scn_object_free(scn_object *object);
 
 /* A point of a triangle: barycentric (u, v) are the weights of its second and third vertex, as Embree reports them. */
