@@ -111,6 +111,18 @@ typedef struct merlin_hint {
     } box; /* holds all of the object, the tighter the better; width 0: none */
 } merlin_hint;
 
+/* What lights a photograph, as a model of any light sees it; zeros where the model knows one light alone. Strengths are
+ * in the photograph's radiance (its values times gain): 1 is a lamp of power 5.95 at distance 1. */
+typedef struct merlin_found_light {
+    int known;              /* the model tells */
+    float flash;            /* the strength of a flash at the lens; 0: none */
+    float lamp[3];          /* unit, from the object's middle, (0, 0, -1), toward the strongest lamp; zeros: none */
+    float lamp_sure;        /* how sure the model is that there is one, in [0, 1] */
+    float lamp_distance;    /* from there; 0: far away, its light is parallel */
+    float lamp_strength[3]; /* in the object's middle, by channel */
+    float rest[9][3];       /* everything else: spherical harmonics of radiance, bands 0 to 2 */
+} merlin_found_light;
+
 typedef struct merlin_params {
     int size;  /* side of the square the network sees: a multiple of 32, from 64 to 512. It was trained at 256; of
                 * more it takes fine normals alone, if the photograph shows the object so large */
@@ -120,6 +132,7 @@ typedef struct merlin_params {
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
     merlin_shot shot;  /* of the photograph: its lens, and doubts in its maps */
+    int flash;         /* 1: its light was a flash at the lens and nothing else, which models of any light are told */
     float fov;         /* degrees that the photograph is wide, from 1 to 150; 0: by shot, if that knows the lens */
     merlin_hint hint;  /* where the object is, if it is searched for; MERLIN_WRONG_USE with a mask */
 } merlin_params;
@@ -160,7 +173,8 @@ typedef struct merlin_maps {
     merlin_image depth;          /* 1, distance along -z in scene units */
     merlin_image mask;           /* 1, coverage in [0, 1] */
     merlin_image photo;          /* 3, the photograph times the mask */
-    merlin_image reconstruction; /* 3, the maps under the flash, exposed as by merlin_relight */
+    merlin_image reconstruction; /* 3, the maps under the flash, or under `light` where that is known, exposed as by
+                                    merlin_relight */
     struct {
         int x, y, side; /* the square of the photograph that the network saw; may hang over its edges */
     } crop;
@@ -169,9 +183,10 @@ typedef struct merlin_maps {
     float burnt_out; /* share of the object's values at the photograph's white, in [0, 1]: albedo and roughness are
                       * guesses there, and from a tenth on they are poor (photograph it darker) */
     merlin_mask_source mask_source;
-    int has_environment;     /* the model knows of surroundings beside the flash: */
-    float environment[9][3]; /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
-    float mask_confidence;   /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
+    int has_environment;      /* the model knows of surroundings beside the flash: */
+    float environment[9][3];  /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
+    merlin_found_light light; /* what the photograph is lit by; not kept by merlin_maps_write but in report.json */
+    float mask_confidence;    /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
     char model[64];
     merlin_timing timing;
     unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */

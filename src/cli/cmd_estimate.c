@@ -47,6 +47,7 @@ static const char help[] =
     "                       photograph has more than 256 pixels of the object, for finer normals; 256 is quicker\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
     "      --fov DEG        how wide the whole photograph is, in degrees (default: by its EXIF; unknown without)\n"
+    "      --flash          the light was the camera's flash and nothing else; models of any light are told so\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
     "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
@@ -60,7 +61,7 @@ static const char help[] =
 typedef struct request {
     const char *mask, *output, *weights;
     merlin_params params;
-    bool mesh, json, quiet, help;
+    bool mesh, flash, json, quiet, help;
     mesh_names meshes;
     merlin_model *model;
     const photo_list *photos;
@@ -92,6 +93,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"fov", .real = &r->params.fov, .low = 1, .high = 150},
+        {"flash", .flag = &r->flash},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name},
         {"json", .flag = &r->json},
@@ -101,6 +103,7 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
+    r->params.flash = r->flash;
     if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
     if (r->meshes.count && (*argc > 1 || file_is_folder((*argv)[0])))
         return fail(

@@ -128,9 +128,9 @@ static unsigned doubts_of_pixels(const merlin_maps *maps)
 static unsigned doubts_of_light(const light_cues *cues, const merlin_shot *shot, const merlin_maps *maps)
 {
     unsigned doubts = 0;
-    if (maps->light_elsewhere >= LIKELY_ELSEWHERE) doubts |= MERLIN_DOUBT_LIGHT_ELSEWHERE;
+    if (maps->light_elsewhere >= LIKELY_ELSEWHERE && !maps->light.known) doubts |= MERLIN_DOUBT_LIGHT_ELSEWHERE;
     if (cues->known && cues->outward < LITTLE_OUTWARD && cues->inward > MUCH_INWARD) doubts |= MERLIN_DOUBT_HOLLOW;
-    if (shot->flash == MERLIN_FLASH_NONE) doubts |= MERLIN_DOUBT_NO_FLASH;
+    if (shot->flash == MERLIN_FLASH_NONE && !maps->light.known) doubts |= MERLIN_DOUBT_NO_FLASH;
     return doubts;
 }
 

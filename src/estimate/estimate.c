@@ -9,6 +9,7 @@
 #include "estimate/detail.h"
 #include "estimate/doubts.h"
 #include "estimate/exposure.h"
+#include "estimate/found_light.h"
 #include "estimate/input.h"
 #include "estimate/relight_env.h"
 #include "image/read.h"
@@ -164,6 +165,7 @@ static status check_seen(const img *photo, const img *mask)
 static void find_lens(work *w, merlin_maps *maps)
 {
     w->how = sight_of(w->params->fov, w->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
+    w->how.flash = w->params->flash != 0;
     maps->fov = w->how.lens.fov;
     maps->slant[0] = w->how.lens.slant.right;
     maps->slant[1] = w->how.lens.slant.up;
@@ -186,7 +188,7 @@ static status make_input(work *w, merlin_maps *maps)
  * these are others. */
 static status follow_mean(network *n, work *w, bool in_environment)
 {
-    if (w->params->views == 1) return OK;
+    if (w->params->views == 1 || network_config(n)->lighting == MODEL_LIGHT_ANY) return OK;
     const surface *maps = &w->low.maps;
     img direct = {0}, ambient = {0}, indirect = {0};
     status s = surface_shade(maps, vec3_make(0, 0, 0), &direct);
@@ -215,16 +217,28 @@ static status add_detail(network *n, work *w, int side, float gain)
     return side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
 }
 
+static void expose_picture(img *picture, float white)
+{
+    for (size_t i = 0; i < img_value_count(picture); i++)
+        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / white, 0), 1);
+}
+
 /* The maps at the crop's own resolution, and what they look like under the photograph's light. */
-static status refine(work *w, float gain, float white, bool in_environment)
+static status refine(work *w, const merlin_found_light *light, float gain, float white, bool in_environment)
 {
     surface_encode_guide(&w->crop_photo, gain);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     img_free(&w->crop_photo);
     img *picture = &w->reconstruction;
+    const size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
+    if (light->known) {
+        if (s == OK) s = img_new(picture, w->crop.side, w->crop.side, 3);
+        if (s == OK) s = found_light_add(&w->full, light, &w->low.visibility, picture);
+        if (s == OK) expose_picture(picture, white);
+        return s;
+    }
     if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low_mask, &w->crop_mask, picture);
     if (s != OK) return s;
-    size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
     for (size_t i = 0; i < count; i++)
         if (picture->data[i] != 0) picture->data[i] *= w->crop_mask.data[i / 3];
     surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
@@ -233,8 +247,7 @@ static status refine(work *w, float gain, float white, bool in_environment)
         surface_add_ambient(&w->full, sh, picture);
         surface_add_ambient_highlights(&w->full, sh, picture);
     }
-    for (size_t i = 0; i < count; i++)
-        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / white, 0), 1);
+    expose_picture(picture, white);
     return OK;
 }
 
@@ -305,9 +318,10 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = lap(w, &t->network);
     watch_tell(w->watch, "refining", 0);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
+    if (network_config(n)->lighting == MODEL_LIGHT_ANY) found_light_take(w->low.lights, &maps->light);
     img photo = img_of(&maps->photo);
     if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
-    if (s == OK) s = refine(w, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
+    if (s == OK) s = refine(w, &maps->light, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
     watch_tell(w->watch, "refining", 0.75);
     if (s == OK) s = place_all(w, maps);
     if (s == OK) doubts_find(&w->cues, &w->shot, maps);

@@ -105,6 +105,28 @@ static void put_lens(cJSON *root, const merlin_maps *maps)
         cJSON_AddItemToArray(slant, cJSON_CreateNumber((double)maps->slant[i]));
 }
 
+static void put_numbers(cJSON *to, const char *name, const float *values, int count)
+{
+    cJSON *all = cJSON_AddArrayToObject(to, name);
+    for (int i = 0; i < count; i++)
+        cJSON_AddItemToArray(all, cJSON_CreateNumber((double)values[i]));
+}
+
+/* What a model of any light sees. */
+static void put_light(cJSON *root, const merlin_found_light *l)
+{
+    if (!l->known) return;
+    cJSON *light = cJSON_AddObjectToObject(root, "light");
+    cJSON_AddNumberToObject(light, "flash", (double)l->flash);
+    cJSON_AddNumberToObject(light, "lamp_sure", (double)l->lamp_sure);
+    if (l->lamp[0] != 0 || l->lamp[1] != 0 || l->lamp[2] != 0) {
+        put_numbers(light, "lamp", l->lamp, 3);
+        cJSON_AddNumberToObject(light, "lamp_distance", (double)l->lamp_distance);
+        put_numbers(light, "lamp_strength", l->lamp_strength, 3);
+    }
+    put_numbers(light, "rest", &l->rest[0][0], 27);
+}
+
 cJSON *report_begin(const warnings *doubts)
 {
     cJSON *root = cJSON_CreateObject();
@@ -133,6 +155,7 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
     cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
     put_lens(root, maps);
+    put_light(root, &maps->light);
     put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);

@@ -103,6 +103,43 @@ static void the_mean_over_all_views_turns_with_the_photograph(void **state)
     network_close(n);
 }
 
+/* So is what lit it, and where the lens's axis is, of models of any light. */
+static void the_light_that_is_found_turns_with_the_photograph(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask, turned_photo, turned_mask;
+    network_estimation one = {0}, other = {0};
+    const sight how = {.lens = {35, {0.2f, -0.1f}}};
+    assert_int_equal(write_random_weights_of("merlin-any-96", scratch_path("any.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("any.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    assert_int_equal(network_estimate(n, &photo, &mask, &how, ORIENTATIONS, NULL, &one), OK);
+    for (int o = 1; o < ORIENTATIONS; o += 3) {
+        img visibility;
+        float slant[3] = {how.lens.slant.right, how.lens.slant.up, 0}, *toward = other.lights + MODEL_LIGHTS_LAMP;
+        orientation_turn(o, slant);
+        const sight turned = {.lens = {35, {slant[0], slant[1]}}};
+        turn(&photo, o, &turned_photo);
+        turn(&mask, o, &turned_mask);
+        assert_int_equal(network_estimate(n, &turned_photo, &turned_mask, &turned, ORIENTATIONS, NULL, &other), OK);
+        orientation_turn(orientation_inverse(o), toward);
+        for (int i = 0; i < MODEL_LIGHTS_REST; i++)
+            assert_float_equal(other.lights[i], one.lights[i], 1e-4);
+        assert_int_equal(img_new(&visibility, SIZE, SIZE, 1), OK);
+        view_add(&visibility, &other.visibility, o, 1);
+        assert_true(largest_difference(&visibility, &one.visibility) < 1e-5f);
+        network_estimation_free(&other);
+        img_free(&visibility);
+        img_free(&turned_photo);
+        img_free(&turned_mask);
+    }
+    network_estimation_free(&one);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
 /* The first four views are the flips, any of which makes one of the others of each. */
 static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
 {
@@ -200,6 +237,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orientations_are_undone_by_their_inverse),
         in_scratch(the_mean_over_all_views_turns_with_the_photograph),
+        in_scratch(the_light_that_is_found_turns_with_the_photograph),
         in_scratch(a_relit_picture_is_flipped_with_photograph_and_light),
         in_scratch(normals_alone_are_those_of_all_maps),
         in_scratch(a_wrong_number_of_views_is_refused),

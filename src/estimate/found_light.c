@@ -1,0 +1,72 @@
+#include "estimate/found_light.h"
+
+#include <math.h>
+
+#include "estimate/relight_env.h"
+#include "estimate/shadow.h"
+
+static const vec3 middle = {0, 0, -1};
+/* A lamp is that from this on; farther than so far, its light is parallel to any eye. */
+static const float LEAST_SURE = 0.5f, FARTHEST = 20;
+
+void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
+{
+    const vec3 toward = vec3_of(code + MODEL_LIGHTS_LAMP);
+    const float sure = vec3_length(toward), inverse = code[MODEL_LIGHTS_DISTANCE];
+    *out = (merlin_found_light){.known = 1, .flash = model_decode_strength(code[MODEL_LIGHTS_FLASH])};
+    out->lamp_sure = sure < 1 ? sure : 1;
+    if (sure >= LEAST_SURE) vec3_put(vec3_scale(toward, 1 / sure), out->lamp);
+    out->lamp_distance = inverse > 1 / FARTHEST ? 1 / inverse : 0;
+    for (int c = 0; c < 3; c++)
+        out->lamp_strength[c] = sure >= LEAST_SURE ? model_decode_strength(code[MODEL_LIGHTS_STRENGTH + c]) : 0;
+    model_decode_sh(code + MODEL_LIGHTS_REST, out->rest);
+}
+
+bool found_light_lamp(const merlin_found_light *light, lamp *out)
+{
+    const vec3 toward = vec3_of(light->lamp);
+    if (!light->known || !(vec3_length(toward) > 0)) return false;
+    const float far = light->lamp_distance;
+    *out = far > 0 ? lamp_at(vec3_fma(middle, far, toward)) : lamp_toward(toward);
+    /* as strong in the object's middle, wherever it stands */
+    out->tint = vec3_scale(vec3_of(light->lamp_strength), far > 0 ? far * far : 1);
+    return true;
+}
+
+static void add_tinted(const img *from, vec3 tint, img *to)
+{
+    const float channel[3] = {tint.x, tint.y, tint.z};
+    for (size_t i = 0; i < img_value_count(to); i++)
+        to->data[i] += channel[i % 3] * from->data[i];
+}
+
+static status add_lamp(const surface *s, const lamp *l, const img *visibility, img *out)
+{
+    img lit = {0};
+    status st = surface_shade_lamp(s, l, &lit);
+    if (st == OK && visibility->data) shadow_darken(visibility, &lit);
+    if (st == OK) add_tinted(&lit, l->tint, out);
+    img_free(&lit);
+    return st;
+}
+
+static status add_flash(const surface *s, float strength, img *out)
+{
+    img lit = {0};
+    status st = surface_shade(s, vec3_make(0, 0, 0), &lit);
+    if (st == OK) add_tinted(&lit, vec3_make(strength, strength, strength), out);
+    img_free(&lit);
+    return st;
+}
+
+status found_light_add(const surface *s, const merlin_found_light *light, const img *visibility, img *out)
+{
+    const float(*rest)[3] = (const float(*)[3])light->rest;
+    lamp l;
+    status st = light->flash > 0 ? add_flash(s, light->flash, out) : OK;
+    if (st == OK && found_light_lamp(light, &l)) st = add_lamp(s, &l, visibility, out);
+    if (st != OK) return st;
+    surface_add_ambient(s, rest, out);
+    surface_add_ambient_highlights(s, rest, out);
+    return OK;
+}

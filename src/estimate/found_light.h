@@ -1,0 +1,23 @@
+/* The light that a model of any light sees in a photograph, and a surface under it.
+ *
+ *     found_light_take(estimation.lights, &maps.light);
+ *     status s = found_light_add(&full, &maps.light, &visibility, &picture);      picture += that light's part
+ */
+#ifndef MERLIN_ESTIMATE_FOUND_LIGHT_H
+#define MERLIN_ESTIMATE_FOUND_LIGHT_H
+
+#include "estimate/surface.h"
+#include "image/public.h"
+#include "model/model.h"
+
+/* From the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */
+void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out);
+
+/* The lamp as relighting has it; tint: its strength by channel. False where there is none. */
+bool found_light_lamp(const merlin_found_light *light, lamp *out);
+
+/* Adds flash, lamp and the rest to out (3 channels, the surface's size). visibility: 1 channel, of any size, of the
+ * lamp; without data it reaches all that faces it. ERROR_MEMORY. */
+status found_light_add(const surface *s, const merlin_found_light *light, const img *visibility, img *out);
+
+#endif
