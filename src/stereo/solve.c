@@ -286,6 +286,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
     effort.expected = expected_effort(&p, out->method);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
+    if (s == OK && p.effort) pst_effort_add(&effort, 0); /* Other threads may have had the last pixels. */
     if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
     free(p.pixel);
     free(light);
