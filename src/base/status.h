@@ -13,12 +13,13 @@
 
 typedef enum status {
     OK = 0,
-    ERROR_USAGE,   /* the caller asked for something that makes no sense */
-    ERROR_INPUT,   /* a file or its content is missing, damaged or of another kind */
-    ERROR_OUTPUT,  /* something could not be written */
-    ERROR_MEMORY,  /* memory ran out */
-    ERROR_DEVICE,  /* the compute library or device refused */
-    ERROR_STOPPED, /* interrupted by the user */
+    ERROR_USAGE,     /* the caller asked for something that makes no sense */
+    ERROR_INPUT,     /* a file or its content is missing, damaged or of another kind */
+    ERROR_OUTPUT,    /* something could not be written */
+    ERROR_MEMORY,    /* memory ran out */
+    ERROR_DEVICE,    /* the compute library or device refused */
+    ERROR_STOPPED,   /* interrupted by the user */
+    ERROR_ELSEWHERE, /* another process of the same work has failed, and says why (base/ranks.h) */
 } status;
 
 /* Records the message and returns s. */

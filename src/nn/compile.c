@@ -45,7 +45,8 @@ static status fill_step(compilation *c, int index)
                       .inputs = head->node->inputs + (from->beside >= 0),
                       .out = result->tensor,
                       .out_gradient = result->tensor,
-                      .context = c->program->context};
+                      .context = c->program->context,
+                      .together = c->low.options.together};
     char name[300];
     if (head->node->name)
         snprintf(name, sizeof name, "%s", head->node->name);

@@ -36,7 +36,8 @@ struct nn_step {
     bool accumulate[NN_MAX_INPUTS];                     /* add to in_gradient instead of writing it */
     node_params params, folded; /* folded: batch norm by running statistics behind a convolution, weight NULL if none */
 
-    void *context; /* of the device, shared by a program's steps */
+    void *context;         /* of the device, shared by a program's steps */
+    const ranks *together; /* nn_options' */
 
     /* the device's answers from create */
     const step_functions *run;

@@ -23,6 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/ranks.h"
 #include "base/status.h"
 
 typedef struct nn_graph nn_graph;
@@ -165,6 +166,9 @@ typedef struct nn_options {
     /* NULL, or a program whose memory for activations this one uses too, if that is large enough. They must not run at
      * once, and compiling or running either leaves nothing in the other's inputs and outputs. */
     const nn_program *beside;
+    /* NULL, or ranks whose batches are parts of one: batch norm, losses and gradients are those of all together, the
+     * same bits in each. All have the same options and parameters. */
+    const ranks *together;
 } nn_options;
 
 status nn_compile(const nn_graph *g, nn_params *params, const nn_options *options, nn_program **out);

@@ -121,6 +121,7 @@ static status fill_params(nn_params *params, const nn_graph *g, const source *fr
     if (!params->values || !gradients || (needed->halves && !halves))
         return fail(ERROR_MEMORY, "no memory for parameters");
     params->value_count = needed->values;
+    params->gradient_count = needed->gradients;
     nn_param *p = params->items;
     for (int i = 0; i < g->count; i++) {
         param_spec specs[PARAMS_PER_NODE];

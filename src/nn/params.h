@@ -8,7 +8,7 @@ struct nn_params {
     nn_param *items, **by_name;
     size_t count;
     uint64_t version; /* grows whenever values change */
-    size_t value_count;
+    size_t value_count, gradient_count;
     float *values, *gradients; /* what the items point into */
     uint16_t *halves;          /* NULL where none is kept so */
 };

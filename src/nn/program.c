@@ -125,7 +125,7 @@ status nn_backward(nn_program *p)
         if (s != OK) s = fail_in(s, "gradient of %s", step->name);
     }
     p->device->end(p->context);
-    return s;
+    return s == OK ? ranks_sum_floats(p->options.together, p->params->gradients, p->params->gradient_count) : s;
 }
 
 float nn_loss(const nn_program *p, const char *name)

@@ -54,7 +54,26 @@ ALWAYS_INLINE void sum_rows(const nn_tensor *x, rows r, float *restrict sum, flo
     }
 }
 
-void norm_statistics(const nn_tensor *x, float *partial, float *mean, float *variance)
+/* Mean and mean square of all ranks' rows from each one's mean and variance. */
+static status join_statistics(const ranks *together, int channels, double *sums, float *mean, float *variance)
+{
+    const double count = ranks_count(together);
+    double *means = sums, *squares = sums + channels;
+    for (int i = 0; i < channels; i++) {
+        means[i] = (double)mean[i];
+        squares[i] = (double)variance[i] + means[i] * means[i];
+    }
+    status s = ranks_sum(together, sums, 2 * (size_t)channels);
+    for (int i = 0; i < channels; i++) {
+        double m = means[i] / count, v = squares[i] / count - m * m;
+        mean[i] = (float)m;
+        variance[i] = v > 0 ? (float)v : 0;
+    }
+    return s;
+}
+
+status norm_statistics(const nn_tensor *x, const ranks *together, float *partial, double *sums, float *mean,
+                       float *variance)
 {
     const int c = x->c;
     const bool bf16 = x->type == NN_BFLOAT16;
@@ -77,6 +96,7 @@ void norm_statistics(const nn_tensor *x, float *partial, float *mean, float *var
         mean[i] = (float)(d + (double)load(x->data, (size_t)i, bf16));
         variance[i] = v > 0 ? (float)v : 0;
     }
+    return ranks_count(together) > 1 ? join_statistics(together, c, sums, mean, variance) : OK;
 }
 
 ALWAYS_INLINE void apply_rows(const nn_tensor *x, rows r, const float *restrict scale, const float *restrict shift,
@@ -165,11 +185,12 @@ static void gradient_chunk(const nn_tensor *x, const nn_tensor *dy, rows r, cons
         write_gradients(x, dy, r, f, relu, w, dx, add, false);
 }
 
-void norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, float *partial,
-                   nn_tensor *dx, bool accumulate)
+status norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, const ranks *together,
+                     float *partial, double *sums, nn_tensor *dx, bool accumulate)
 {
     const size_t channels = (size_t)x->c;
-    const double count = (double)x->n * x->h * x->w;
+    const double count = (double)x->n * x->h * x->w * ranks_count(together);
+    double *products = sums + channels;
     float *a = partial + CHUNKS * 2 * channels, *b = a + channels, *offset = b + channels, *slope = offset + channels;
     for (size_t i = 0; i < channels; i++) {
         a[i] = c->inverse_deviation[i];
@@ -192,10 +213,15 @@ void norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const nor
         }
         c->dbeta[i] = (float)sum;
         c->dgamma[i] = (float)product;
-        offset[i] = (float)(sum / count);
-        slope[i] = (float)(product / count);
+        sums[i] = sum;
+        products[i] = product;
     }
-    if (!dx) return;
+    status s = ranks_sum(together, sums, 2 * channels);
+    if (s != OK || !dx) return s;
+    for (size_t i = 0; i < channels; i++) {
+        offset[i] = (float)(sums[i] / count);
+        slope[i] = (float)(products[i] / count);
+    }
     /* the sums are done with: their place holds γ/σ */
     for (size_t i = 0; i < channels; i++)
         partial[i] = c->gamma[i] * c->inverse_deviation[i];
@@ -203,4 +229,5 @@ void norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const nor
 #pragma omp parallel for schedule(static)
     for (int k = 0; k < CHUNKS; k++)
         gradient_chunk(x, dy, chunk_rows(x, k), &f, relu, &w, dx, accumulate);
+    return OK;
 }

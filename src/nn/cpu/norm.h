@@ -5,6 +5,7 @@
 #ifndef MERLIN_NN_CPU_NORM_H
 #define MERLIN_NN_CPU_NORM_H
 
+#include "base/ranks.h"
 #include "nn/tensor.h"
 
 #define NORM_EPSILON 1e-5f
@@ -12,8 +13,10 @@
 /* Floats of workspace for a channel count. */
 size_t norm_partial_floats(int channels);
 
-/* Mean and biased variance per channel. */
-void norm_statistics(const nn_tensor *x, float *partial, float *mean, float *variance);
+/* Mean and biased variance per channel, of the rows of all ranks. sums: room for two doubles a channel. ERROR_MEMORY.
+ */
+status norm_statistics(const nn_tensor *x, const ranks *together, float *partial, double *sums, float *mean,
+                       float *variance);
 /* y = scale x + shift per channel, then ReLU. */
 void norm_apply(const nn_tensor *x, const float *scale, const float *shift, bool relu, nn_tensor *y);
 
@@ -23,8 +26,8 @@ typedef struct norm_channels {
     float *dgamma, *dbeta;
 } norm_channels;
 /* dx (added to if accumulate), dgamma and dbeta from dy; where ReLU cut is recomputed from x. dx NULL: none is wanted.
- */
-void norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, float *partial,
-                   nn_tensor *dx, bool accumulate);
+ * dgamma and dbeta are this rank's own share. sums as above. ERROR_MEMORY. */
+status norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, const ranks *together,
+                     float *partial, double *sums, nn_tensor *dx, bool accumulate);
 
 #endif

@@ -8,6 +8,7 @@
 typedef struct norm {
     float *mean, *variance, *inverse_deviation, *scale, *shift; /* per channel, in one block */
     float *partial;
+    double *sums; /* two a channel */
 } norm;
 
 static void prepare(const nn_step *step, const float *mean, const float *variance)
@@ -24,7 +25,7 @@ static void prepare(const nn_step *step, const float *mean, const float *varianc
 static void update_running(const nn_step *step)
 {
     const norm *state = step->state;
-    double count = (double)step->out.n * step->out.h * step->out.w;
+    double count = (double)step->out.n * step->out.h * step->out.w * ranks_count(step->together);
     float unbiased = count > 1 ? (float)(count / (count - 1)) : 1;
     float *mean = step->params.running_mean->value, *variance = step->params.running_var->value;
     for (int i = 0; i < step->out.c; i++) {
@@ -37,7 +38,9 @@ static status norm_forward(nn_step *step)
 {
     norm *state = step->state;
     if (step->train) {
-        norm_statistics(&step->in[0], state->partial, state->mean, state->variance);
+        status s =
+            norm_statistics(&step->in[0], step->together, state->partial, state->sums, state->mean, state->variance);
+        if (s != OK) return s;
         prepare(step, state->mean, state->variance);
         update_running(step);
     } else {
@@ -56,15 +59,15 @@ static status norm_backward_step(nn_step *step)
                                     step->params.bias->value,
                                     step->params.weight->gradient,
                                     step->params.bias->gradient};
-    norm_backward(&step->in[0], &step->out_gradient, step->relu, &channels, state->partial,
-                  step->wants[0] ? &step->in_gradient[0] : NULL, step->accumulate[0]);
-    return OK;
+    return norm_backward(&step->in[0], &step->out_gradient, step->relu, &channels, step->together, state->partial,
+                         state->sums, step->wants[0] ? &step->in_gradient[0] : NULL, step->accumulate[0]);
 }
 
 static void norm_release(nn_step *step)
 {
     norm *state = step->state;
     free(state->mean);
+    free(state->sums);
     free(state);
 }
 
@@ -78,8 +81,9 @@ status norm_create(nn_step *step)
     step->state = state;
     size_t c = (size_t)step->out.c, count = 5 * c + norm_partial_floats(step->out.c);
     state->mean = calloc(count, sizeof(float));
-    if (!state->mean) return fail(ERROR_MEMORY, "no memory for batch norm");
-    step->own_bytes = count * sizeof(float);
+    state->sums = calloc(2 * c, sizeof(double));
+    if (!state->mean || !state->sums) return fail(ERROR_MEMORY, "no memory for batch norm");
+    step->own_bytes = count * sizeof(float) + 2 * c * sizeof(double);
     state->variance = state->mean + c;
     state->inverse_deviation = state->variance + c;
     state->scale = state->inverse_deviation + c;

@@ -85,6 +85,17 @@ static void environment_backward(nn_step *step)
     cpu_environment_backward(&in, &step->in[3], &step->out_gradient, &gradients, accumulate);
 }
 
+/* The mean over the masks of all ranks, by whose sum the gradients are divided, too. */
+static status sum_loss(nn_step *step)
+{
+    if (ranks_count(step->together) == 1) return OK;
+    double sums[] = {(double)step->loss * step->mask_sum, step->mask_sum};
+    status s = ranks_sum(step->together, sums, 2);
+    step->loss = sums[1] > 0 ? (float)(sums[0] / sums[1]) : 0;
+    step->mask_sum = sums[1];
+    return s;
+}
+
 static status kernel_forward(nn_step *step)
 {
     const nn_tensor *x = &step->in[0];
@@ -148,12 +159,14 @@ static status kernel_forward(nn_step *step)
         break;
     case OP_MASKED_L2:
         step->loss = cpu_masked_l2(x, x + 1, x + 2, &step->mask_sum);
-        break;
+        return sum_loss(step);
     case OP_MASKED_GRADIENT_L2:
         step->loss = cpu_masked_gradient_l2(x, x + 1, x + 2, &step->mask_sum);
-        break;
-    case OP_MASKED_DSSIM:
-        return cpu_masked_dssim(x, x + 1, x + 2, &step->mask_sum, &step->loss);
+        return sum_loss(step);
+    case OP_MASKED_DSSIM: {
+        status s = cpu_masked_dssim(x, x + 1, x + 2, &step->mask_sum, &step->loss);
+        return s == OK ? sum_loss(step) : s;
+    }
     default:
         return fail(ERROR_DEVICE, "%s has no kernel", op_name(step->op));
     }

@@ -1,0 +1,42 @@
+/* Finds the plug-in that speaks MPI, which nothing else of the program needs. */
+#include <dlfcn.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/ranks.h"
+
+static void *find_plugin(void)
+{
+    static const char *const places[] = {"", "../" MERLIN_PLUGINS "/"};
+    char program[PATH_MAX], path[PATH_MAX + 64];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return NULL;
+    program[length] = 0;
+    int folder = (int)(strrchr(program, '/') + 1 - program);
+    void *found = NULL;
+    for (size_t i = 0; !found && i < sizeof places / sizeof *places; i++) {
+        snprintf(path, sizeof path, "%.*s%smerlin_mpi.so", folder, program, places[i]);
+        if (access(path, F_OK) == 0) found = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
+    }
+    return found;
+}
+
+status ranks_open_mpi(ranks **out)
+{
+    *out = NULL;
+    void *plugin = find_plugin();
+    if (!plugin) {
+        const char *why = dlerror();
+        return fail(ERROR_DEVICE, "there is no MPI: %s",
+                    why ? why : "install openmpi-bin and libopenmpi-dev and build merlin again");
+    }
+    /* dlsym gives functions as objects, which C does not turn into each other */
+    ranks *(*begin)(void);
+    void *function = dlsym(plugin, "merlin_ranks_begin");
+    memcpy(&begin, &function, sizeof begin);
+    if (!function) return fail(ERROR_DEVICE, "merlin_mpi.so is of another version: %s", dlerror());
+    *out = begin();
+    return *out ? OK : fail(ERROR_DEVICE, "MPI does not start");
+}
