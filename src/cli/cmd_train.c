@@ -20,6 +20,8 @@ static const char help[] =
     "      --init-shared W start from those of another model's weights that fit by name and shape; may be repeated:\n"
     "                      what several have is taken from the last\n"
     "  -n, --note TEXT     kept in the weights, such as the commit they were trained with\n"
+    "      --mpi           share every batch with the other ranks that mpirun or srun has started "
+    "(docs/performance.md)\n"
     "  -t, --threads N     how many threads work (default: one a processor)\n"
     "  -q, --quiet         no progress bar\n"
     "  -h, --help          this text\n"
@@ -31,7 +33,7 @@ enum { MOST_SHARED = 8 };
 typedef struct request {
     trn_options options;
     const char *shared[MOST_SHARED + 1]; /* ended by NULL */
-    bool help;
+    bool help, mpi;
 } request;
 
 static status take_shared(const char *name, void *into)
@@ -55,6 +57,7 @@ static status parse(int argc, char **argv, request *r)
         {"init", 'i', .text = &o->init},
         {"init-shared", .take = take_shared, .into = r},
         {"note", 'n', .text = &o->note},
+        {"mpi", .flag = &r->mpi},
         {"quiet", 'q', .flag = &o->quiet},
         {"help", 'h', .flag = &r->help},
         {0},
@@ -96,12 +99,27 @@ static status train(request *r)
     return s;
 }
 
+/* One of the ranks says what all know. */
+static int end(ranks *together, status s)
+{
+    bool all_know = s == OK || s == ERROR_STOPPED || s == ERROR_ELSEWHERE;
+    bool silent = s == OK || s == ERROR_ELSEWHERE || (s == ERROR_STOPPED && ranks_index(together) > 0);
+    int code = s == OK ? 0 : 1;
+    if (!silent) code = cli_fail("train", s);
+    if (all_know)
+        ranks_close(together);
+    else
+        ranks_abandon(together);
+    return code;
+}
+
 int cmd_train(int argc, char **argv)
 {
     request r = {.options = {.interrupted = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("train", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    status s = train(&r);
-    return s == OK ? 0 : cli_fail("train", s);
+    status s = r.mpi ? ranks_open_mpi(&r.options.together) : OK;
+    if (s == OK) s = train(&r);
+    return end(r.options.together, s);
 }

@@ -71,16 +71,17 @@ static bool scan_losses(const char *text, trn_losses *l)
 static status write_tensors(const char *path, const st_tensor *tensors, size_t count, const nn_adam *adam,
                             const trn_state *state, const trn_identity *identity)
 {
-    char counters[128], samples[32], best[64], open[64 * (MODEL_LOSSES + 2)];
+    char counters[128], samples[32], processes[16], best[64], open[64 * (MODEL_LOSSES + 2)];
     snprintf(counters, sizeof counters, "%" PRId64 " %" PRId64 " %" PRId64, state->step, nn_adam_steps(adam),
              nn_adam_skipped(adam));
     snprintf(samples, sizeof samples, "%zu", identity->samples);
+    snprintf(processes, sizeof processes, "%d", identity->ranks);
     snprintf(best, sizeof best, "%a", state->best);
     print_losses(&state->open, open, sizeof open);
     const char *const metadata[][2] = {
         {"checkpoint", "1"},  {"config", identity->model}, {"training", identity->training},
-        {"samples", samples}, {"counters", counters},      {"best", best},
-        {"open_losses", open}};
+        {"samples", samples}, {"ranks", processes},        {"counters", counters},
+        {"best", best},       {"open_losses", open}};
     return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
 }
 
@@ -134,6 +135,16 @@ static status must_match(const char *path, const char *found, const char *wanted
     return s;
 }
 
+/* Checkpoints of one process alone may be older than ranks. */
+static status must_have_ranks(const char *path, const char *found, int wanted)
+{
+    long before = found ? strtol(found, NULL, 10) : 1;
+    if (before == wanted) return OK;
+    return fail(ERROR_INPUT,
+                "%s was made by %ld %s, these are %d: go on with as many, or start afresh in another folder", path,
+                before, before == 1 ? "process" : "ranks", wanted);
+}
+
 static status read_counters(const st_file *f, const char *path, nn_adam *adam, trn_state *state,
                             const trn_identity *identity)
 {
@@ -142,6 +153,7 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     status s = must_equal(path, "model configuration", st_metadata(f, "config"), identity->model);
     if (s == OK) s = must_match(path, st_metadata(f, "training"), identity->training);
     if (s == OK) s = must_equal(path, "number of samples", st_metadata(f, "samples"), samples);
+    if (s == OK) s = must_have_ranks(path, st_metadata(f, "ranks"), identity->ranks);
     if (s != OK) return s;
     const char *counters = st_metadata(f, "counters"), *open = st_metadata(f, "open_losses");
     const char *best = st_metadata(f, "best");
@@ -185,4 +197,18 @@ status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_sta
     if (s == OK) s = read_tensors(f, path, learner);
     st_close(f);
     return s;
+}
+
+void trn_checkpoint_share(const ranks *together, const trn_learner *l, trn_state *state)
+{
+    int64_t steps[] = {nn_adam_steps(l->adam), nn_adam_skipped(l->adam)};
+    for (size_t i = 0; i < nn_params_count(l->params); i++)
+        for (int which = 0; which < PARTS; which++) {
+            float *values = part_of(l, i, which);
+            if (values) ranks_share(together, values, nn_params_at(l->params, i)->count * sizeof *values);
+        }
+    ranks_share(together, steps, sizeof steps);
+    ranks_share(together, state, sizeof *state);
+    nn_adam_set_steps(l->adam, steps[0], steps[1]);
+    nn_params_touch(l->params);
 }

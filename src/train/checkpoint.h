@@ -17,6 +17,7 @@ typedef struct trn_state {
 typedef struct trn_identity {
     const char *model, *training;
     size_t samples;
+    int ranks; /* processes: other numbers add up otherwise */
 } trn_identity;
 
 /* What a step changes. */
@@ -28,7 +29,10 @@ typedef struct trn_learner {
 
 status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
                             const trn_identity *identity);
-/* Refuses a checkpoint of another data set or configuration, but for memory_gib and checkpoint_minutes. */
+/* Gives every rank what rank 0 has. */
+void trn_checkpoint_share(const ranks *together, const trn_learner *learner, trn_state *state);
+/* Refuses a checkpoint of another data set, number of ranks or configuration, but for memory_gib and
+ * checkpoint_minutes. */
 status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state,
                            const trn_identity *identity);
 

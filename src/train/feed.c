@@ -93,7 +93,7 @@ status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **ou
     trn_feed *f = calloc(1, sizeof *f);
     if (!f) return fail(ERROR_MEMORY, "out of memory for a batch");
     f->source = *source;
-    f->batch = (size_t)source->config->batch;
+    f->batch = (size_t)source->batch;
     f->items = calloc(f->batch, sizeof *f->items);
     status s = f->items ? OK : fail(ERROR_MEMORY, "out of memory for a batch");
     for (int i = 0; i < buffer_count(source) && s == OK; i++)

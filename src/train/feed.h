@@ -16,6 +16,7 @@ typedef struct trn_source {
     bool environment; /* setting B; the data set has environments */
     bool any;         /* any light, any lens; the data set has lamps */
     size_t training_count;
+    int batch; /* of the program: a rank's share of the configuration's */
 } trn_source;
 
 status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **out);

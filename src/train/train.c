@@ -22,6 +22,7 @@ typedef struct run {
     paths paths;
     trn_dataset *data;
     size_t training_count;
+    int batch; /* of this rank: its share of the configuration's */
     nn_graph *graph;
     nn_params *params;
     nn_adam *adam;
@@ -55,12 +56,29 @@ static void close_run(run *r)
     free(r->training_json);
 }
 
+static bool is_first(const run *r)
+{
+    return ranks_index(r->options->together) == 0;
+}
+
 static status read_configuration(run *r)
 {
+    const int sharing = ranks_count(r->options->together);
     status s = train_config_read(r->options->config, &r->model, &r->training);
     if (s != OK) return s;
+    r->batch = r->training.batch / sharing;
+    if (r->training.batch % sharing)
+        return fail(ERROR_USAGE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
     r->model_json = model_config_write(&r->model);
     return r->model_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+/* The type of rank 0, where each would take what is faster on its machine. */
+static void share_type(run *r)
+{
+    int type = (int)r->training.type;
+    ranks_share(r->options->together, &type, sizeof type);
+    r->training.type = (nn_type)type;
 }
 
 /* What was trained in, not what was asked for: another type's sums are others. */
@@ -156,9 +174,15 @@ static status load_weights(nn_params *params, const trn_options *o)
 static status build(run *r)
 {
     const train_config *c = &r->training;
-    nn_options options = {.batch = c->batch, .height = c->size, .width = c->size, .type = c->type, .purpose = NN_TRAIN};
+    nn_options options = {.batch = r->batch,
+                          .height = c->size,
+                          .width = c->size,
+                          .type = c->type,
+                          .purpose = NN_TRAIN,
+                          .together = r->options->together};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
-    trn_source source = {r->data, c, r->model.input_global, is_lit_by_both(r), is_lit_by_any(r), r->training_count};
+    trn_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
+                         r->training_count, r->batch};
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
@@ -184,7 +208,8 @@ static trn_learner learner_of(const run *r)
 
 static trn_identity identity_of(const run *r)
 {
-    return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data)};
+    return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data),
+                          ranks_count(r->options->together)};
 }
 
 /* Time spent is kept beside the checkpoint, not in it: a resumed run's files are those of one that was not stopped. */
@@ -217,20 +242,34 @@ static status resume(run *r)
     return s == OK ? read_seconds(r) : s;
 }
 
-static status begin(run *r)
+/* What rank 0 alone reads and writes. */
+static status begin_files(run *r)
 {
-    r->state.best = INFINITY;
-    status s = read_configuration(r);
-    if (s == OK) s = name_output(r);
-    if (s == OK) s = open_data(r);
-    if (s == OK) s = build(r);
-    if (s == OK) s = file_make_folder(r->options->output);
+    status s = file_make_folder(r->options->output);
     if (s != OK) return s;
-    r->resumed_at = r->saved_at = clock_seconds();
     if (r->options->resume) return resume(r);
     /* curves left by a run that never reached its first checkpoint */
     s = trn_curve_truncate(r->paths.curves, 0);
     return s == OK ? trn_curve_truncate(r->paths.validation, 0) : s;
+}
+
+static status begin(run *r)
+{
+    ranks *together = r->options->together;
+    r->state.best = INFINITY;
+    status s = ranks_agree(together, read_configuration(r));
+    if (s != OK) return s;
+    share_type(r);
+    if (is_first(r)) s = name_output(r);
+    if (s == OK) s = open_data(r);
+    if (s == OK) s = build(r);
+    r->resumed_at = r->saved_at = clock_seconds();
+    if (s == OK && is_first(r)) s = begin_files(r);
+    s = ranks_agree(together, s);
+    if (s != OK || ranks_count(together) == 1) return s;
+    trn_learner learner = learner_of(r);
+    trn_checkpoint_share(together, &learner, &r->state);
+    return OK;
 }
 
 static int64_t presented(const run *r)
@@ -238,8 +277,15 @@ static int64_t presented(const run *r)
     return r->state.step * r->training.batch;
 }
 
+/* Where this rank's share of the next batch begins. */
+static uint64_t own_presentations(const run *r)
+{
+    return (uint64_t)(presented(r) + (int64_t)ranks_index(r->options->together) * r->batch);
+}
+
 static status export_weights(run *r)
 {
+    if (!is_first(r)) return OK;
     trn_provenance from = {.config = r->model_json,
                            .training = r->training_json,
                            .note = r->options->note,
@@ -264,6 +310,7 @@ static status with_average(run *r, status (*act)(run *))
 static status save(run *r)
 {
     r->saved_at = clock_seconds();
+    if (!is_first(r)) return OK;
     trn_identity identity = identity_of(r);
     trn_learner learner = learner_of(r);
     /* before the checkpoint: behind the last one nothing is done again */
@@ -297,7 +344,7 @@ static trn_curve_row row_of(const run *r)
 static status settle_statistics(run *r)
 {
     enum { SETTLING_BATCHES = 64 };
-    uint64_t first = (uint64_t)presented(r);
+    uint64_t first = own_presentations(r);
     status s = OK;
     for (int i = 0; s == OK && i < SETTLING_BATCHES; i++) {
         nn_set_norm_momentum(r->program, 1.0f / (float)(i + 1));
@@ -315,13 +362,13 @@ static status validate(run *r)
     status settled = settle_statistics(r);
     if (settled != OK) return settled;
     for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
-        status s = trn_feed_validation(r->judge_feed, (size_t)first);
+        status s = trn_feed_validation(r->judge_feed, (size_t)(first + ranks_index(r->options->together) * r->batch));
         if (s == OK) s = nn_forward(r->judge);
         if (s != OK) return s;
         trn_losses_add(&losses, r->judge);
     }
     trn_curve_row row = row_of(r);
-    status s = trn_curve_append(r->paths.validation, &row, &losses);
+    status s = is_first(r) ? trn_curve_append(r->paths.validation, &row, &losses) : OK;
     double mean = losses.total / (double)losses.count;
     if (s != OK || !(mean < r->state.best)) return s;
     r->state.best = mean;
@@ -331,7 +378,7 @@ static status validate(run *r)
 static status end_row(run *r)
 {
     trn_curve_row row = row_of(r);
-    status s = trn_curve_append(r->paths.curves, &row, &r->state.open);
+    status s = is_first(r) ? trn_curve_append(r->paths.curves, &row, &r->state.open) : OK;
     if (s == OK && !isfinite(r->state.open.total))
         s = fail(ERROR_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
                  (long long)r->state.step);
@@ -342,7 +389,7 @@ static status end_row(run *r)
 static status one_step(run *r)
 {
     uint64_t first = (uint64_t)presented(r);
-    status s = trn_feed_training(r->feed, &r->order, first);
+    status s = trn_feed_training(r->feed, &r->order, own_presentations(r));
     if (s == OK) s = nn_forward(r->program);
     if (s == OK) s = nn_backward(r->program);
     if (s == OK) s = nn_adam_step(r->adam, (float)trn_learning_rate(&r->training, r->training_count, first));
@@ -362,16 +409,28 @@ static bool is_time_to_save(const run *r, int64_t last)
     return r->state.step < last && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes;
 }
 
+/* Whether any rank was asked to stop. */
+static status ask_to_stop(const run *r, bool *stop)
+{
+    double asked = r->options->interrupted && r->options->interrupted();
+    status s = ranks_sum(r->options->together, &asked, 1);
+    *stop = asked > 0;
+    return s;
+}
+
 static status steps(run *r, int64_t last, progress *bar)
 {
     while (r->state.step < last) {
+        bool stop = false;
         status s = one_step(r);
         if (s == OK && is_time_to_save(r, last)) s = save(r);
         if (s != OK) return s;
         char note[64];
         snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->program));
         progress_update(bar, (size_t)presented(r), note);
-        if (r->state.step < last && r->options->interrupted && r->options->interrupted()) {
+        if (r->state.step < last) s = ask_to_stop(r, &stop);
+        if (s != OK) return s;
+        if (stop) {
             s = save(r);
             return s != OK ? s
                            : fail(ERROR_STOPPED, "stopped after %lld presentations; --resume goes on from there",
@@ -387,7 +446,7 @@ static status go(run *r)
     bool finished_before = r->state.step >= last;
     progress bar;
     progress_begin(&bar, "train", "presentations", (size_t)presented(r), (size_t)(last * r->training.batch),
-                   r->options->quiet);
+                   r->options->quiet || !is_first(r));
     status s = steps(r, last, &bar);
     progress_end(&bar);
     if (s != OK || finished_before) return s;

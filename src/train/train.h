@@ -12,6 +12,7 @@
 
 #include <stdbool.h>
 
+#include "base/ranks.h"
 #include "base/status.h"
 
 typedef struct trn_options {
@@ -23,9 +24,11 @@ typedef struct trn_options {
     bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
     bool quiet;
     int (*interrupted)(void); /* asked after every step; NULL: never */
+    ranks *together;          /* NULL, or processes that share every batch: rank 0 alone writes */
 } trn_options;
 
-/* ERROR_STOPPED after an interrupt, with everything saved. */
+/* ERROR_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
+ * ERROR_ELSEWHERE. Later the others wait for one that has failed: ranks_abandon ends them. */
 status trn_train(const trn_options *o);
 
 #endif
