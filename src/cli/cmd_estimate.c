@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "base/file.h"
+#include "base/messages.h"
 #include "base/progress.h"
 #include "cli/check_files.h"
 #include "cli/cli.h"
@@ -51,6 +52,8 @@ static const char help[] =
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
     "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
+    "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
+    "  -r, --resume         of several, those alone whose maps are not there yet, or older than photograph or mask\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -61,7 +64,8 @@ static const char help[] =
 typedef struct request {
     const char *mask, *output, *weights;
     merlin_params params;
-    bool mesh, flash, json, quiet, help;
+    photo_share share; /* of 0: all */
+    bool mesh, flash, resume, json, quiet, help;
     mesh_names meshes;
     merlin_model *model;
     const photo_list *photos;
@@ -96,6 +100,8 @@ static status parse(int *argc, char ***argv, request *r)
         {"flash", .flag = &r->flash},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name},
+        {"share", .take = photo_take_share, .into = &r->share},
+        {"resume", 'r', .flag = &r->resume},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
@@ -302,6 +308,15 @@ static int estimate_all(request *r, const photo_list *photos, const char *weight
     return code;
 }
 
+/* What others do, and what is done. */
+static void leave_out(const request *r, photo_list *photos)
+{
+    if (r->share.of) photo_list_share(photos, &r->share);
+    size_t done = r->resume ? photo_list_drop_done(photos) : 0;
+    if (done && !r->quiet)
+        fprintf(messages(), "merlin estimate: %zu of %zu photographs have their maps\n", done, done + photos->count);
+}
+
 int cmd_estimate(int argc, char **argv)
 {
     request r = {.params = merlin_params_default()};
@@ -315,10 +330,11 @@ int cmd_estimate(int argc, char **argv)
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     if (!r.quiet) photo_list_tell(&photos, "estimate");
+    leave_out(&r, &photos);
     bool told = false;
     r.photos = &photos;
     r.told = &told;
-    if (photo_hint_given(&r.params.hint)) photo_use_hint(&photos.at[0], &r.params.hint);
+    if (photo_hint_given(&r.params.hint) && photos.count) photo_use_hint(&photos.at[0], &r.params.hint);
     s = photo_find_model(r.weights, &weights);
     stage_bar bar;
     stage_bar_begin(&bar, r.quiet);

@@ -1,9 +1,11 @@
 #include "cli/photos.h"
 
 #include <limits.h>
+#include <search.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -60,13 +62,17 @@ void photo_use_hint(photo_job *job, const merlin_hint *hint)
     job->hint = hint;
 }
 
+static void free_job(photo_job *job)
+{
+    free(job->photo);
+    free(job->output);
+    free(job->mask);
+}
+
 void photo_list_free(photo_list *list)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        free(list->at[i].photo);
-        free(list->at[i].output);
-        free(list->at[i].mask);
-    }
+    for (size_t i = 0; i < list->count; i++)
+        free_job(&list->at[i]);
     for (size_t i = 0; i < list->folders; i++) {
         free(list->folder[i].path);
         skipped_free(&list->folder[i].skipped);
@@ -104,15 +110,23 @@ static bool is_same_place(const char *one, const char *other)
     return same;
 }
 
-static bool is_taken(const photo_list *list, size_t before, const char *output)
+static int compare_last_names(const void *a, const void *b)
 {
+    return strcmp(file_name_of(a), file_name_of(b));
+}
+
+/* names: a tree of the last names that are taken; most are not, and hundred thousands are not looked through for each.
+ */
+static bool is_taken(const photo_list *list, void *const *names, size_t before, const char *output)
+{
+    if (!tfind(output, names, compare_last_names)) return false;
     for (size_t i = 0; i < before; i++)
         if (is_same_place(list->at[i].output, output)) return true;
     return false;
 }
 
 /* A folder name that no earlier photograph of the batch has: cup.png and cup.jpg may stand side by side. */
-static status choose_output(photo_list *list, size_t i, const char *folder)
+static status choose_output(photo_list *list, void **names, size_t i, const char *folder)
 {
     photo_job *job = &list->at[i];
     for (int number = 1; number < 10000; number++) {
@@ -131,13 +145,28 @@ static status choose_output(photo_list *list, size_t i, const char *folder)
             name = format_name(job->photo, stem_length(job->photo), suffix);
         }
         if (!name) return no_memory();
-        if (!is_taken(list, i, name)) {
+        if (!is_taken(list, names, i, name)) {
             job->output = name;
-            return OK;
+            return tsearch(name, names, compare_last_names) ? OK : no_memory();
         }
         free(name);
     }
     return fail(ERROR_USAGE, "too many photographs are called %s", job->photo);
+}
+
+static void keep(void *name)
+{
+    (void)name; /* the list's */
+}
+
+static status choose_outputs(photo_list *list, const char *folder)
+{
+    void *names = NULL;
+    status s = OK;
+    for (size_t i = 0; i < list->count && s == OK; i++)
+        s = choose_output(list, &names, i, folder);
+    tdestroy(names, keep);
+    return s;
 }
 
 /* Without a mask that was asked for it has its own. */
@@ -165,9 +194,7 @@ static status fill_list(char *const *arguments, int count, const char *mask, con
         out->at[0].output = strdup(output);
         return out->at[0].output ? OK : no_memory();
     }
-    for (size_t i = 0; i < out->count && s == OK; i++)
-        s = choose_output(out, i, output);
-    return s;
+    return choose_outputs(out, output);
 }
 
 status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out)
@@ -176,6 +203,51 @@ status photo_list_make(char *const *arguments, int count, const char *mask, cons
     status s = fill_list(arguments, count, mask, output, out);
     if (s != OK) photo_list_free(out);
     return s;
+}
+
+/* Drops all that are not kept, by their number. */
+static void keep_those(photo_list *list, bool (*kept)(const photo_job *job, size_t i, const void *context),
+                       const void *context)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < list->count; i++)
+        if (kept(&list->at[i], i, context))
+            list->at[count++] = list->at[i];
+        else
+            free_job(&list->at[i]);
+    list->count = count;
+}
+
+static bool is_of_share(const photo_job *job, size_t i, const void *context)
+{
+    const photo_share *share = context;
+    (void)job;
+    return i % share->of == share->which - 1;
+}
+
+void photo_list_share(photo_list *list, const photo_share *share)
+{
+    keep_those(list, is_of_share, share);
+}
+
+/* As make does: what is younger than its maps was changed since. */
+static bool is_to_do(const photo_job *job, size_t i, const void *context)
+{
+    struct stat photo, mask, report;
+    char *path = file_join(job->output, "report.json");
+    bool there = path && stat(path, &report) == 0;
+    free(path);
+    (void)i;
+    (void)context;
+    if (!there || stat(job->photo, &photo) != 0 || photo.st_mtime > report.st_mtime) return true;
+    return job->mask && (stat(job->mask, &mask) != 0 || mask.st_mtime > report.st_mtime);
+}
+
+size_t photo_list_drop_done(photo_list *list)
+{
+    size_t before = list->count;
+    keep_those(list, is_to_do, NULL);
+    return before - list->count;
 }
 
 void photo_list_tell(const photo_list *list, const char *command)
@@ -205,6 +277,16 @@ void photo_list_put(const photo_list *list, cJSON *report)
 }
 
 /* ---- options ---- */
+
+status photo_take_share(const char *text, void *into)
+{
+    photo_share *share = into;
+    int used = 0;
+    if (sscanf(text, "%zu/%zu%n", &share->which, &share->of, &used) == 2 && !text[used] && !strchr(text, '-') &&
+        share->which >= 1 && share->which <= share->of)
+        return OK;
+    return fail(ERROR_USAGE, "--share wants K/N, the K-th of N shares, such as 1/4, not '%s'", text);
+}
 
 /* NAME.safetensors where the program's own weights are; *path is NULL if there is none. */
 static status find_shipped(const char *name, char **path)

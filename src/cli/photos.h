@@ -33,6 +33,15 @@ typedef struct photo_list {
  * several; without it a photograph's mask is what lies beside it under one of a mask's usual names (docs/pictures.md).
  */
 status photo_list_make(char *const *arguments, int count, const char *mask, const char *output, photo_list *out);
+
+/* One of so many shares of a list, counted from 1. */
+typedef struct photo_share {
+    size_t which, of;
+} photo_share;
+/* Keeps every N-th alone. Where results go does not depend on it. */
+void photo_list_share(photo_list *list, const photo_share *share);
+/* Drops the photographs whose maps are there and not older than photograph and mask; returns how many. */
+size_t photo_list_drop_done(photo_list *list);
 /* Prints one line for each folder that something was left aside of. */
 void photo_list_tell(const photo_list *list, const char *command);
 /* Adds to a photograph's report what was left aside of all folders, if anything was. */
@@ -57,6 +66,8 @@ status photo_find_model(const char *asked, char **path);
 
 /* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */
 status photo_take_size(const char *text, void *into);
+/* "K/N" of --share; into is a photo_share. */
+status photo_take_share(const char *text, void *into);
 status photo_take_exposure(const char *text, void *into);
 /* Whether --size, --views, --exposure, --point or --box ask for anything but the defaults. */
 bool photo_params_given(const merlin_params *params);

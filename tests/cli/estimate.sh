@@ -297,6 +297,21 @@ succeeds 'again/b.hdr' estimate again --size 64
 absent again/albedo.merlin again/maps.merlin
 rm -r again
 
+echo "a batch is shared, and goes on where it was"
+mkdir shares
+for name in a b c; do cp disc.hdr "shares/$name.hdr"; done
+cp disc.hdr shares/a.rgbe.hdr
+estimate shares --size 64 -o shared --share 1/2 >out 2>err || complain "a share fails: $(cat err)"
+[ "$(ls shared | tr '\n' ' ')" = "a b " ] || complain "the first of two shares of four is $(ls shared)"
+estimate shares --size 64 -o shared --resume >out 2>err || complain "a batch does not go on: $(cat err)"
+[ "$(ls shared | tr '\n' ' ')" = "a a.rgbe b c " ] && [ "$(wc -l <out)" -eq 2 ] || complain "not the rest but $(cat out)"
+grep -q "2 of 4 photographs have their maps" err || complain "what was there is not told: $(cat err)"
+touch -d "1 hour" shares/b.hdr
+estimate shares --size 64 -o shared -r >out 2>err || complain "a changed photograph is not taken again: $(cat err)"
+grep -q "^shares/b.hdr" out && [ "$(wc -l <out)" -eq 1 ] || complain "not the changed one alone but $(cat out)"
+for wrong in 0/2 3/2 1 1/0 a/b -1/2 1/2x; do refuses 2 "wants K/N" estimate shares --share="$wrong"; done
+rm -r shares shared
+
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done
