@@ -99,7 +99,10 @@ status ranks_agree(const ranks *r, status s)
 {
     if (is_alone(r)) return s;
     int mine = (int)s, *all = malloc((size_t)r->count * sizeof *all), first = 0;
-    if (!all) r->abandon();
+    if (!all) { /* the others wait in vain */
+        r->abandon();
+        return fail(ERROR_MEMORY, "no memory to hear from %d ranks", r->count);
+    }
     r->gather(&mine, all, sizeof mine);
     while (first < r->count && all[first] == (int)OK)
         first++;

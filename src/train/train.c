@@ -362,7 +362,8 @@ static status validate(run *r)
     status settled = settle_statistics(r);
     if (settled != OK) return settled;
     for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
-        status s = trn_feed_validation(r->judge_feed, (size_t)(first + ranks_index(r->options->together) * r->batch));
+        const int own = first + ranks_index(r->options->together) * r->batch;
+        status s = trn_feed_validation(r->judge_feed, (size_t)own);
         if (s == OK) s = nn_forward(r->judge);
         if (s != OK) return s;
         trn_losses_add(&losses, r->judge);
