@@ -35,15 +35,37 @@ static int slower_first(const void *a, const void *b)
     return (x->seconds < y->seconds) - (x->seconds > y->seconds);
 }
 
+static status measure_once(const bench_layers_options *o, bench_layer_run *run, nn_filtering filtering)
+{
+    bench_program work;
+    run->options.filtering = filtering;
+    status s = bench_program_new(o->weights, &run->options, &work);
+    if (s == OK) s = nn_measure_layers(work.program, o->quick ? 2 : 10, keep, run);
+    bench_program_free(&work);
+    return s;
+}
+
+/* The same layers, computed in the other ways. */
+static status measure_ways(const bench_layers_options *o, bench_layer_run *run)
+{
+    for (int all = 0; all <= 1; all++) {
+        bench_layer_run way = {.options = run->options};
+        status s = measure_once(o, &way, all ? NN_FILTER_ALL : NN_FILTER_NONE);
+        for (size_t i = 0; i < run->count && i < way.count && s == OK; i++)
+            *(all ? &run->layer[i].filtered : &run->layer[i].summed) = way.layer[i].seconds;
+        free(way.layer);
+        if (s != OK) return s;
+    }
+    return OK;
+}
+
 static status measure_run(const bench_layers_options *o, const nn_options *options, const nn_peak *peak,
                           bench_layers *out)
 {
     bench_layer_run *run = &out->run[out->runs++];
     *run = (bench_layer_run){.options = *options, .peak = bench_peak_for(peak, options->purpose)};
-    bench_program work;
-    status s = bench_program_new(o->weights, options, &work);
-    if (s == OK) s = nn_measure_layers(work.program, o->quick ? 2 : 10, keep, run);
-    bench_program_free(&work);
+    status s = measure_once(o, run, NN_FILTER_FASTER);
+    if (s == OK) s = measure_ways(o, run);
     if (s == OK) qsort(run->layer, run->count, sizeof *run->layer, slower_first);
     return s;
 }
@@ -104,8 +126,8 @@ static void print_run(const bench_layer_run *run, FILE *stream)
     const nn_options *o = &run->options;
     fprintf(stream, "\n%s, %d of %dx%d, %s: %.1f ms in %zu steps, peak %.0f GFLOP/s\n", purpose_name(run), o->batch,
             o->width, o->height, bench_type_name(o->type), run->seconds * 1e3, run->count, run->peak * 1e-9);
-    fprintf(stream, "%-9s%-18s %-39s %-17s%9s%9s%9s%10s%9s\n", "pass", "operation", "name", "result", "ms", "of time",
-            "GFLOP", "GFLOP/s", "of peak");
+    fprintf(stream, "%-9s%-18s %-39s %-17s%9s%9s%9s%10s%9s%10s%9s\n", "pass", "operation", "name", "result", "ms",
+            "of time", "GFLOP", "GFLOP/s", "of peak", "filtered", "summed");
     for (size_t i = 0; i < run->count; i++) {
         const bench_layer *l = &run->layer[i];
         char shape[64];
@@ -115,6 +137,7 @@ static void print_run(const bench_layer_run *run, FILE *stream)
         if (l->flops > 0)
             fprintf(stream, "%9.3f%10.0f%7.0f %%", l->flops * 1e-9, l->flops / l->seconds * 1e-9,
                     100 * share_of_peak(run, l));
+        if (l->flops > 0) fprintf(stream, "%10.3f%9.3f", l->filtered * 1e3, l->summed * 1e3);
         fputc('\n', stream);
     }
 }
@@ -138,6 +161,8 @@ static void add_layer(cJSON *parent, const bench_layer_run *run, const bench_lay
     cJSON_AddNumberToObject(o, "seconds", l->seconds);
     cJSON_AddNumberToObject(o, "gflop", l->flops * 1e-9);
     cJSON_AddNumberToObject(o, "share_of_peak", share_of_peak(run, l));
+    cJSON_AddNumberToObject(o, "filtered", l->filtered);
+    cJSON_AddNumberToObject(o, "summed", l->summed);
 }
 
 char *bench_layers_json(const bench_layers *layers)

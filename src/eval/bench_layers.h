@@ -22,6 +22,7 @@ typedef struct bench_layer {
     int n, h, w, c; /* of the result */
     double seconds; /* the best run */
     double flops;
+    double filtered, summed; /* seconds where Winograd's filtering is taken wherever it can be, and where it never is */
 } bench_layer;
 
 typedef struct bench_layer_run {

@@ -39,6 +39,7 @@ static status fill_step(compilation *c, int index)
     *step = (nn_step){.op = head->node->op,
                       .at = head->node->at,
                       .compute = c->low.options.type,
+                      .filtering = c->low.options.filtering,
                       .train = train,
                       .momentum = NN_NORM_MOMENTUM,
                       .relu = from->relu,

@@ -25,7 +25,8 @@ struct nn_step {
     nn_op op;
     char *name;
     nn_attributes at;
-    nn_type compute;  /* the type convolutions run in */
+    nn_type compute; /* the type convolutions run in */
+    nn_filtering filtering;
     bool train, relu; /* relu: applied to the result */
     bool backs;       /* has a backward pass */
     float momentum;   /* of batch norm's running statistics */

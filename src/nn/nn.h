@@ -158,6 +158,10 @@ typedef enum nn_purpose {
     NN_INFER, /* batch norm by running statistics, folded into the convolution before it */
     NN_TRAIN, /* batch statistics; nn_backward works */
 } nn_purpose;
+/* Which 3×3 convolutions are computed by Winograd's filtering: those that are faster so by what was measured on a
+ * processor of this kind, or, to measure it, none or all that can be. */
+typedef enum nn_filtering { NN_FILTER_FASTER, NN_FILTER_NONE, NN_FILTER_ALL } nn_filtering;
+
 typedef struct nn_options {
     int batch, height, width;
     nn_type type;
@@ -166,6 +170,7 @@ typedef struct nn_options {
     /* NULL, or a program whose memory for activations this one uses too, if that is large enough. They must not run at
      * once, and compiling or running either leaves nothing in the other's inputs and outputs. */
     const nn_program *beside;
+    nn_filtering filtering;
     /* NULL, or ranks whose batches are parts of one: batch norm, losses and gradients are those of all together, the
      * same bits in each. All have the same options and parameters. */
     const ranks *together;

@@ -19,7 +19,7 @@ fi
 if "$MERLIN" bench --layers --quick --batch 2 --quiet --model "$scratch/weights.safetensors" >"$scratch/layers.txt"; then
     for line in "^inference, 1 of 256x256, float32: [0-9.]+ ms in [0-9]+ steps, peak [0-9]+ GFLOP/s$" \
         "^training step, 2 of 128x128, float32: " \
-        "^forward +conv2d +encoder.level0.a.conv +1x[0-9]+x[0-9]+x[0-9]+ +[0-9.]+ +[0-9.]+ % +[0-9.]+ +[0-9]+ +[0-9]+ %$" \
+        "^forward +conv2d +encoder.level0.a.conv +1x[0-9]+x[0-9]+x[0-9]+ +[0-9.]+ +[0-9.]+ % +[0-9.]+ +[0-9]+ +[0-9]+ % +[0-9.]+ +[0-9.]+$" \
         "^backward +conv2d +material.head "; do
         grep -q -E "$line" "$scratch/layers.txt" || complain "the layers have no line $line"
     done
@@ -30,7 +30,7 @@ else
     complain "bench --layers failed"
 fi
 "$MERLIN" bench --layers --quick --batch 2 --quiet --json --model "$scratch/weights.safetensors" >"$scratch/layers.json" &&
-    grep -q '"share_of_peak"' "$scratch/layers.json" || complain "bench --layers has no JSON"
+    grep -q '"share_of_peak"' "$scratch/layers.json" && grep -q '"filtered":[[:space:]]*[0-9.e-]*[1-9]' "$scratch/layers.json" || complain "bench --layers has no JSON"
 
 if "$MERLIN" bench --stereo --quick --quiet --json >"$scratch/stereo.json"; then
     mapfile -t working < <(grep -o '"working_bytes":[[:space:]]*[0-9]*' "$scratch/stereo.json" | grep -o '[0-9]*$')

@@ -9,10 +9,6 @@
 #include "nn/cpu/steps.h"
 #include "nn/cpu/winograd.h"
 
-/* With fewer tiles the weights, four times as many as without it, cost more to make and to read than is gained; where
- * nothing is trained, more to hold. */
-enum { LEAST_TILES = 128, LEAST_TILES_TRAINED = 48 };
-
 typedef struct state {
     winograd shape;
     void *weights, *weights_back, *folded_bias; /* floats */
@@ -31,9 +27,8 @@ static bool is_whole(int channels)
 
 bool winograd_suits(const nn_step *step)
 {
-    const winograd shape = shape_of(step);
-    return step->at.kernel == 3 && step->at.stride == 1 && step->in[0].type == step->compute && is_whole(shape.in) &&
-           is_whole(shape.out) && winograd_tiles(&shape) >= (step->backs ? LEAST_TILES_TRAINED : LEAST_TILES);
+    return step->at.kernel == 3 && step->at.stride == 1 && step->in[0].type == step->compute &&
+           is_whole(step->in[0].c) && is_whole(step->out.c);
 }
 
 static void release(nn_step *step)
