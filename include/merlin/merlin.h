@@ -80,6 +80,10 @@ void merlin_image_free(merlin_image *image);
 typedef struct merlin_model merlin_model;
 
 merlin_status merlin_model_open(const char *weights, merlin_model **out);
+/* Gives a model of any light another for photographs that are lit by a flash alone, which knows that light better:
+ * merlin_estimate asks the first what it sees, and maps.model says which one the maps are by. MERLIN_WRONG_USE if the
+ * first knows one light alone, or has such another. */
+merlin_status merlin_model_add_flash(merlin_model *model, const char *weights);
 void merlin_model_close(merlin_model *model);
 const char *merlin_model_name(const merlin_model *model); /* as long as the model is open; "" for NULL */
 
@@ -142,7 +146,7 @@ merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never sto
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 
 typedef struct merlin_timing {
-    double mask, prepare, compile, network, upsample; /* seconds */
+    double mask, prepare, choose, compile, network, upsample; /* seconds; choose: which of two models it is for */
 } merlin_timing;
 
 /* Why maps may be wrong, the gravest first: each a bit of merlin_maps' doubts. The model knows one light, a flash at
@@ -163,6 +167,7 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_GREY = 1 << 12,           /* a black-and-white picture: albedo's colour is not to be known */
     MERLIN_DOUBT_REDUCED = 1 << 13,        /* params.shot says that it was read at a reduced size */
     MERLIN_DOUBT_FIRST_FRAME = 1 << 14,    /* params.shot says that it is an animation's first picture */
+    MERLIN_DOUBT_LIGHT_BEHIND = 1 << 15,   /* most of its light, as far as the model can tell, comes from behind it */
 } merlin_doubt;
 
 /* All of the photograph's size, zero where mask is zero, finite everywhere. */

@@ -23,6 +23,7 @@
 #include "cli/written.h"
 #include "estimate/api.h"
 #include "estimate/doubts.h"
+#include "estimate/light_words.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -42,8 +43,10 @@ static const char help[] =
     "      --box X,Y,W,H    a box around the object, upper left corner and size in pixels, for the same\n"
     "  -o, --output DIR     where to (default: the photograph's name without ending + .merlin); for several\n"
     "                       photographs a folder each inside DIR\n"
-    "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
-    "                       $MERLIN_MODEL, else merlin-point)\n"
+    "      --model W        weights: merlin-any (any light), merlin-point (flash alone), merlin-env (flash in a "
+    "room),\n"
+    "                       or a file (default: $MERLIN_MODEL, else merlin-any, and merlin-point for photographs\n"
+    "                       that it sees lit by a flash alone)\n"
     "      --size N         side of the square the network sees, a multiple of 32 from 64 to 512 (default): where the\n"
     "                       photograph has more than 256 pixels of the object, for finer normals; 256 is quicker\n"
     "      --views N        the mean over N of the square's 8 orientations (default 4): better maps, more time\n"
@@ -62,7 +65,8 @@ static const char help[] =
     "a FOLDER under the names above is no photograph.\n";
 
 typedef struct request {
-    const char *mask, *output, *weights;
+    const char *mask, *output, *model_name;
+    char *weights, *flash_weights; /* files; the latter NULL for none */
     merlin_params params;
     photo_share share; /* of 0: all */
     bool mesh, flash, resume, json, quiet, help;
@@ -93,7 +97,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"point", .take = photo_take_point, .into = &r->params.hint},
         {"box", .take = photo_take_box, .into = &r->params.hint},
         {"output", 'o', .folder = &r->output},
-        {"model", .text = &r->weights},
+        {"model", .text = &r->model_name},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"fov", .real = &r->params.fov, .low = 1, .high = 150},
@@ -149,18 +153,33 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
     return s;
 }
 
+enum { LIT_BY = LIGHT_WORDS + 96 };
+
+/* What a model of any light sees, and which of two models the maps are by. */
+static const char *lit_by(const request *r, const merlin_maps *maps, char words[LIT_BY])
+{
+    char light[LIGHT_WORDS];
+    light_words(&maps->light, light);
+    *words = 0;
+    if (*light)
+        snprintf(words, LIT_BY, ", lit by %s", light);
+    else if (r->flash_weights)
+        snprintf(words, LIT_BY, ", lit by a flash alone and so by %s", maps->model);
+    return words;
+}
+
 static status announce(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
                        const lap_times *laps)
 {
     enum { TOLD = 3 };
-    char amount[WRITTEN_WORDS];
+    char amount[WRITTEN_WORDS], lit[LIT_BY];
     status s = OK;
     stage_bar_hide(r->bar);
     if (r->json)
         s = print_json(r, job, maps, written, laps);
     else if (!r->quiet)
-        printf("%s: %s/overview.png (%.2f s, %s)\n", standard_input_name(job->photo), job->output, laps->total,
-               written_words(written, amount));
+        printf("%s: %s/overview.png (%.2f s, %s)%s\n", standard_input_name(job->photo), job->output, laps->total,
+               written_words(written, amount), lit_by(r, maps, lit));
     warnings doubts = {0};
     doubts_list(maps, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
@@ -248,7 +267,7 @@ static status estimate_one(const request *r, const photo_job *job)
 }
 
 /* The first photograph is read and its object found while the weights are read and the network made ready. */
-static status estimate_first(request *r, const photo_job *job, const char *weights, bool *ready, bool *broken)
+static status estimate_first(request *r, const photo_job *job, bool *ready, bool *broken)
 {
     merlin_image photo;
     photo_object object;
@@ -256,7 +275,7 @@ static status estimate_first(request *r, const photo_job *job, const char *weigh
     double now = clock_seconds();
     photo_ahead first;
     photo_begin(&first, job);
-    status opened = (status)merlin_model_open(weights, &r->model), s = OK;
+    status opened = model_open_pair(r->weights, r->flash_weights, &r->model), s = OK;
     laps.model = lap(&now);
     if (opened == OK) opened = network_prepare(r->model->network, network_side(r->params.size), r->params.views);
     *ready = opened == OK;
@@ -284,7 +303,7 @@ static void begin_photo(const request *r, const photo_list *photos, size_t i, do
 }
 
 /* Goes on after a photograph that fails, but not without weights. */
-static int estimate_all(request *r, const photo_list *photos, const char *weights)
+static int estimate_all(request *r, const photo_list *photos)
 {
     int code = 0;
     double done = 0, all = 0;
@@ -296,7 +315,7 @@ static int estimate_all(request *r, const photo_list *photos, const char *weight
         begin_photo(r, photos, i, &done, all);
         status s = cli_interrupted() ? ERROR_STOPPED : check_photo_and_mask(job->photo, job->mask);
         if (s == OK) s = check_output(job->output);
-        if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, weights, &ready, &broken);
+        if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, &ready, &broken);
         if (s != OK) stage_bar_hide(r->bar);
         if (s == ERROR_STOPPED)
             return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
@@ -326,7 +345,6 @@ int cmd_estimate(int argc, char **argv)
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
     photo_list photos;
-    char *weights = NULL;
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     if (!r.quiet) photo_list_tell(&photos, "estimate");
@@ -335,16 +353,17 @@ int cmd_estimate(int argc, char **argv)
     r.photos = &photos;
     r.told = &told;
     if (photo_hint_given(&r.params.hint) && photos.count) photo_use_hint(&photos.at[0], &r.params.hint);
-    s = photo_find_model(r.weights, &weights);
+    s = photo_find_models(r.model_name, &r.weights, &r.flash_weights);
     stage_bar bar;
     stage_bar_begin(&bar, r.quiet);
     const watch shown = stage_bar_watch(&bar);
     r.bar = &bar;
     r.watch = &shown;
-    int code = s == OK ? estimate_all(&r, &photos, weights) : cli_fail("estimate", s);
+    int code = s == OK ? estimate_all(&r, &photos) : cli_fail("estimate", s);
     stage_bar_end(&bar);
     merlin_model_close(r.model);
-    free(weights);
+    free(r.weights);
+    free(r.flash_weights);
     photo_list_free(&photos);
     return code;
 }

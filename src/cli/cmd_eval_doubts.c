@@ -150,15 +150,16 @@ int eval_doubts(int argc, char **argv)
     cli_catch_interrupts();
     run work = {.request = &r};
     pictures all;
-    char *weights = NULL;
+    char *weights = NULL, *flash = NULL;
     status s = list_pictures(&r, &all);
-    if (s == OK) s = photo_find_model(r.weights, &weights);
-    if (s == OK) s = (status)merlin_model_open(weights, &work.model);
+    if (s == OK) s = photo_find_models(r.weights, &weights, &flash);
+    if (s == OK) s = model_open_pair(weights, flash, &work.model);
     if (s == OK) s = judge(&work, &all);
     merlin_model_close(work.model);
     doubt_table_free(&work.table);
     pictures_free(&all);
     free(weights);
+    free(flash);
     if (s != OK) return cli_fail("eval doubts", s);
     return work.failures > 0;
 }

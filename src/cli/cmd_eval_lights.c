@@ -64,12 +64,14 @@ int eval_lights(int argc, char **argv)
     if (parse(argc, argv, &r) != OK) return cli_usage("eval lights", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    char *weights;
+    char *weights, *flash;
     light_table table;
-    status s = photo_find_model(r.options.weights, &weights);
+    status s = photo_find_models(r.options.weights, &weights, &flash);
     r.options.weights = weights;
+    r.options.flash = flash;
     if (s == OK) s = light_table_run(&r.options, &table);
     free(weights);
+    free(flash);
     if (s == OK) s = announce(&r, &table);
     return s == OK ? 0 : cli_fail("eval lights", s);
 }

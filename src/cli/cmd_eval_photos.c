@@ -119,7 +119,7 @@ static status take_apart(comparison *c, merlin_model *m, size_t photo, int model
     merlin_maps maps = {0};
     overview o = {0};
     status s = photo_maps(m, job->photo, job->mask, NULL, NULL, &maps);
-    if (s == OK) s = overview_new(m->network, &maps, &o);
+    if (s == OK) s = overview_new(model_network(m, &maps, MERLIN_BY_BRDF), &maps, &o);
     if (s == OK) s = put_tiles(c, photo, model, &o);
     overview_free(&o);
     merlin_maps_free(&maps);
@@ -145,10 +145,11 @@ static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
     size_t count = c->photos->count;
-    char *weights;
-    status s = photo_find_model(c->request->models[model], &weights);
-    if (s == OK) s = (status)merlin_model_open(weights, &m);
+    char *weights, *flash;
+    status s = photo_find_models(c->request->models[model], &weights, &flash);
+    if (s == OK) s = model_open_pair(weights, flash, &m);
     free(weights);
+    free(flash);
     for (size_t i = 0; i < count && s == OK; i++) {
         if (cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written");
         if (s == OK && !c->failed[i]) leave_out_bad(c, i, take_apart(c, m, i, model));
@@ -214,10 +215,11 @@ static status check_models(const request *r)
 {
     status s = OK;
     for (int i = 0; i < r->model_count && s == OK; i++) {
-        char *weights;
-        s = photo_find_model(r->models[i], &weights);
+        char *weights, *flash;
+        s = photo_find_models(r->models[i], &weights, &flash);
         if (s == OK) s = check_named("weights file", weights);
         free(weights);
+        free(flash);
     }
     return s;
 }

@@ -63,14 +63,16 @@ int eval_stereo(int argc, char **argv)
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    char *weights;
-    status s = photo_find_model(r.model, &weights);
+    char *weights, *flash;
+    status s = photo_find_models(r.model, &weights, &flash);
     if (s != OK) return cli_fail("eval stereo", s);
     r.options.weights = weights;
+    r.options.flash = flash;
     cli_catch_interrupts();
     stereo_table table;
     s = stereo_table_run(&r.options, &table);
     free(weights);
+    free(flash);
     if (s == OK) {
         s = announce(&r, &table);
         stereo_table_free(&table);

@@ -80,8 +80,10 @@ static const char help_on_options[] =
     "                       for a PHOTO, as in merlin estimate\n"
     "      --photo-exposure EV|auto\n"
     "                       for a PHOTO, --exposure of merlin estimate\n"
-    "      --model W        weights: merlin-point (flash alone), merlin-env (flash in a room), or a file (default:\n"
-    "                       $MERLIN_MODEL, else merlin-point)\n"
+    "      --model W        weights: merlin-any (any light), merlin-point (flash alone), merlin-env (flash in a "
+    "room),\n"
+    "                       or a file (default: $MERLIN_MODEL, else merlin-any, and merlin-point for photographs\n"
+    "                       that it sees lit by a flash alone)\n"
     "      --json           a report as JSON on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -97,7 +99,8 @@ typedef struct exposing {
 } exposing;
 
 typedef struct request {
-    const char *input, *list, *mask, *weights, *output, *env;
+    const char *input, *list, *mask, *model, *output, *env;
+    char *weights, *flash; /* files; flash: NULL for none */
     float rotate, env_exposure, radius;
     lamp_options lamps;
     merlin_params params;
@@ -245,7 +248,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"photo-exposure", .take = photo_take_exposure, .into = &r->params},
-        {"model", .text = &r->weights},
+        {"model", .text = &r->model},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->quiet},
@@ -379,7 +382,7 @@ static void plan(const request *r, stage_bar *bar)
     stage_bar_plan(bar, stages, expect_relit(&how, stages, count));
 }
 
-static status relight(const request *r, const char *weights, const char *output)
+static status relight(const request *r, const char *output)
 {
     double began = clock_seconds();
     relight_result result = {0};
@@ -396,7 +399,7 @@ static status relight(const request *r, const char *weights, const char *output)
     watch_tell(&shown, "reading", 0);
     if (r->env) s = (status)merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
-    if (s == OK) s = (status)merlin_model_open(weights, &job.model);
+    if (s == OK) s = model_open_pair(r->weights, r->flash, &job.model);
     if (s == OK) s = get_maps(r, job.model, &shown, &maps);
     job.maps = &maps;
     if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
@@ -411,14 +414,15 @@ static status relight(const request *r, const char *weights, const char *output)
 
 static status run(request *r)
 {
-    char *weights = NULL, *output = photo_output_inside(r->input, "relit", r->output);
+    char *output = photo_output_inside(r->input, "relit", r->output);
     status s = output ? read_lamps(r) : fail(ERROR_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
     if (s == OK) s = check_photo_and_mask(r->input, r->mask);
     if (s == OK && !to_standard_output(r)) s = check_output(output);
-    if (s == OK) s = photo_find_model(r->weights, &weights);
-    if (s == OK) s = relight(r, weights, output);
-    free(weights);
+    if (s == OK) s = photo_find_models(r->model, &r->weights, &r->flash);
+    if (s == OK) s = relight(r, output);
+    free(r->weights);
+    free(r->flash);
     free(output);
     return s;
 }

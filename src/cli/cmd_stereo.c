@@ -182,18 +182,20 @@ static status parse(int *argc, char ***argv, request *r)
 
 static status from_photo(const request *r, stereo_result *out, cJSON *report)
 {
-    char *weights;
-    status s = photo_find_model(r->weights, &weights);
+    char *weights, *flash;
+    status s = photo_find_models(r->weights, &weights, &flash);
     if (s != OK) return s;
     stereo_photo p = {.photo = r->input,
                       .mask = r->folder.read.mask,
                       .weights = weights,
+                      .flash = flash,
                       .params = r->params,
                       .method = r->folder.method,
                       .preserve_edges = r->folder.preserve_edges,
                       .watch = r->folder.watch};
     s = stereo_from_photo(&p, out, report);
     free(weights);
+    free(flash);
     return s;
 }
 

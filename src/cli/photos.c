@@ -327,6 +327,16 @@ status photo_find_model(const char *asked, char **path)
     return fail(ERROR_INPUT, "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
 }
 
+status photo_find_models(const char *asked, char **path, char **flash)
+{
+    const char *environment = getenv("MERLIN_MODEL");
+    *path = *flash = NULL;
+    if (asked || (environment && *environment)) return photo_find_model(asked, path);
+    status s = find_shipped("merlin-any", path);
+    if (s == OK && !*path) return photo_find_model(NULL, path);
+    return s == OK ? find_shipped("merlin-point", flash) : s;
+}
+
 status photo_take_size(const char *text, void *into)
 {
     merlin_params *params = into;

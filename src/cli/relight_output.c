@@ -47,7 +47,8 @@ static void note_burnt_out(relight_work *w, const img *square)
 
 status relight_square(relight_work *w, const lamp *light, img *out)
 {
-    status s = stage_relight(w->job->model->network, &w->stage, light, out);
+    network *n = model_network(w->job->model, w->job->maps, w->job->how);
+    status s = stage_relight(n, &w->stage, light, out);
     if (s == OK) note_burnt_out(w, out);
     return s;
 }
@@ -166,7 +167,7 @@ static status set_stage(relight_work *w, int side)
 {
     const relight_job *job = w->job;
     watch_tell(job->watch, "preparing", 0);
-    status s = stage_new(job->model->network, job->maps, side, job->how, &w->stage);
+    status s = stage_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->stage);
     if (s == OK && job->matte) s = stage_make_matte(&w->stage);
     if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
     return s == OK ? expose(w) : s;

@@ -27,7 +27,7 @@ typedef struct work {
 static status open_photo(work *w)
 {
     const stereo_photo *p = w->photo;
-    status s = (status)merlin_model_open(p->weights, &w->model);
+    status s = model_open_pair(p->weights, p->flash, &w->model);
     if (s == OK && file_is_folder(p->photo))
         s = (status)merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/threads.h"
@@ -112,9 +113,39 @@ merlin_status merlin_model_open(const char *weights, merlin_model **out)
     return result_of(s);
 }
 
+merlin_status merlin_model_add_flash(merlin_model *model, const char *weights)
+{
+    status s = api_needs(__func__, model && weights);
+    if (s == OK && model->flash) s = fail(ERROR_USAGE, "the model has another for flashes already");
+    if (s == OK && network_config(model->network)->lighting != MODEL_LIGHT_ANY)
+        s = fail(ERROR_USAGE, "%s tells no flash from other light, so that no other model can see flashes for it",
+                 network_config(model->network)->name);
+    if (s == OK) s = network_open(weights, &model->flash);
+    return result_of(s);
+}
+
+status model_open_pair(const char *weights, const char *flash, merlin_model **out)
+{
+    status s = (status)merlin_model_open(weights, out);
+    if (s == OK && flash) s = (status)merlin_model_add_flash(*out, flash);
+    if (s == OK) return OK;
+    merlin_model_close(*out);
+    *out = NULL;
+    return s;
+}
+
+network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how)
+{
+    if (!model->flash) return model->network;
+    if (how == MERLIN_BY_NETWORK && network_config(model->network)->relight != MODEL_RELIGHT_NETWORK)
+        return model->flash;
+    return strcmp(maps->model, network_config(model->flash)->name) == 0 ? model->flash : model->network;
+}
+
 void merlin_model_close(merlin_model *model)
 {
     if (!model) return;
+    network_close(model->flash);
     network_close(model->network);
     free(model);
 }

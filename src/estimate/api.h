@@ -17,7 +17,14 @@
 
 struct merlin_model {
     network *network;
+    network *flash; /* for photographs lit by a flash alone; NULL: `network` sees them, too */
 };
+
+/* flash: weights for merlin_model_add_flash, or NULL. */
+status model_open_pair(const char *weights, const char *flash, merlin_model **out);
+
+/* That which made the maps; by the relighting decoder, one that has it. */
+network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
 struct merlin_environment {
     env_map map;

@@ -36,13 +36,14 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const f
 {
     lamp place;
     stage st;
+    network *n = model_network(model, maps, how);
     img square = {0};
     status s = take_light(light, &place);
     if (s == OK) s = stage_check(how, light ? &place : NULL, environment);
-    if (s == OK) s = stage_new(model->network, maps, 0, how, &st);
+    if (s == OK) s = stage_new(n, maps, 0, how, &st);
     if (s != OK) return s;
     s = stage_surround(&st, environment);
-    if (s == OK) s = stage_relight(model->network, &st, light ? &place : NULL, &square);
+    if (s == OK) s = stage_relight(n, &st, light ? &place : NULL, &square);
     img mask = st.full.mask;
     st.full.mask = (img){0};
     stage_free(&st); /* before a large photograph's frame is made */
@@ -82,8 +83,8 @@ merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int
     if (s != OK) return result_of(s);
     merlin_stage *made = calloc(1, sizeof *made);
     if (!made) return result_of(fail(ERROR_MEMORY, "no memory for a stage"));
-    made->network = model->network;
-    s = stage_new(model->network, maps, side, how, &made->stage);
+    made->network = model_network(model, maps, how);
+    s = stage_new(made->network, maps, side, how, &made->stage);
     if (s != OK)
         free(made);
     else

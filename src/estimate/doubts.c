@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "estimate/exposure.h"
+#include "estimate/found_light.h"
 #include "estimate/mask.h"
 #include "image/color.h"
 #include "image/exif.h"
@@ -129,6 +130,7 @@ static unsigned doubts_of_light(const light_cues *cues, const merlin_shot *shot,
 {
     unsigned doubts = 0;
     if (maps->light_elsewhere >= LIKELY_ELSEWHERE && !maps->light.known) doubts |= MERLIN_DOUBT_LIGHT_ELSEWHERE;
+    if (found_light_share(&maps->light).lamp > 0.5f && maps->light.lamp[2] < 0) doubts |= MERLIN_DOUBT_LIGHT_BEHIND;
     if (cues->known && cues->outward < LITTLE_OUTWARD && cues->inward > MUCH_INWARD) doubts |= MERLIN_DOUBT_HOLLOW;
     if (shot->flash == MERLIN_FLASH_NONE && !maps->light.known) doubts |= MERLIN_DOUBT_NO_FLASH;
     return doubts;
@@ -158,6 +160,7 @@ static const struct {
     {MERLIN_DOUBT_OBJECT_UNSURE, "object_unsure"},
     {MERLIN_DOUBT_LIGHT_ELSEWHERE, "light_elsewhere"},
     {MERLIN_DOUBT_NO_FLASH, "no_flash_fired"},
+    {MERLIN_DOUBT_LIGHT_BEHIND, "light_behind"},
     {MERLIN_DOUBT_HOLLOW, "hollow"},
     {MERLIN_DOUBT_DRAWING, "drawing"},
     {MERLIN_DOUBT_LENS_NARROW, "lens_narrow"},
@@ -204,6 +207,9 @@ static const char *plain_words(merlin_doubt doubt)
                "wrong: photograph it in the dark by the flash";
     case MERLIN_DOUBT_NO_FLASH:
         return "by its EXIF no flash fired, the one light the model knows";
+    case MERLIN_DOUBT_LIGHT_BEHIND:
+        return "most of its light seems to come from behind the object, whose front then tells little: turn it, or "
+               "photograph it by the flash";
     case MERLIN_DOUBT_HOLLOW:
         return "the object came out hollow: along its outline the normals turn inward";
     case MERLIN_DOUBT_DRAWING:

@@ -11,6 +11,7 @@
 #include "estimate/exposure.h"
 #include "estimate/found_light.h"
 #include "estimate/input.h"
+#include "estimate/light_choice.h"
 #include "estimate/relight_env.h"
 #include "image/read.h"
 
@@ -296,20 +297,34 @@ static status judge_light(work *w, const merlin_image *photo, float gain)
     return light_cues_find(&w->low.maps, &w->low_photo, &frame, &w->cues);
 }
 
+/* The caller may have had some of it compiled before, and the question which network it is another. */
+static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+{
+    const int finer = detail_side(w->params->size, w->crop.side);
+    double *compile = &maps->timing.compile;
+    status s = network_prepare(n, maps->size, w->params->views);
+    if (s == OK && finer > 0) s = network_prepare_normals(n, finer);
+    if (s == OK) s = lap(w, compile);
+    *compile = network_take_compile_seconds(model->network);
+    if (model->flash) *compile += network_take_compile_seconds(model->flash);
+    return s;
+}
+
 static status estimate(merlin_model *model, work *w, merlin_maps *maps)
 {
-    network *n = model->network;
+    network *n = NULL;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
     watch_tell(w->watch, "estimating", 0);
     const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
-    status s = network_prepare(n, maps->size, views);
-    if (s == OK && finer > 0) s = network_prepare_normals(n, finer);
-    /* the caller may have had it compiled before */
-    if (s == OK) s = lap(w, &t->compile);
-    t->compile = network_take_compile_seconds(n);
-    if (s == OK) s = make_input(w, maps);
+    status s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
+    const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->shot.flash};
+    if (s == OK) s = light_choice(model->network, model->flash, &asked, &n);
+    if (s != OK) return s;
+    snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
+    s = lap(w, &t->choose);
+    if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
@@ -337,7 +352,6 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
     merlin_params defaults = merlin_params_default();
     work w = {.params = params ? params : &defaults, .photo = img_of(photo), .owned = owned};
     maps->size = network_side(w.params->size);
-    snprintf(maps->model, sizeof maps->model, "%s", network_config(model->network)->name);
     take_object(&w, object, maps);
     find_lens(&w, maps);
     status s = check_params(w.params);

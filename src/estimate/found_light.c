@@ -4,10 +4,11 @@
 
 #include "estimate/relight_env.h"
 #include "estimate/shadow.h"
+#include "optics/sh.h"
 
 static const vec3 middle = {0, 0, -1};
 /* A lamp is that from this on; farther than so far, its light is parallel to any eye. */
-static const float LEAST_SURE = 0.5f, FARTHEST = 20;
+static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.8f;
 
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
 {
@@ -20,6 +21,27 @@ void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
     for (int c = 0; c < 3; c++)
         out->lamp_strength[c] = sure >= LEAST_SURE ? model_decode_strength(code[MODEL_LIGHTS_STRENGTH + c]) : 0;
     model_decode_sh(code + MODEL_LIGHTS_REST, out->rest);
+}
+
+static float mean(vec3 v)
+{
+    return (v.x + v.y + v.z) / 3;
+}
+
+found_light_shares found_light_share(const merlin_found_light *light)
+{
+    const float(*rest)[3] = (const float(*)[3])light->rest;
+    found_light_shares share = {.flash = LIGHT_POWER * light->flash,
+                                .lamp = LIGHT_POWER * mean(vec3_of(light->lamp_strength)),
+                                .rest = fmaxf(mean(sh_irradiance(rest, vec3_make(0, 0, 1))), 0)};
+    const float all = share.flash + share.lamp + share.rest;
+    if (!light->known || !(all > 0)) return (found_light_shares){0};
+    return (found_light_shares){share.flash / all, share.lamp / all, share.rest / all};
+}
+
+bool found_light_is_flash(const merlin_found_light *light)
+{
+    return found_light_share(light).flash >= FLASH_ALONE;
 }
 
 bool found_light_lamp(const merlin_found_light *light, lamp *out)

@@ -279,6 +279,18 @@ status network_estimate(network *n, const img *photo, const img *mask, const sig
     return s;
 }
 
+status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS])
+{
+    const subject at = {photo, mask, how};
+    if (n->config.lighting != MODEL_LIGHT_ANY)
+        return fail(ERROR_USAGE, "model \"%s\" does not tell what lights a photograph", n->config.name);
+    pthread_mutex_lock(&n->lock);
+    status s = run_view(n, &at, 0, n->maps.outputs ? n->maps.outputs : view_outputs, &n->maps);
+    if (s == OK) memcpy(lights, nn_output_data(n->maps.program, "lights"), MODEL_LIGHTS * sizeof *lights);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
 static status add_normals(network *n, const subject *at, int view, float weight, img *mean)
 {
     img turned = {0};

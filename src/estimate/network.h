@@ -57,6 +57,9 @@ typedef struct network_estimation {
  * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
+/* What lit the photograph alone, as of network_estimate's first view, by the program of its maps: ERROR_USAGE unless it
+ * is a model of any light. */
+status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
 void network_estimation_free(network_estimation *e);
 /* The normals alone, as of network_estimate: for what is fine in a larger picture. */
 status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),

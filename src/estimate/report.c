@@ -5,6 +5,8 @@
 #include "estimate/api.h"
 #include "estimate/doubts.h"
 #include "estimate/exposure.h"
+#include "estimate/found_light.h"
+#include "estimate/light_words.h"
 #include "estimate/report.h"
 
 typedef struct range {
@@ -78,6 +80,7 @@ static void put_timing(cJSON *root, const merlin_timing *t)
     cJSON_AddNumberToObject(o, "mask", t->mask);
     cJSON_AddNumberToObject(o, "compile", t->compile);
     cJSON_AddNumberToObject(o, "prepare", t->prepare);
+    cJSON_AddNumberToObject(o, "choose", t->choose);
     cJSON_AddNumberToObject(o, "network", t->network);
     cJSON_AddNumberToObject(o, "upsample", t->upsample);
 }
@@ -115,8 +118,13 @@ static void put_numbers(cJSON *to, const char *name, const float *values, int co
 /* What a model of any light sees. */
 static void put_light(cJSON *root, const merlin_found_light *l)
 {
+    char words[LIGHT_WORDS];
     if (!l->known) return;
     cJSON *light = cJSON_AddObjectToObject(root, "light");
+    const found_light_shares share = found_light_share(l);
+    light_words(l, words);
+    cJSON_AddStringToObject(light, "words", words);
+    put_numbers(light, "shares", (const float[]){share.flash, share.lamp, share.rest}, 3);
     cJSON_AddNumberToObject(light, "flash", (double)l->flash);
     cJSON_AddNumberToObject(light, "lamp_sure", (double)l->lamp_sure);
     if (l->lamp[0] != 0 || l->lamp[1] != 0 || l->lamp[2] != 0) {
@@ -125,6 +133,13 @@ static void put_light(cJSON *root, const merlin_found_light *l)
         put_numbers(light, "lamp_strength", l->lamp_strength, 3);
     }
     put_numbers(light, "rest", &l->rest[0][0], 27);
+}
+
+/* A camera gives a flash the strength that the distance asks for; how strong other light is, how bright an object looks
+ * in it does not tell. */
+static bool is_scale_known(const merlin_maps *maps)
+{
+    return !maps->light.known || found_light_share(&maps->light).flash >= 0.5f;
 }
 
 cJSON *report_begin(const warnings *doubts)
@@ -156,6 +171,7 @@ char *maps_report(const merlin_maps *maps)
     cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
     put_lens(root, maps);
     put_light(root, &maps->light);
+    cJSON_AddStringToObject(root, "albedo_scale", is_scale_known(maps) ? "known" : "unsure");
     put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);

@@ -83,8 +83,8 @@ static status explain(const char *errors, int code)
     return s;
 }
 
-static const char *const part_names[BENCH_PARTS] = {"start",   "model",   "compile",  "read",  "mask",
-                                                    "prepare", "network", "upsample", "write", "end"};
+static const char *const part_names[BENCH_PARTS] = {"start",  "model",   "compile",  "read",  "mask", "prepare",
+                                                    "choose", "network", "upsample", "write", "end"};
 
 /* From the program's report, which is one line; what its parts leave of the whole is its end. */
 static status read_parts(const char *report, bench_estimation *run)

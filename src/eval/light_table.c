@@ -7,8 +7,9 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "estimate/exposure.h"
+#include "estimate/found_light.h"
 #include "estimate/input.h"
-#include "estimate/network.h"
+#include "estimate/light_choice.h"
 #include "eval/maps.h"
 #include "eval/metrics.h"
 #include "image/color.h"
@@ -32,7 +33,7 @@ typedef struct directions {
 
 typedef struct run {
     const light_options *options;
-    network *network;
+    network *network, *flash; /* flash: NULL, or for what `network` sees as a flash alone */
     light_table *table;
     directions found[LIGHT_KINDS];
 } run;
@@ -193,20 +194,31 @@ static void add_figures(const network_estimation *e, const subject *on, double s
     sum[LIGHT_RELIEF] += relief_error(&maps.depth, on);
 }
 
+static bool is_flash(const float *lights)
+{
+    merlin_found_light light;
+    found_light_take(lights, &light);
+    return found_light_is_flash(&light);
+}
+
 static status measure(run *r, const subject *on, const mixture *m, light_kind kind)
 {
     sight how = {.lens = {on->s->fov, on->s->slant}};
     if (r->options->lens_unknown) how.lens.fov = 0;
     network_estimation e = {0};
+    network *n = NULL;
     img photo = {0};
     status s = photograph(on, m, &photo);
     if (s == OK) input_expose(&photo, exposure_gain(&photo, &on->mask));
-    if (s == OK) s = network_estimate(r->network, &photo, &on->mask, &how, r->options->views, NULL, &e);
+    const light_question asked = {&photo, &on->mask, &how, MERLIN_FLASH_UNKNOWN};
+    if (s == OK) s = light_choice(r->network, r->flash, &asked, &n);
+    if (s == OK) s = network_estimate(n, &photo, &on->mask, &how, r->options->views, NULL, &e);
     if (s == OK && m->lamp >= 0 && r->table->directions) s = judge_direction(r, on, m, kind, e.lights);
     if (s == OK) {
         eval_to_network_range(&e.maps.albedo);
         eval_to_network_range(&e.maps.roughness);
         add_figures(&e, on, r->table->mean[kind]);
+        r->table->mean[kind][LIGHT_AS_FLASH] += r->flash ? n == r->flash : is_flash(e.lights);
         r->table->count[kind]++;
     }
     network_estimation_free(&e);
@@ -294,14 +306,17 @@ status light_table_run(const light_options *options, light_table *out)
     status s = sample_list(options->data, &names, &count);
     if (s != OK) return s;
     s = network_open(options->weights, &r.network);
+    if (s == OK && options->flash) s = network_open(options->flash, &r.flash);
     if (s == OK) {
         const model_config *config = network_config(r.network);
         size_t used = options->count && options->count < count ? options->count : count;
         memcpy(out->model, config->name, sizeof out->model);
+        if (r.flash) memcpy(out->flash_model, network_config(r.flash)->name, sizeof out->flash_model);
         out->directions = config->lighting == MODEL_LIGHT_ANY;
         s = measure_files(&r, names, used);
-        network_close(r.network);
     }
+    network_close(r.flash);
+    network_close(r.network);
     file_list_free(names, count);
     out->seconds = clock_seconds() - began;
     return s;

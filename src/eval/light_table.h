@@ -35,12 +35,13 @@ typedef enum light_figure {
     LIGHT_ALBEDO_FREE, /* the same where the albedo may be as many times as large as suits best */
     LIGHT_ROUGHNESS,   /* mean squared error in [-1, 1] */
     LIGHT_RELIEF,      /* root mean square error of depth, its mean apart, in widths of the frame */
-    LIGHT_DIRECTION,   /* of the strongest lamp, degrees; models of any light alone */
+    LIGHT_AS_FLASH,    /* share of the photographs that are seen as lit by a flash alone; models of any light alone */
+    LIGHT_DIRECTION,   /* of the strongest lamp, degrees; the same */
     LIGHT_FIGURES
 } light_figure;
 
 typedef struct light_table {
-    char model[64];
+    char model[64], flash_model[64]; /* flash_model: empty for none */
     size_t samples;
     size_t count[LIGHT_KINDS];
     double mean[LIGHT_KINDS][LIGHT_FIGURES]; /* of LIGHT_DIRECTION the median */
@@ -49,8 +50,8 @@ typedef struct light_table {
 } light_table;
 
 typedef struct light_options {
-    const char *data, *weights;
-    size_t count; /* samples at most; 0: all */
+    const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
+    size_t count;                       /* samples at most; 0: all */
     int views;
     bool lens_unknown; /* the model is told nothing of the lens */
     bool quiet;

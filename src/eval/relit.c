@@ -15,14 +15,14 @@ static vec3 light_at(int i)
     return frontal_light(u1, u2);
 }
 
-static status relight_all(merlin_model *model, const stage *st, int (*stop)(void), pst_capture *c)
+static status relight_all(network *n, const stage *st, int (*stop)(void), pst_capture *c)
 {
     status s = near_capture_new(&st->full.mask, &st->full.depth, FIELD_OF_VIEW, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
         if (stop && stop()) return fail(ERROR_STOPPED, "stopped");
         img picture = {0};
         const lamp light = lamp_at(light_at(i));
-        s = stage_relight(model->network, st, &light, &picture);
+        s = stage_relight(n, st, &light, &picture);
         if (s == OK) s = near_capture_add(c, &picture, light.at);
         img_free(&picture);
     }
@@ -33,10 +33,11 @@ status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*s
 {
     *out = (relit){0};
     stage st;
-    status s = stage_new(model->network, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
+    network *n = model_network(model, maps, MERLIN_BY_BRDF_UNSHADOWED);
+    status s = stage_new(n, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
     if (s != OK) return s;
     st.white = NEAR_CAPTURE_WHITE;
-    s = relight_all(model, &st, stop, &out->capture);
+    s = relight_all(n, &st, stop, &out->capture);
     out->maps = st.full;
     st.full = (surface){0};
     stage_free(&st);

@@ -136,7 +136,7 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     evaluation e = {.options = options};
     out->object = calloc(out->count, sizeof *out->object);
     if (!out->object) return fail(ERROR_MEMORY, "no memory for a table of %zu objects", out->count);
-    status s = (status)merlin_model_open(options->weights, &e.model);
+    status s = model_open_pair(options->weights, options->flash, &e.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);

@@ -48,9 +48,9 @@ typedef struct stereo_table {
 } stereo_table;
 
 typedef struct stereo_options {
-    const char *data, *weights;
-    size_t count;       /* the first so many objects; 0: all */
-    const char *figure; /* PNG of normals and where they are off, a line an object; NULL: none */
+    const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
+    size_t count;                       /* the first so many objects; 0: all */
+    const char *figure;                 /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
 } stereo_options;

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "estimate/light_words.h"
+#include "optics/camera.h"
 #include "optics/sh.h"
 
 /* last: it claims the word fail */
@@ -124,6 +126,41 @@ static void what_hides_the_lamp_takes_its_light(void **state)
     surface_free(&s);
 }
 
+/* Far away, so far aside and so far up from the right, in degrees. */
+static merlin_found_light lamp_from(float aside, float turn, float strength, float flash)
+{
+    const float a = aside * CAMERA_RADIAN, t = turn * CAMERA_RADIAN;
+    return (merlin_found_light){.known = 1,
+                                .flash = flash,
+                                .lamp = {sinf(a) * cosf(t), sinf(a) * sinf(t), cosf(a)},
+                                .lamp_sure = 1,
+                                .lamp_strength = {strength, strength, strength}};
+}
+
+static void light_has_words(void **state)
+{
+    (void)state;
+    char words[LIGHT_WORDS];
+    merlin_found_light light = lamp_from(40, 135, 1, 0);
+    light_words(&light, words);
+    assert_string_equal(words, "a lamp from the upper left, 40 degrees aside");
+    light = lamp_from(100, -90, 1, 1);
+    light_words(&light, words);
+    assert_string_equal(words, "a flash and a lamp from below, 100 degrees aside");
+    light = lamp_from(60, 10, 1, 0.1f);
+    light.rest[0][0] = light.rest[0][1] = light.rest[0][2] = 3;
+    light_words(&light, words);
+    assert_string_equal(words, "a lamp from the right, 60 degrees aside, in a room");
+    light = lamp_from(2, 10, 1, 0);
+    light_words(&light, words);
+    assert_string_equal(words, "a lamp by the lens");
+    light = (merlin_found_light){.known = 1, .rest = {{1, 1, 1}}};
+    light_words(&light, words);
+    assert_string_equal(words, "a room's light");
+    light_words(&(merlin_found_light){0}, words);
+    assert_string_equal(words, "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +168,7 @@ int main(void)
         cmocka_unit_test(what_the_model_is_hardly_sure_of_is_no_lamp),
         cmocka_unit_test(flash_and_rest_add_up),
         cmocka_unit_test(what_hides_the_lamp_takes_its_light),
+        cmocka_unit_test(light_has_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

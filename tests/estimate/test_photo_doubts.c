@@ -62,6 +62,18 @@ static void what_the_mask_shows_is_told(void **state)
     merlin_maps_free(&maps);
 }
 
+static void light_from_behind_is_told(void **state)
+{
+    (void)state;
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    maps.light = (merlin_found_light){.known = 1, .flash = 0.1f, .lamp = {0.8f, 0, -0.6f}, .lamp_strength = {1, 1, 1}};
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), MERLIN_DOUBT_LIGHT_BEHIND);
+    maps.light.lamp[2] = 0.6f;
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), 0);
+    merlin_maps_free(&maps);
+}
+
 static void what_the_pixels_show_is_told(void **state)
 {
     (void)state;
@@ -120,9 +132,9 @@ static void every_doubt_has_a_code_and_words(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_good_photograph_has_no_doubt),   cmocka_unit_test(what_the_mask_shows_is_told),
-        cmocka_unit_test(what_the_pixels_show_is_told),     cmocka_unit_test(what_exif_says_is_told),
-        cmocka_unit_test(every_doubt_has_a_code_and_words),
+        cmocka_unit_test(a_good_photograph_has_no_doubt), cmocka_unit_test(what_the_mask_shows_is_told),
+        cmocka_unit_test(light_from_behind_is_told),      cmocka_unit_test(what_the_pixels_show_is_told),
+        cmocka_unit_test(what_exif_says_is_told),         cmocka_unit_test(every_doubt_has_a_code_and_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,182 @@
+/* Of two models the one for the light of a photograph: by its photographer's word, its camera's, or what the first
+ * sees. */
+#include <limits.h>
+#include <math.h>
+
+#include "estimate/found_light.h"
+#include "image/public.h"
+#include "scratch.h"
+#include "weights.h"
+
+/* last: it claims the word fail */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 96 };
+
+typedef struct fixture {
+    char *folder, any[160], flash[160];
+    merlin_image photo, mask;
+} fixture;
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    f->folder = scratch_new();
+    snprintf(f->any, sizeof f->any, "%s/any.safetensors", f->folder);
+    snprintf(f->flash, sizeof f->flash, "%s/flash.safetensors", f->folder);
+    f->photo = (merlin_image){SIDE, SIDE, 3, calloc(3 * SIDE * SIDE, sizeof(float))};
+    f->mask = (merlin_image){SIDE, SIDE, 1, calloc(SIDE * SIDE, sizeof(float))};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        float x = ((float)(i % SIDE) - 48) / 40, y = ((float)(i / SIDE) - 48) / 40, d = x * x + y * y;
+        f->mask.data[i] = d < 1;
+        for (int c = 0; c < 3; c++)
+            f->photo.data[3 * i + c] = d < 1 ? 0.1f + 0.6f * sqrtf(1 - d) : 0;
+    }
+    return write_random_weights(f->flash) == OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    merlin_image_free(&f->photo);
+    merlin_image_free(&f->mask);
+    scratch_remove(f->folder);
+    free(f);
+    return 0;
+}
+
+/* A model that sees this light in every photograph. */
+static void see(const fixture *f, const float code[MODEL_LIGHTS])
+{
+    model_config config;
+    nn_params *params = NULL;
+    assert_int_equal(write_random_weights_of("merlin-any-96", f->any), OK);
+    assert_int_equal(model_load(f->any, &config, &params), OK);
+    nn_param *weight = nn_params_find(params, "lights.fc2.weight"), *bias = nn_params_find(params, "lights.fc2.bias");
+    assert_non_null(weight);
+    assert_non_null(bias);
+    memset(weight->value, 0, weight->count * sizeof(float));
+    for (int i = 0; i < MODEL_LIGHTS; i++)
+        bias->value[i] = 10 * code[i]; /* the network says a tenth of what its last layer does */
+    char *json = model_config_write(&config);
+    assert_int_equal(write_params(f->any, params, json), OK);
+    free(json);
+    nn_params_free(params);
+}
+
+/* The name of the model whose maps are given out. */
+static const char *made_by(const fixture *f, const merlin_params *asked, char name[64])
+{
+    merlin_params p = *asked;
+    merlin_model *model = NULL;
+    merlin_maps maps;
+    p.size = 64;
+    p.views = 1;
+    assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_flash(model, f->flash), MERLIN_OK);
+    assert_int_equal(merlin_estimate(model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+    snprintf(name, 64, "%s", maps.model);
+    assert_int_equal(maps.light.known, strcmp(name, "merlin-any") == 0);
+    /* and what bounces in new light is of that model */
+    merlin_image relit;
+    assert_int_equal(merlin_relight(model, &maps, (const float[]){0.5f, 0.5f, 0}, MERLIN_BY_BRDF, &relit), MERLIN_OK);
+    merlin_image_free(&relit);
+    merlin_maps_free(&maps);
+    merlin_model_close(model);
+    return name;
+}
+
+static void flash_code(float strength, float other, float code[MODEL_LIGHTS])
+{
+    memset(code, 0, MODEL_LIGHTS * sizeof *code);
+    code[MODEL_LIGHTS_FLASH] = model_encode_strength(strength);
+    code[MODEL_LIGHTS_LAMP] = other > 0 ? 0.9f : 0;
+    for (int c = 0; c < 3; c++)
+        code[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength(other);
+}
+
+static void what_is_seen_decides(void **state)
+{
+    const fixture *f = *state;
+    const merlin_params p = merlin_params_default();
+    float code[MODEL_LIGHTS];
+    char name[64];
+    flash_code(1, 0, code);
+    see(f, code);
+    assert_string_equal(made_by(f, &p, name), "merlin-point");
+    flash_code(1, 1, code);
+    see(f, code);
+    assert_string_equal(made_by(f, &p, name), "merlin-any");
+}
+
+static void the_camera_and_the_photographer_know_better(void **state)
+{
+    const fixture *f = *state;
+    merlin_params p = merlin_params_default();
+    float code[MODEL_LIGHTS];
+    char name[64];
+    flash_code(1, 0, code);
+    see(f, code);
+    p.shot.flash = MERLIN_FLASH_NONE;
+    assert_string_equal(made_by(f, &p, name), "merlin-any");
+    flash_code(0, 1, code);
+    see(f, code);
+    p.flash = 1;
+    assert_string_equal(made_by(f, &p, name), "merlin-point");
+}
+
+static void a_model_of_one_light_takes_no_other_beside_it(void **state)
+{
+    const fixture *f = *state;
+    float code[MODEL_LIGHTS] = {0};
+    merlin_model *model = NULL;
+    see(f, code);
+    assert_int_equal(merlin_model_open(f->flash, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_flash(model, f->any), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "merlin-point tells no flash"));
+    merlin_model_close(model);
+    assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_flash(model, "none.safetensors"), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_model_add_flash(model, f->flash), MERLIN_OK);
+    assert_int_equal(merlin_model_add_flash(model, f->flash), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_flash(NULL, f->flash), MERLIN_WRONG_USE);
+    merlin_model_close(model);
+}
+
+static void share_of_the_flash(void **state)
+{
+    (void)state;
+    float code[MODEL_LIGHTS], sh[9][3] = {{0}};
+    merlin_found_light light;
+    flash_code(1, 0, code);
+    found_light_take(code, &light);
+    assert_float_equal(found_light_share(&light).flash, 1, 1e-6);
+    flash_code(1, 3, code);
+    found_light_take(code, &light);
+    assert_float_equal(found_light_share(&light).flash, 0.25f, 1e-4);
+    /* surroundings of radiance 1 send pi to whatever faces them */
+    flash_code(1, 0, code);
+    for (int c = 0; c < 3; c++)
+        sh[0][c] = 2 * sqrtf((float)BRDF_PI);
+    model_encode_sh((const float(*)[3])sh, code + MODEL_LIGHTS_REST);
+    found_light_take(code, &light);
+    assert_float_equal(found_light_share(&light).flash, 5.95f / (5.95f + (float)BRDF_PI), 1e-3);
+    assert_float_equal(found_light_share(&(merlin_found_light){0}).flash, 0, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_seen_decides),
+        cmocka_unit_test(the_camera_and_the_photographer_know_better),
+        cmocka_unit_test(a_model_of_one_light_takes_no_other_beside_it),
+        cmocka_unit_test(share_of_the_flash),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
