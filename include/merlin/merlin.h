@@ -190,7 +190,7 @@ typedef struct merlin_maps {
     merlin_mask_source mask_source;
     int has_environment;      /* the model knows of surroundings beside the flash: */
     float environment[9][3];  /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
-    merlin_found_light light; /* what the photograph is lit by; not kept by merlin_maps_write but in report.json */
+    merlin_found_light light; /* what the photograph is lit by */
     float mask_confidence;    /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
     char model[64];
     merlin_timing timing;
@@ -248,6 +248,12 @@ void merlin_environment_free(merlin_environment *environment);
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps,
                                          const merlin_environment *environment, const float *light,
                                          merlin_relighting how, merlin_image *out);
+
+/* The object in the light that was found in the photograph (maps.light), its lamp and surroundings turned about the
+ * vertical by so many degrees: at 90 what was straight ahead of the camera is to its right; a flash stays at the lens.
+ * MERLIN_BAD_INPUT where the model found none; not MERLIN_BY_NETWORK. */
+merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
+                                   merlin_image *out);
 
 /* Maps made ready once for many lights, which each take a fraction of the time then. */
 typedef struct merlin_stage merlin_stage;

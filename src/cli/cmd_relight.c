@@ -31,7 +31,8 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --lights FILE [options]\n"
     "       merlin relight PHOTO|DIR --orbit N [options]\n"
     "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
-    "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n\n"
+    "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n"
+    "       merlin relight PHOTO|DIR --found-light [--rotate DEG] [--orbit N] [options]\n\n"
     "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
     "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO (or -,\n"
     "which is standard input and wants -o) is estimated first.\n"
@@ -66,6 +67,8 @@ static const char help_on_options[] =
     "      --format F       png (default) or jpg, of high quality, for pictures of the photograph's size\n"
     "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each lamp;\n"
     "                       with --orbit they go round once, and the lamp stays\n"
+    "      --found-light    the light that a model of any light found in the photograph, put back or turned: with\n"
+    "                       --rotate, or once round with --orbit; its flash stays at the lens\n"
     "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
     "      --env-exposure EV\n"
     "                       makes them brighter or darker by EV stops (default 0: mean luminance 1)\n"
@@ -109,7 +112,7 @@ typedef struct request {
     img_file_kind format;
     int orbit, frame;
     relight_dome dome;
-    bool near, no_shadows, matte, json, quiet, help;
+    bool found, near, no_shadows, matte, json, quiet, help;
 } request;
 
 static status take_exposing(const char *text, void *into)
@@ -191,6 +194,8 @@ static status check_way(request *r)
         return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
     if (r->matte && by_network)
         return fail(ERROR_USAGE, "--matte is of --by brdf; the relighting decoder paints gloss");
+    if (r->found && by_network)
+        return fail(ERROR_USAGE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
     if (by_network && stereo_maps_in(r->input))
         return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
@@ -209,10 +214,16 @@ static status check_photo(const request *r)
 
 static status check(request *r)
 {
-    if (r->lamps.count == 0 && !r->list && r->orbit == 0 && r->dome.count == 0 && !r->env)
-        return fail(ERROR_USAGE, "no light: give --light, --direction, --lights, --orbit, --dome or --env");
-    if (!r->env && (r->rotate != 0 || r->env_exposure != 0))
-        return fail(ERROR_USAGE, "--rotate and --env-exposure want an --env");
+    if (r->lamps.count == 0 && !r->list && r->orbit == 0 && r->dome.count == 0 && !r->env && !r->found)
+        return fail(ERROR_USAGE,
+                    "no light: give --light, --direction, --lights, --orbit, --dome, --env or --found-light");
+    if (!r->env && r->env_exposure != 0) return fail(ERROR_USAGE, "--env-exposure wants an --env");
+    if (!r->env && !r->found && r->rotate != 0)
+        return fail(ERROR_USAGE, "--rotate wants an --env or the --found-light to turn");
+    if (r->found && (r->lamps.count || r->list || r->dome.count || r->env))
+        return fail(ERROR_USAGE, "--found-light comes alone: without --light, --direction, --lights, --dome and --env");
+    if (r->found && r->exposing.automatic)
+        return fail(ERROR_USAGE, "--found-light is exposed as the photograph is, or brighter by --exposure EV");
     if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
     status s = check_dome(r);
     if (s == OK) s = check_standard_output(r);
@@ -236,6 +247,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"exposure", .take = take_exposing, .into = &r->exposing},
         {"format", .take = take_format, .into = &r->format},
         {"env", .text = &r->env},
+        {"found-light", .flag = &r->found},
         {"rotate", .real = &r->rotate, .low = -1000000, .high = 1000000},
         {"env-exposure", .real = &r->env_exposure, .low = -20, .high = 20},
         {"by", .take = take_way, .into = &r->how},
@@ -358,6 +370,8 @@ static relight_job job_of(const request *r, const char *output)
                        .format = r->format,
                        .ev = r->exposing.ev,
                        .dome = r->dome,
+                       .found = r->found,
+                       .turn = r->rotate,
                        .orbit = r->orbit,
                        .frame = r->frame,
                        .stop = cli_interrupted};
@@ -375,9 +389,9 @@ static void plan(const request *r, stage_bar *bar)
     double pixels = expect_pixels(r->input), lamps = (double)r->lamps.count + r->dome.count;
     size_t count = expect_estimate(pixels, stages, 0);
     expect_relight how = {.pixels = pixels,
-                          .pictures = r->env && r->lamps.count == 0 ? lamps + 1 : lamps,
+                          .pictures = (r->env || r->found) && r->lamps.count == 0 ? lamps + 1 : lamps,
                           .frames = r->orbit,
-                          .environment = r->env != NULL};
+                          .environment = r->env || r->found};
     if (file_is_folder(r->input)) count = expect_maps(pixels, stages, 0);
     stage_bar_plan(bar, stages, expect_relit(&how, stages, count));
 }

@@ -152,7 +152,7 @@ status relight_write_dome(relight_work *w)
     for (int i = 0; i < w->job->dome.count && s == OK; i++) {
         lamp light = relight_dome_lamp(w->job, i);
         s = relight_check(w);
-        if (s == OK) s = relight_write(w, &(relight_picture){"dome", (size_t)i, &light, NULL, false});
+        if (s == OK) s = relight_write(w, &(relight_picture){"dome", (size_t)i, &light, 1, NULL, false});
     }
     if (s == OK) s = write_mask(w);
     return s == OK ? write_lists(w) : s;

@@ -33,21 +33,27 @@ static status write_animations(const relight_work *w, const img_animation *frame
     return s;
 }
 
-/* Under an environment, turned a step further for each frame, the light stays where it is. */
+/* Where surroundings turn, a step further for each frame, lamps of the user's stay where they are. */
 static status render_frame(relight_work *w, env_map *environment, int i, relight_sheet *some, img *frame)
 {
     const relight_job *job = w->job;
-    const lamp moving = relight_orbit_lamp(job, i), *light = &moving;
+    const lamp moving = relight_orbit_lamp(job, i), *lights = &moving;
+    int count = 1, step = (job->orbit + RELIGHT_MOST_TILES - 1) / RELIGHT_MOST_TILES;
     char label[RELIGHT_LABEL];
-    relight_label(light, label);
-    if (job->environment) {
-        light = job->lamps.count ? &job->lamps.at[0] : NULL;
+    status s = OK;
+    relight_label(lights, 1, label);
+    if (relight_surroundings_turn(job)) snprintf(label, sizeof label, "turned by %.0f°", 360.0 * i / job->orbit);
+    if (job->found) {
+        s = relight_stand_found(w, 360.0f * (float)i / (float)job->orbit);
+        lights = w->found.lamps;
+        count = w->found.count;
+    } else if (job->environment) {
+        lights = job->lamps.at;
+        count = job->lamps.count > 0;
         if (i > 0) env_map_turn(environment, 360.0f / (float)job->orbit);
-        snprintf(label, sizeof label, "turned by %.0f°", 360.0 * i / job->orbit);
+        s = stage_surround(&w->stage, environment);
     }
-    int step = (job->orbit + RELIGHT_MOST_TILES - 1) / RELIGHT_MOST_TILES;
-    status s = job->environment ? stage_surround(&w->stage, environment) : OK;
-    if (s == OK) s = relight_square(w, light, frame);
+    if (s == OK) s = relight_square(w, lights, count, frame);
     return s == OK && i % step == 0 ? relight_sheet_add(some, frame, label) : s;
 }
 

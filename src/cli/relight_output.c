@@ -19,7 +19,7 @@ status relight_check(const relight_work *w)
 
 static size_t count_lights(const relight_job *job)
 {
-    return job->lamps.count > 0 ? job->lamps.count : job->environment != NULL;
+    return job->lamps.count > 0 ? job->lamps.count : job->environment || job->found;
 }
 
 size_t relight_count_whole(const relight_job *job)
@@ -45,10 +45,23 @@ static void note_burnt_out(relight_work *w, const img *square)
     w->result->pictures++;
 }
 
-status relight_square(relight_work *w, const lamp *light, img *out)
+bool relight_surroundings_turn(const relight_job *job)
+{
+    return job->environment || job->found;
+}
+
+status relight_stand_found(relight_work *w, float further)
+{
+    status s = stage_surround(&w->stage, NULL);
+    env_map_free(&w->found.rest);
+    if (s == OK) s = found_light_stand(&w->job->maps->light, w->job->turn + further, &w->found);
+    return s == OK && w->found.rest.levels[0].data ? stage_surround(&w->stage, &w->found.rest) : s;
+}
+
+status relight_square(relight_work *w, const lamp *lights, int count, img *out)
 {
     network *n = model_network(w->job->model, w->job->maps, w->job->how);
-    status s = stage_relight(n, &w->stage, light, out);
+    status s = stage_relight(n, &w->stage, lights, count, out);
     if (s == OK) note_burnt_out(w, out);
     return s;
 }
@@ -79,9 +92,9 @@ status relight_write(relight_work *w, const relight_picture *p)
     img square = {0}, whole = {0};
     char name[32], label[RELIGHT_LABEL];
     snprintf(name, sizeof name, "%s_%03zu", p->name, p->number);
-    relight_label(p->light, label);
+    relight_label(p->lights, p->count, label);
     watch_tell(w->job->watch, "relighting", (double)w->done++ / (double)relight_count_whole(w->job));
-    status s = relight_square(w, p->light, &square);
+    status s = relight_square(w, p->lights, p->count, &square);
     if (s == OK && p->sheet) s = relight_sheet_add(p->sheet, &square, label);
     if (s == OK) s = frame_whole(w, &square, &whole);
     if (s == OK) s = write_named(w, name, &whole);
@@ -101,9 +114,10 @@ static status write_lights(relight_work *w)
     relight_sheet all = {.count = 0};
     status s = OK;
     for (size_t i = 0; i < count && s == OK; i++) {
-        const lamp *light = job->lamps.count ? &job->lamps.at[i] : NULL;
+        relight_picture p = {"relit", i, job->lamps.at + i, job->lamps.count > 0, count > 1 ? &all : NULL, count == 1};
+        if (job->found) p.lights = w->found.lamps, p.count = w->found.count;
         s = relight_check(w);
-        if (s == OK) s = relight_write(w, &(relight_picture){"relit", i, light, count > 1 ? &all : NULL, count == 1});
+        if (s == OK) s = relight_write(w, &p);
     }
     if (s == OK && count > 1) s = relight_sheet_write(&all, w, "relit.png");
     relight_sheet_free(&all);
@@ -114,7 +128,7 @@ static status write_lights(relight_work *w)
 
 static size_t count_lamps(const relight_job *job)
 {
-    return job->lamps.count + (size_t)job->dome.count + (job->environment ? 0 : (size_t)job->orbit);
+    return job->lamps.count + (size_t)job->dome.count + (relight_surroundings_turn(job) ? 0 : (size_t)job->orbit);
 }
 
 /* All lamps of all pictures: one exposure for them, so that they can be compared. */
@@ -125,7 +139,7 @@ static void gather(const relight_job *job, lamp *all)
         all[count++] = job->lamps.at[i];
     for (int i = 0; i < job->dome.count; i++)
         all[count++] = relight_dome_lamp(job, i);
-    for (int i = 0; !job->environment && i < job->orbit; i++)
+    for (int i = 0; !relight_surroundings_turn(job) && i < job->orbit; i++)
         all[count++] = relight_orbit_lamp(job, i);
     for (size_t i = 0; job->exposing == RELIGHT_BY_LAMPS && i < count; i++)
         all[i].tint = vec3_make(1, 1, 1);
@@ -170,6 +184,7 @@ static status set_stage(relight_work *w, int side)
     status s = stage_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->stage);
     if (s == OK && job->matte) s = stage_make_matte(&w->stage);
     if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
+    if (s == OK && job->found) s = relight_stand_found(w, 0);
     return s == OK ? expose(w) : s;
 }
 
@@ -185,6 +200,7 @@ static status write_all(relight_work *w)
     if (both) let_go(job->maps);
     if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
     stage_free(&w->stage);
+    env_map_free(&w->found.rest);
     return s;
 }
 
@@ -217,7 +233,10 @@ status relight_print(const relight_job *job, relight_result *result)
     size_t size = 0;
     status s = set_stage(&w, 0);
     watch_tell(job->watch, "relighting", 0);
-    if (s == OK) s = relight_square(&w, job->lamps.count ? &job->lamps.at[0] : NULL, &square);
+    if (s == OK && job->found)
+        s = relight_square(&w, w.found.lamps, w.found.count, &square);
+    else if (s == OK)
+        s = relight_square(&w, job->lamps.at, job->lamps.count > 0, &square);
     if (s == OK) s = frame_whole(&w, &square, &whole);
     if (s == OK) s = img_encode_picture("standard output", &whole, job->format, &data, &size);
     if (s == OK) s = relight_check(&w);
@@ -226,5 +245,6 @@ status relight_print(const relight_job *job, relight_result *result)
     img_free(&square);
     img_free(&whole);
     stage_free(&w.stage);
+    env_map_free(&w.found.rest);
     return s;
 }

@@ -34,14 +34,16 @@ typedef struct relight_job {
     const char *const *inputs;             /* as in staging_begin */
     lamp_options lamps;                    /* relit_000 …, of the photograph's size */
     const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
+    bool found; /* instead of lamps and environment the light that was found in the photograph */
+    float turn; /* degrees that it is turned about the vertical, as of merlin_relight_found */
     merlin_relighting how;
     bool matte;
     img_file_kind format; /* of the photograph's size */
     relight_exposing exposing;
     float ev; /* stops brighter than that */
     relight_dome dome;
-    int orbit; /* frames; 0: none. Under an environment that goes round, beside the first of the lights if any; else the
-                * light does */
+    int orbit; /* frames; 0: none. Under an environment that goes round, beside the first of the lights if any, or under
+                * the light that was found, which goes round; else a lamp does */
     int frame; /* their side; 0: the crop's, at most 512 */
     int (*stop)(void);
     const watch *watch; /* told "preparing", "relighting", "going round" (of an orbit) and "animating" */

@@ -19,11 +19,11 @@ static double shown(float x)
     return round(100 * (double)x) / 100 + 0.0;
 }
 
-void relight_label(const lamp *light, char label[RELIGHT_LABEL])
+void relight_label(const lamp *lights, int count, char label[RELIGHT_LABEL])
 {
-    if (light)
-        snprintf(label, RELIGHT_LABEL, "%s%.2f, %.2f, %.2f", light->distant ? "toward " : "", shown(light->at.x),
-                 shown(light->at.y), shown(light->at.z));
+    if (count)
+        snprintf(label, RELIGHT_LABEL, "%s%.2f, %.2f, %.2f", lights->distant ? "toward " : "", shown(lights->at.x),
+                 shown(lights->at.y), shown(lights->at.z));
     else
         snprintf(label, RELIGHT_LABEL, "environment");
 }

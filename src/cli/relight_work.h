@@ -4,19 +4,25 @@
 
 #include "cli/relight_output.h"
 #include "estimate/api.h"
+#include "estimate/found_light.h"
 
 typedef struct relight_work {
     const relight_job *job;
     staging *staging;
     stage stage;
+    found_lights found; /* of a job's `found` */
     relight_result *result;
     size_t done; /* of relight_count_whole */
 } relight_work;
 
 /* ERROR_STOPPED if the job is to stop. */
 status relight_check(const relight_work *w);
-/* The stage's square under a lamp; counts what is burnt out. */
-status relight_square(relight_work *w, const lamp *light, img *out);
+/* Whether surroundings go round in an orbit, and no lamp. */
+bool relight_surroundings_turn(const relight_job *job);
+/* Stands the found light up, so much further round. */
+status relight_stand_found(relight_work *w, float further);
+/* The stage's square under so many lamps together; counts what is burnt out. */
+status relight_square(relight_work *w, const lamp *lights, int count, img *out);
 /* ".png" or ".jpg" */
 const char *relight_ending(const relight_job *job);
 
@@ -37,7 +43,7 @@ typedef struct relight_sheet {
     char labels[RELIGHT_MOST_TILES][RELIGHT_LABEL];
     int count;
 } relight_sheet;
-void relight_label(const lamp *light, char label[RELIGHT_LABEL]);
+void relight_label(const lamp *lights, int count, char label[RELIGHT_LABEL]);
 /* A small copy of the square, if there is room. */
 status relight_sheet_add(relight_sheet *s, const img *picture, const char *label);
 status relight_sheet_write(const relight_sheet *s, const relight_work *w, const char *name);
@@ -47,7 +53,8 @@ void relight_sheet_free(relight_sheet *s);
 typedef struct relight_picture {
     const char *name; /* NAME_000.png or .jpg */
     size_t number;
-    const lamp *light;    /* NULL: the environment alone */
+    const lamp *lights;   /* together; */
+    int count;            /* 0: the environment alone */
     relight_sheet *sheet; /* where a small copy goes, or NULL */
     bool alone;           /* as NAME.png or .jpg, too */
 } relight_picture;

@@ -91,9 +91,9 @@ status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white
 status stage_surround(stage *s, const env_map *environment);
 /* ERROR_USAGE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
 status stage_check(merlin_relighting how, const lamp *light, bool environment);
-/* The square under a lamp (NULL: none) and the stage's environment, one of them at least and as stage_check wants it,
- * bounces included: 3 channels in [0, 1] of `white`. */
-status stage_relight(network *n, const stage *s, const lamp *light, img *out);
+/* The square under so many lamps together and the stage's environment, one of all at least and as stage_check wants
+ * them, bounces included: 3 channels in [0, 1] of `white`. */
+status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out);
 
 /* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
 typedef struct maps_output {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "estimate/api.h"
+#include "estimate/found_light.h"
 
 enum { LARGEST_SIDE = 8000 };
 
@@ -30,20 +31,24 @@ static status put_back(const merlin_maps *maps, const img *square, const img *ma
     return s;
 }
 
-/* Under the point light, the environment, or both. */
-static status relight_maps(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
-                           merlin_relighting how, merlin_image *out)
+/* What maps are relit by: lamps together, and surroundings or NULL. */
+typedef struct lighting {
+    const lamp *lamps;
+    int count;
+    const env_map *environment;
+} lighting;
+
+static status relight_maps(merlin_model *model, const merlin_maps *maps, const lighting *by, merlin_relighting how,
+                           merlin_image *out)
 {
-    lamp place;
     stage st;
     network *n = model_network(model, maps, how);
     img square = {0};
-    status s = take_light(light, &place);
-    if (s == OK) s = stage_check(how, light ? &place : NULL, environment);
+    status s = stage_check(how, by->count ? by->lamps : NULL, by->environment);
     if (s == OK) s = stage_new(n, maps, 0, how, &st);
     if (s != OK) return s;
-    s = stage_surround(&st, environment);
-    if (s == OK) s = stage_relight(n, &st, light ? &place : NULL, &square);
+    s = stage_surround(&st, by->environment);
+    if (s == OK) s = stage_relight(n, &st, by->lamps, by->count, &square);
     img mask = st.full.mask;
     st.full.mask = (img){0};
     stage_free(&st); /* before a large photograph's frame is made */
@@ -53,12 +58,22 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const f
     return s;
 }
 
+/* Under the point light, the environment, or both. */
+static status relight_by(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
+                         merlin_relighting how, merlin_image *out)
+{
+    lamp place;
+    status s = take_light(light, &place);
+    const lighting by = {&place, light != NULL, environment};
+    return s == OK ? relight_maps(model, maps, &by, how, out) : s;
+}
+
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out)
 {
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && light && out);
-    return result_of(s == OK ? relight_maps(model, maps, light, NULL, how, out) : s);
+    return result_of(s == OK ? relight_by(model, maps, light, NULL, how, out) : s);
 }
 
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
@@ -66,7 +81,23 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
 {
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && env && out);
-    return result_of(s == OK ? relight_maps(model, maps, light, &env->map, how, out) : s);
+    return result_of(s == OK ? relight_by(model, maps, light, &env->map, how, out) : s);
+}
+
+merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
+                                   merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    found_lights lights = {.count = 0};
+    status s = api_needs(__func__, model && maps && out);
+    if (s == OK && how == MERLIN_BY_NETWORK)
+        s = fail(ERROR_USAGE, "the relighting decoder knows one lamp alone; relight by BRDF");
+    if (s == OK && !isfinite(turn)) s = fail(ERROR_USAGE, "the light's turn must be finite");
+    if (s == OK) s = found_light_stand(&maps->light, turn, &lights);
+    const lighting by = {lights.lamps, lights.count, lights.rest.levels[0].data ? &lights.rest : NULL};
+    if (s == OK) s = relight_maps(model, maps, &by, how, out);
+    env_map_free(&lights.rest);
+    return result_of(s);
 }
 
 /* ---- many lights ---- */
@@ -104,7 +135,7 @@ merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const m
     if (s == OK) s = take_light(light, &place);
     if (s == OK) s = stage_check(st->stage.how, light ? &place : NULL, environment);
     if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
-    if (s == OK) s = stage_relight(st->network, &st->stage, light ? &place : NULL, &square);
+    if (s == OK) s = stage_relight(st->network, &st->stage, &place, light != NULL, &square);
     if (s != OK) return result_of(s);
     *out = image_of(&square);
     return MERLIN_OK;

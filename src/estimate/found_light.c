@@ -4,6 +4,8 @@
 
 #include "estimate/relight_env.h"
 #include "estimate/shadow.h"
+#include "optics/camera.h"
+#include "optics/latlong.h"
 #include "optics/sh.h"
 
 static const vec3 middle = {0, 0, -1};
@@ -54,6 +56,69 @@ bool found_light_lamp(const merlin_found_light *light, lamp *out)
     out->tint = vec3_scale(vec3_of(light->lamp_strength), far > 0 ? far * far : 1);
     return true;
 }
+
+/* ---- to relight by ---- */
+
+enum { REST_WIDTH = 128, REST_HEIGHT = 64 };
+
+/* The coefficients' radiance, which three bands of a bright sky may bring below zero: that is dark. */
+static status picture_of_rest(const merlin_found_light *light, img *out)
+{
+    status s = img_new(out, REST_WIDTH, REST_HEIGHT, 3);
+    for (int i = 0; s == OK && i < REST_WIDTH * REST_HEIGHT; i++) {
+        real basis[9];
+        const int x = i % REST_WIDTH, y = i / REST_WIDTH;
+        float u = ((float)x + 0.5f) / REST_WIDTH, v = ((float)y + 0.5f) / REST_HEIGHT;
+        sh_basis(latlong_direction(u, v), basis);
+        for (int c = 0; c < 3; c++) {
+            float sum = 0;
+            for (int k = 0; k < 9; k++)
+                sum += basis[k] * light->rest[k][c];
+            out->data[3 * i + c] = fmaxf(sum, 0);
+        }
+    }
+    return s;
+}
+
+static vec3 turned(vec3 d, float degrees)
+{
+    const float a = degrees * CAMERA_RADIAN, c = cosf(a), s = sinf(a);
+    return vec3_make(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
+}
+
+static status stand_rest(const merlin_found_light *light, float turn, env_map *out)
+{
+    img picture = {0};
+    status s = picture_of_rest(light, &picture);
+    float most = 0;
+    for (size_t i = 0; s == OK && i < img_value_count(&picture); i++)
+        most = fmaxf(most, picture.data[i]);
+    if (s == OK && most > 0) s = env_map_new(&picture, out);
+    if (s == OK && most > 0) env_map_turn(out, turn);
+    img_free(&picture);
+    return s;
+}
+
+status found_light_stand(const merlin_found_light *light, float turn, found_lights *out)
+{
+    *out = (found_lights){.count = 0};
+    merlin_found_light l = *light;
+    if (!light->known)
+        return fail(ERROR_INPUT, "the model of these maps knows one light alone and so found none in the photograph: "
+                                 "estimate it by merlin-any");
+    if (light->flash > 0) {
+        out->lamps[out->count] = lamp_at(vec3_make(0, 0, 0));
+        out->lamps[out->count++].tint = vec3_make(light->flash, light->flash, light->flash);
+    }
+    vec3_put(turned(vec3_of(light->lamp), turn), l.lamp);
+    if (found_light_lamp(&l, &out->lamps[out->count])) out->count++;
+    status s = stand_rest(light, turn, &out->rest);
+    if (s == OK && out->count == 0 && !out->rest.levels[0].data)
+        s = fail(ERROR_INPUT, "the light that was found in the photograph is dark");
+    return s;
+}
+
+/* ---- the photograph rebuilt ---- */
 
 static void add_tinted(const img *from, vec3 tint, img *to)
 {

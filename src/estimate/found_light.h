@@ -2,10 +2,12 @@
  *
  *     found_light_take(estimation.lights, &maps.light);
  *     status s = found_light_add(&full, &maps.light, &visibility, &picture);      picture += that light's part
+ *     s = found_light_stand(&maps.light, 90, &lights);                            turned, to relight maps by
  */
 #ifndef MERLIN_ESTIMATE_FOUND_LIGHT_H
 #define MERLIN_ESTIMATE_FOUND_LIGHT_H
 
+#include "estimate/env_map.h"
 #include "estimate/surface.h"
 #include "image/public.h"
 #include "model/model.h"
@@ -25,6 +27,16 @@ bool found_light_is_flash(const merlin_found_light *light);
 
 /* The lamp as relighting has it; tint: its strength by channel. False where there is none. */
 bool found_light_lamp(const merlin_found_light *light, lamp *out);
+
+/* What was found as relighting takes it: flash and lamp, and surroundings of the rest's radiance where that is not dark
+ * (else rest.levels[0] has no data), all but the flash turned about the vertical as env_map_turn does it, the lamp
+ * about the object's middle. ERROR_INPUT where nothing is known or all is dark; ERROR_MEMORY. */
+typedef struct found_lights {
+    lamp lamps[2];
+    int count;
+    env_map rest;
+} found_lights;
+status found_light_stand(const merlin_found_light *light, float turn, found_lights *out);
 
 /* Adds flash, lamp and the rest to out (3 channels, the surface's size). visibility: 1 channel, of any size, of the
  * lamp; without data it reaches all that faces it. ERROR_MEMORY. */

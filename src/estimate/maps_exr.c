@@ -41,6 +41,40 @@ static bool outgrows_half(const merlin_image *photo)
     return largest > HALF_LARGEST || largest < dim;
 }
 
+/* The light that was found, where a model knows it: each field of merlin_found_light behind `known`. */
+enum { LIGHT_NUMBERS = 36 };
+/* More is no light that a photograph can show. */
+static const float MOST_LIGHT = 1e6f;
+
+static exr_attribute attribute_of_light(const merlin_found_light *l)
+{
+    exr_attribute a = {.name = "merlinLight", .count = LIGHT_NUMBERS};
+    float *v = a.values;
+    *v++ = l->flash;
+    memcpy(v, l->lamp, sizeof l->lamp), v += 3;
+    *v++ = l->lamp_sure;
+    *v++ = l->lamp_distance;
+    memcpy(v, l->lamp_strength, sizeof l->lamp_strength), v += 3;
+    memcpy(v, l->rest, sizeof l->rest);
+    return a;
+}
+
+static void read_light(const exr_file *f, merlin_found_light *l)
+{
+    float numbers[LIGHT_NUMBERS];
+    const float *v = numbers;
+    if (!exr_get_numbers(f, "merlinLight", numbers, LIGHT_NUMBERS)) return;
+    for (int i = 0; i < LIGHT_NUMBERS; i++)
+        if (!(fabsf(numbers[i]) <= MOST_LIGHT)) return;
+    l->flash = fmaxf(*v++, 0);
+    memcpy(l->lamp, v, sizeof l->lamp), v += 3;
+    l->lamp_sure = *v++;
+    l->lamp_distance = fmaxf(*v++, 0);
+    memcpy(l->lamp_strength, v, sizeof l->lamp_strength), v += 3;
+    memcpy(l->rest, v, sizeof l->rest);
+    l->known = 1;
+}
+
 status maps_write_exr(const merlin_maps *maps, const char *path)
 {
     const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
@@ -60,7 +94,7 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     lens.values[0] = maps->fov;
     lens.values[1] = maps->slant[0];
     lens.values[2] = maps->slant[1];
-    exr_attribute attributes[] = {
+    exr_attribute attributes[9] = {
         square,
         lens,
         exr_number("merlinSize", (float)maps->size),
@@ -68,9 +102,10 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
         exr_number("merlinMaskFound", maps->mask_source == MERLIN_MASK_FOUND),
         exr_number("merlinMaskConfidence", maps->mask_confidence),
         exr_text("merlinModel", maps->model),
-        environment,
     };
-    size_t count = sizeof attributes / sizeof attributes[0] - (maps->has_environment ? 0 : 1);
+    size_t count = 7;
+    if (maps->has_environment) attributes[count++] = environment;
+    if (maps->light.known) attributes[count++] = attribute_of_light(&maps->light);
     return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
 }
 
@@ -106,6 +141,7 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
     snprintf(maps->model, sizeof maps->model, "%s", model);
     read_lens(f, maps);
+    read_light(f, &maps->light);
     maps->has_environment = exr_get_numbers(f, "merlinEnvironment", &maps->environment[0][0], 27);
     return OK;
 }

@@ -58,8 +58,8 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
     if (s == OK) s = show_reconstruction(maps, white, &o->reconstruction);
     const lamp left = lamp_at(from_left), right = lamp_at(from_right);
-    if (s == OK) s = stage_relight(n, &o->stage, &left, &o->left);
-    if (s == OK) s = stage_relight(n, &o->stage, &right, &o->right);
+    if (s == OK) s = stage_relight(n, &o->stage, &left, 1, &o->left);
+    if (s == OK) s = stage_relight(n, &o->stage, &right, 1, &o->right);
     return s;
 }
 

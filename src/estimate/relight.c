@@ -149,12 +149,27 @@ static status add_lamp(network *n, const stage *s, const lamp *light, bool alone
     return OK;
 }
 
-status stage_relight(network *n, const stage *s, const lamp *light, img *out)
+/* Light adds. Likewise. */
+static status add_lamps(network *n, const stage *s, const lamp *lights, int count, bool alone, img *full, img *low)
+{
+    status result = count ? add_lamp(n, s, &lights[0], alone, full, low) : dark(s, full, low);
+    for (int i = 1; i < count && result == OK; i++) {
+        img more = {0}, more_low = {0};
+        result = add_lamp(n, s, &lights[i], alone, &more, &more_low);
+        if (result == OK) img_add(&more, full);
+        if (result == OK) img_add(&more_low, low);
+        img_free(&more);
+        img_free(&more_low);
+    }
+    return result;
+}
+
+status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out)
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
     bool shadows = s->environment && s->how == MERLIN_BY_BRDF, joint = s->environment && !shadows;
-    status result = light ? add_lamp(n, s, light, !joint, out, &low) : dark(s, out, &low);
+    status result = add_lamps(n, s, lights, count, !joint, out, &low);
     if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
     if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);
     /* with its shadows and a bounce nothing of an environment's light is left to the network */

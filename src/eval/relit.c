@@ -22,7 +22,7 @@ static status relight_all(network *n, const stage *st, int (*stop)(void), pst_ca
         if (stop && stop()) return fail(ERROR_STOPPED, "stopped");
         img picture = {0};
         const lamp light = lamp_at(light_at(i));
-        s = stage_relight(n, st, &light, &picture);
+        s = stage_relight(n, st, &light, 1, &picture);
         if (s == OK) s = near_capture_add(c, &picture, light.at);
         img_free(&picture);
     }

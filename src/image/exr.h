@@ -34,7 +34,7 @@ typedef struct exr_target {
 typedef struct exr_attribute {
     const char *name;
     const char *text;
-    float values[32];
+    float values[40];
     int count;
 } exr_attribute;
 

@@ -147,8 +147,15 @@ present around/relit_000.png around/frame_00{0..2}.png around/orbit.webp
 cmp -s around/frame_000.png around/frame_001.png && complain "the surroundings do not go round"
 refuses 2 'ends like a picture' relight disc.merlin --light 0,0,0 -o lit.PNG
 refuses 2 'ends like a picture' relight disc.merlin --orbit 3 -o orbit.gif
-refuses 2 'want an --env' relight disc.merlin --light 0,0,0 --rotate 90
+refuses 2 'wants an --env or the --found-light' relight disc.merlin --light 0,0,0 --rotate 90
 refuses 2 'without --env' relight disc.merlin --env room.hdr --dome 5
+for other in '--light 0,0,0' '--dome 4' '--env room.hdr'; do
+    # shellcheck disable=SC2086 # words
+    refuses 2 'comes alone' relight disc.merlin --found-light $other
+done
+refuses 2 'knows one lamp alone' relight disc.merlin --found-light --by network
+refuses 2 'exposed as the photograph' relight disc.merlin --found-light --exposure auto
+refuses 1 'estimate it by merlin-any' relight disc.merlin --found-light -o none
 refuses 2 '--rotate' relight disc.merlin --env room.hdr --rotate left
 refuses 2 'relight by BRDF' relight disc.merlin --env room.hdr --by network -o none
 refuses 2 'point lights only' relight disc.merlin --env room.hdr --light 0,0,0 --by network -o none

@@ -149,6 +149,97 @@ static void a_model_of_one_light_takes_no_other_beside_it(void **state)
     merlin_model_close(model);
 }
 
+static merlin_maps maps_of(const fixture *f, merlin_model **model)
+{
+    merlin_params p = merlin_params_default();
+    merlin_maps maps;
+    p.size = 64;
+    p.views = 1;
+    assert_int_equal(merlin_model_open(f->any, model), MERLIN_OK);
+    assert_int_equal(merlin_estimate(*model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+    return maps;
+}
+
+static merlin_image relit(merlin_model *model, const merlin_maps *maps, const float light[3])
+{
+    merlin_image out;
+    assert_int_equal(merlin_relight(model, maps, light, MERLIN_BY_BRDF, &out), MERLIN_OK);
+    return out;
+}
+
+static void found_light_is_the_sum_of_its_lamps(void **state)
+{
+    const fixture *f = *state;
+    const float flash = 0.05f, strength = 0.1f, far = 0.8f, at[3] = {0.48f, 0, -1 + 0.64f};
+    float code[MODEL_LIGHTS];
+    merlin_model *model;
+    merlin_image found;
+    flash_code(flash, strength, code);
+    code[MODEL_LIGHTS_LAMP] = 0.6f;
+    code[MODEL_LIGHTS_LAMP + 2] = 0.8f;
+    code[MODEL_LIGHTS_DISTANCE] = 1 / far;
+    see(f, code);
+    merlin_maps maps = maps_of(f, &model);
+    merlin_image a = relit(model, &maps, (const float[]){0, 0, 0}), b = relit(model, &maps, at);
+    assert_int_equal(merlin_relight_found(model, &maps, 0, MERLIN_BY_BRDF, &found), MERLIN_OK);
+    /* random weights bounce light that may be below zero, and each picture ends there */
+    int compared = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        if (!(a.data[i] > 0 && a.data[i] < 1 && b.data[i] > 0 && b.data[i] < 1)) continue;
+        assert_float_equal(found.data[i], flash * a.data[i] + strength * far * far * b.data[i], 1e-3);
+        compared++;
+    }
+    assert_true(compared > 1000);
+    merlin_image_free(&a);
+    merlin_image_free(&b);
+    merlin_image_free(&found);
+    merlin_maps_free(&maps);
+    merlin_model_close(model);
+}
+
+static double apart(const merlin_image *a, const merlin_image *b)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        sum += fabs((double)(a->data[i] - b->data[i]));
+    return sum / (3 * SIDE * SIDE);
+}
+
+static void found_light_is_kept_and_turns(void **state)
+{
+    const fixture *f = *state;
+    float code[MODEL_LIGHTS], sh[9][3] = {{1, 0.8f, 0.6f}, {0.2f}, {0}, {0.5f, 0.5f, 0.5f}};
+    char folder[300];
+    merlin_model *model;
+    merlin_maps kept;
+    merlin_image before, after, turned;
+    flash_code(0.3f, 0.4f, code);
+    model_encode_sh((const float(*)[3])sh, code + MODEL_LIGHTS_REST);
+    see(f, code);
+    merlin_maps maps = maps_of(f, &model);
+    snprintf(folder, sizeof folder, "%s/maps", f->folder);
+    assert_int_equal(merlin_maps_write(model, &maps, folder), MERLIN_OK);
+    assert_int_equal(merlin_maps_read(folder, &kept), MERLIN_OK);
+    assert_memory_equal(&kept.light, &maps.light, sizeof kept.light);
+    assert_int_equal(merlin_relight_found(model, &maps, 0, MERLIN_BY_BRDF, &before), MERLIN_OK);
+    assert_int_equal(merlin_relight_found(model, &kept, 360, MERLIN_BY_BRDF, &after), MERLIN_OK);
+    assert_int_equal(merlin_relight_found(model, &kept, 180, MERLIN_BY_BRDF, &turned), MERLIN_OK);
+    assert_true(apart(&before, &after) < 2e-3); /* maps.exr is of half floats */
+    assert_true(apart(&before, &turned) > 1e-2);
+    merlin_image_free(&before);
+    merlin_image_free(&after);
+    merlin_image_free(&turned);
+    kept.light.known = 0;
+    assert_int_equal(merlin_relight_found(model, &kept, 0, MERLIN_BY_BRDF, &after), MERLIN_BAD_INPUT);
+    kept.light = (merlin_found_light){.known = 1};
+    assert_int_equal(merlin_relight_found(model, &kept, 0, MERLIN_BY_BRDF, &after), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_relight_found(model, &maps, 0, MERLIN_BY_NETWORK, &after), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relight_found(model, &maps, NAN, MERLIN_BY_BRDF, &after), MERLIN_WRONG_USE);
+    merlin_maps_free(&kept);
+    merlin_maps_free(&maps);
+    merlin_model_close(model);
+}
+
 static void share_of_the_flash(void **state)
 {
     (void)state;
@@ -176,6 +267,8 @@ int main(void)
         cmocka_unit_test(what_is_seen_decides),
         cmocka_unit_test(the_camera_and_the_photographer_know_better),
         cmocka_unit_test(a_model_of_one_light_takes_no_other_beside_it),
+        cmocka_unit_test(found_light_is_the_sum_of_its_lamps),
+        cmocka_unit_test(found_light_is_kept_and_turns),
         cmocka_unit_test(share_of_the_flash),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
