@@ -168,6 +168,11 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_REDUCED = 1 << 13,        /* params.shot says that it was read at a reduced size */
     MERLIN_DOUBT_FIRST_FRAME = 1 << 14,    /* params.shot says that it is an animation's first picture */
     MERLIN_DOUBT_LIGHT_BEHIND = 1 << 15,   /* most of its light, as far as the model can tell, comes from behind it */
+    /* of maps that were read, which somebody has edited: by `mended` */
+    MERLIN_DOUBT_NORMALS_NOT_UNIT = 1 << 16,
+    MERLIN_DOUBT_ALBEDO_CLAMPED = 1 << 17,
+    MERLIN_DOUBT_ROUGHNESS_CLAMPED = 1 << 18,
+    MERLIN_DOUBT_DEPTH_CLAMPED = 1 << 19,
 } merlin_doubt;
 
 /* All of the photograph's size, zero where mask is zero, finite everywhere. */
@@ -194,12 +199,16 @@ typedef struct merlin_maps {
     float mask_confidence;    /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
     char model[64];
     merlin_timing timing;
-    unsigned doubts;       /* merlin_doubt's bits; 0 of maps that were read */
+    unsigned doubts;       /* merlin_doubt's bits; of maps that were read, what was mended of them alone */
     float light_elsewhere; /* how likely the photograph was lit from elsewhere than the lens, in [0, 1] */
     int reduced, frames;   /* params.shot's */
     float fov; /* how wide the crop is, degrees, by params.fov or params.shot; 0: unknown, the maps take it for 60 */
     float slant[2]; /* where the crop's middle is as seen from the lens, sines to the right and upwards; the maps' space
                      * is that of a camera that looks at it */
+    struct {
+        float normal, albedo, roughness, depth; /* shares of the object, in [0, 1]: normals that were not unit and were
+                                                 * made so; the others out of their range, to which they were clamped */
+    } mended;                                   /* of maps that were read */
 } merlin_maps;
 
 /* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size,
@@ -216,7 +225,8 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
 /* maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or, after a
  * failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. */
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder);
-/* From the maps.exr of such a folder. The reconstruction stays without data. */
+/* From the maps.exr of such a folder, edited or not: values that are not finite, and maps that are wholly out of their
+ * range or of another size than was written, are MERLIN_BAD_INPUT. The reconstruction stays without data. */
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
 
 /* ---- from maps to new light ---- */

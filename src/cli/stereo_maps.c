@@ -14,7 +14,7 @@ enum { FRAME = 256 };
 /* Radiance of a white matte surface that faces a lamp at distance 1. */
 static const float WHITE = LIGHT_POWER / BRDF_PI;
 /* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
-static const float nearest = 0.25f;
+static const float nearest = 0.25f, farthest = 20;
 
 bool stereo_maps_in(const char *folder)
 {
@@ -26,10 +26,15 @@ bool stereo_maps_in(const char *folder)
     return theirs;
 }
 
+/* No lens is so wide that its focal length is less than a hundredth of the picture. */
 static status read_focal(const exr_file *f, const char *path, float *focal)
 {
-    bool known = exr_get_numbers(f, "merlinFocal", focal, 1) && *focal >= 0;
-    return known ? OK : fail(ERROR_INPUT, "%s says nothing of the camera (merlinFocal)", path);
+    const int side = exr_width(f) > exr_height(f) ? exr_width(f) : exr_height(f);
+    if (!exr_get_numbers(f, "merlinFocal", focal, 1))
+        return fail(ERROR_INPUT, "%s says nothing of the camera (merlinFocal)", path);
+    if (*focal == 0 || *focal > 0.01f * (float)side) return OK;
+    return fail(ERROR_INPUT, "%s: no camera has a focal length of %g pixels (merlinFocal; 0: seen from afar)", path,
+                (double)*focal);
 }
 
 static bool is_object(const merlin_maps *maps, size_t i)
@@ -65,10 +70,19 @@ static status normalize_albedo(merlin_maps *maps)
     return OK;
 }
 
-/* focal: pixels; 0: seen from afar, with depths in pixels. */
-static void place_depth(merlin_maps *maps, float focal, float pitch)
+/* A surface that was solved badly may be deeper than the camera is far; some spikes are usual. */
+static const double DEPTH_WORTH_A_WORD = 0.01;
+
+static void doubt_depth(size_t clamped, size_t count, merlin_maps *maps)
 {
-    size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0;
+    maps->mended.depth = (float)((double)clamped / (double)count);
+    if ((double)maps->mended.depth > DEPTH_WORTH_A_WORD) maps->doubts |= MERLIN_DOUBT_DEPTH_CLAMPED;
+}
+
+/* focal: pixels; 0: seen from afar, with depths in pixels. */
+static status place_depth(merlin_maps *maps, float focal, float pitch)
+{
+    size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0, clamped = 0;
     double sum = 0;
     for (size_t i = 0; i < pixels; i++)
         if (is_object(maps, i)) {
@@ -76,9 +90,16 @@ static void place_depth(merlin_maps *maps, float focal, float pitch)
             count++;
         }
     float mean = (float)(sum / (double)count);
+    if (focal > 0 && !(mean > 0))
+        return fail(ERROR_INPUT, "depth.Z should be positive: the camera of merlinFocal sees nothing behind itself");
     float scale = focal > 0 ? pitch * focal / mean : pitch;
-    for (size_t i = 0; i < pixels; i++)
-        maps->depth.data[i] = is_object(maps, i) ? fmaxf(1 + scale * (maps->depth.data[i] - mean), nearest) : 1;
+    for (size_t i = 0; i < pixels; i++) {
+        float placed = is_object(maps, i) ? 1 + scale * (maps->depth.data[i] - mean) : 1;
+        clamped += placed < nearest || placed > farthest;
+        maps->depth.data[i] = fminf(fmaxf(placed, nearest), farthest);
+    }
+    doubt_depth(clamped, count, maps);
+    return OK;
 }
 
 /* Into the camera of estimates, which sees it under 60 degrees. The shape stays what it is, and so do its normals:
@@ -93,8 +114,8 @@ static status place(merlin_maps *maps, float focal)
     maps->crop.y = c.y;
     maps->crop.side = c.side;
     float pitch = camera_pixel_size(&(camera){.width = c.side, .height = c.side, .fov = MODEL_FOV});
-    place_depth(maps, focal, pitch);
-    s = normalize_albedo(maps);
+    s = place_depth(maps, focal, pitch);
+    if (s == OK) s = normalize_albedo(maps);
     if (s != OK) return s;
     for (size_t i = 0, pixels = img_value_count(&mask); i < pixels; i++)
         maps->roughness.data[i] = 1;
@@ -112,7 +133,7 @@ status stereo_maps_read(const char *folder, merlin_maps *out)
     float focal = 0;
     status s = exr_open(path, &f);
     if (s == OK) s = read_focal(f, path, &focal);
-    if (s == OK) s = maps_read_layers(f, false, out);
+    if (s == OK) s = maps_read_layers(f, path, false, out);
     if (f) exr_close(f);
     if (s == OK && (s = place(out, focal)) != OK) s = fail_in(s, "%s", path);
     free(path);

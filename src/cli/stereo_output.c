@@ -5,9 +5,8 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "estimate/crop.h"
+#include "estimate/api.h"
 #include "estimate/map_png.h"
-#include "image/exr.h"
 #include "image/figure.h"
 #include "image/write.h"
 #include "stereo/mesh_write.h"
@@ -40,7 +39,8 @@ static status write_exr(const stereo_result *r, const char *path)
         {"error.Y", r->error.data, 1, false},
     };
     const exr_attribute attributes[] = {exr_text("merlinError", method),
-                                        exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0)};
+                                        exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0),
+                                        maps_picture_size(r->mask.width, r->mask.height)};
     return exr_write(path, r->mask.width, r->mask.height, channels, sizeof channels / sizeof channels[0], attributes,
                      sizeof attributes / sizeof attributes[0]);
 }

@@ -50,6 +50,15 @@ status crop_around(const img *mask, crop_square *out)
     return OK;
 }
 
+bool crop_holds(const img *mask, crop_square c, int slack, float least_share)
+{
+    bounds b = bounds_of(mask);
+    int width = b.right - b.left + 1, height = b.bottom - b.top + 1;
+    bool inside = b.left >= c.x - slack && b.top >= c.y - slack && b.right < c.x + c.side + slack &&
+                  b.bottom < c.y + c.side + slack;
+    return b.pixels > 0 && inside && (float)(width > height ? width : height) >= least_share * (float)c.side;
+}
+
 /* One row's part that is covered and lies in both images; shift: columns from `from` to `to`. */
 static void copy_row(const img *from, int y, const img *cover, int shift, img *to, int to_y)
 {

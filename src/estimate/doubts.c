@@ -171,6 +171,10 @@ static const struct {
     {MERLIN_DOUBT_GREY, "grey"},
     {MERLIN_DOUBT_REDUCED, "reduced_size"},
     {MERLIN_DOUBT_FIRST_FRAME, "first_frame"},
+    {MERLIN_DOUBT_NORMALS_NOT_UNIT, "normals_not_unit"},
+    {MERLIN_DOUBT_ALBEDO_CLAMPED, "albedo_clamped"},
+    {MERLIN_DOUBT_ROUGHNESS_CLAMPED, "roughness_clamped"},
+    {MERLIN_DOUBT_DEPTH_CLAMPED, "depth_clamped"},
 };
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -226,6 +230,30 @@ static const char *plain_words(merlin_doubt doubt)
     }
 }
 
+static double percent(float share)
+{
+    return 100 * (double)share;
+}
+
+/* Of maps that were read. */
+static int mended_words(const merlin_maps *maps, merlin_doubt doubt, char *text, size_t size)
+{
+    switch (doubt) {
+    case MERLIN_DOUBT_NORMALS_NOT_UNIT:
+        return snprintf(text, size, "%.3g %% of the normals are not of unit length, and were made so",
+                        percent(maps->mended.normal));
+    case MERLIN_DOUBT_ALBEDO_CLAMPED:
+        return snprintf(text, size, "%.3g %% of the albedo is outside of [0, 1], and was clamped",
+                        percent(maps->mended.albedo));
+    case MERLIN_DOUBT_ROUGHNESS_CLAMPED:
+        return snprintf(text, size, "%.3g %% of the roughness is outside of [0.03, 1], and was clamped",
+                        percent(maps->mended.roughness));
+    default:
+        return snprintf(text, size, "%.3g %% of the depth is out of range, and was clamped",
+                        percent(maps->mended.depth));
+    }
+}
+
 int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text, int size)
 {
     size_t room = size > 0 ? (size_t)size : 0;
@@ -253,6 +281,11 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",
                         coverage_of(maps).object);
+    case MERLIN_DOUBT_NORMALS_NOT_UNIT:
+    case MERLIN_DOUBT_ALBEDO_CLAMPED:
+    case MERLIN_DOUBT_ROUGHNESS_CLAMPED:
+    case MERLIN_DOUBT_DEPTH_CLAMPED:
+        return mended_words(maps, doubt, text, room);
     default:
         return snprintf(text, room, "%s", plain_words(doubt));
     }

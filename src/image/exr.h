@@ -73,6 +73,7 @@ bool exr_has_channel(const exr_file *f, const char *name);
 const char *exr_channel_name(const exr_file *f, int index);
 /* Half, float and uint channels; scan lines or tiles; a missing channel is an error that names it. */
 status exr_read(exr_file *f, const exr_target *targets, size_t count);
+bool exr_has_attribute(const exr_file *f, const char *name);
 /* Attributes as written by exr_write: false, and values as they were, if absent, of another kind or not finite. */
 bool exr_get_numbers(const exr_file *f, const char *name, float *values, int count);
 const char *exr_get_text(const exr_file *f, const char *name); /* NULL if absent */

@@ -309,6 +309,12 @@ status exr_read(exr_file *f, const exr_target *targets, size_t count)
     return code == EXR_ERR_SUCCESS ? OK : fail_reading(f, code);
 }
 
+bool exr_has_attribute(const exr_file *f, const char *name)
+{
+    const exr_attribute_t *ignored = NULL;
+    return exr_get_attribute_by_name(f->context, f->part, name, &ignored) == EXR_ERR_SUCCESS;
+}
+
 bool exr_get_numbers(const exr_file *f, const char *name, float *values, int count)
 {
     const exr_attribute_t *a = NULL;

@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "image/exr.h"
+#include "image/exr_place.h"
 #include "image/picture.h"
 #include "image/primaries.h"
 
@@ -89,29 +89,12 @@ static status convert_primaries(const exr_file *f, const char *path, img *color)
     return OK;
 }
 
-/* What of the values lies in the frame, and black around it. */
-static status place_in_frame(const exr_frame *frame, img *image)
-{
-    long long right = frame->left + image->width, bottom = frame->top + image->height;
-    long long first = frame->left > 0 ? frame->left : 0, end = right < frame->width ? right : frame->width;
-    img seen;
-    status s = img_new(&seen, (int)frame->width, (int)frame->height, image->channels);
-    if (s != OK) return s;
-    size_t bytes = end > first ? (size_t)(end - first) * (size_t)image->channels * sizeof *image->data : 0;
-    for (long long y = frame->top > 0 ? frame->top : 0; bytes && y < bottom && y < frame->height; y++)
-        memcpy(img_at(&seen, (int)first, (int)y), img_at(image, (int)(first - frame->left), (int)(y - frame->top)),
-               bytes);
-    img_free(image);
-    *image = seen;
-    return OK;
-}
-
 static status show_frame(const exr_file *f, img *color, img *alpha)
 {
     exr_frame d = exr_display(f);
     if (d.left == 0 && d.top == 0 && d.width == color->width && d.height == color->height) return OK;
-    status s = place_in_frame(&d, color);
-    return s == OK && alpha && alpha->data ? place_in_frame(&d, alpha) : s;
+    status s = exr_place(&d, color);
+    return s == OK && alpha && alpha->data ? exr_place(&d, alpha) : s;
 }
 
 static status check_frame(const exr_file *f, const char *path)
