@@ -23,13 +23,16 @@ static const char help[] =
     "       merlin eval solvers [options]\n"
     "       merlin eval detail --data DIR [options]\n"
     "       merlin eval lights --data DIR [options]\n"
+    "       merlin eval pictures FOLDER... [options]\n"
     "       merlin eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures a model on samples it was not trained on (a folder made by merlin render), beside two trivial answers:\n"
     "the data set's mean maps, and maps inflated from the mask. The second form computes the mean maps of a folder of\n"
     "training data, to be given to the first. The others have a --help of their own: photometric stereo from one\n"
     "photograph, its solvers where the truth is known, what more pixels add to an estimate's shape, what an estimate "
     "is\n"
-    "worth by the kind of light, and photographs taken apart by several weights side by side.\n\n"
+    "worth by the kind of light and from every picture of a capture, and photographs taken apart by several weights "
+    "side\n"
+    "by side.\n\n"
     "  --data DIR         held-out samples\n"
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
@@ -165,6 +168,7 @@ int cmd_eval(int argc, char **argv)
 {
     if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "pictures") == 0) return eval_pictures(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "lights") == 0) return eval_lights(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "detail") == 0) return eval_detail(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "doubts") == 0) return eval_doubts(argc - 1, argv + 1);

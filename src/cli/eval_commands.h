@@ -20,6 +20,8 @@ int eval_doubts(int argc, char **argv);
 /* merlin eval masks; argv[0] is "masks". Returns the exit status. */
 int eval_masks(int argc, char **argv);
 
+/* merlin eval pictures; argv[0] is "pictures". Returns the exit status. */
+int eval_pictures(int argc, char **argv);
 /* merlin eval lights; argv[0] is "lights". Returns the exit status. */
 int eval_lights(int argc, char **argv);
 

@@ -64,7 +64,7 @@ status stereo_frame(pst_capture *c, img *photo, int most_side)
     take_place(&small, c);
     s = shrink_image(&frame, &c->normal_true);
     if (s == OK) s = shrink_image(&frame, &c->depth_true);
-    if (s == OK) s = shrink_image(&frame, photo);
+    if (s == OK && photo) s = shrink_image(&frame, photo);
     if (s == OK && c->normal_true.data) make_unit(&c->normal_true);
     return s;
 }

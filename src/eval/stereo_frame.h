@@ -4,8 +4,8 @@
 
 #include "stereo/capture.h"
 
-/* Cuts and shrinks pictures, mask, truth and camera in place, and photo (3 channels of the capture's size) with them.
- * A pixel of the result belongs to the object if all it is made of does (stereo/shrink.h). */
+/* Cuts and shrinks pictures, mask, truth and camera in place, and photo (3 channels of the capture's size, or NULL)
+ * with them. A pixel of the result belongs to the object if all it is made of does (stereo/shrink.h). */
 status stereo_frame(pst_capture *c, img *photo, int most_side);
 
 #endif

@@ -119,24 +119,28 @@ static float distance_from_flash(const pst_capture *c, int i)
     return c->lighting == PST_NEAR ? vec3_length(c->light[i].position) : -c->light[i].direction.z;
 }
 
-/* The picture whose light is nearest to a flash, as if it were white. */
-static status take_photo(const pst_capture *c, img *photo)
+int stereo_object_frontal(const pst_capture *c)
 {
     int best = 0;
     for (int i = 1; i < c->count; i++)
         if (distance_from_flash(c, i) < distance_from_flash(c, best)) best = i;
+    return best;
+}
+
+status stereo_object_photo(const pst_capture *c, int picture, img *photo)
+{
     status s = img_new(photo, c->width, c->height, 3);
     if (s != OK) return s;
     float gain[3], most = 0;
     for (int k = 0; k < 3; k++) {
-        float intensity = c->light[best].intensity[c->channels == 3 ? k : 0];
+        float intensity = c->light[picture].intensity[c->channels == 3 ? k : 0];
         gain[k] = c->intensities_known && intensity > 0 ? intensity : 1;
         most = fmaxf(most, gain[k]);
     }
     size_t channels = (size_t)c->channels;
     for (size_t i = 0, n = 3 * (size_t)c->width * (size_t)c->height; i < n; i++) {
         size_t from = channels == 3 ? i : i / 3;
-        photo->data[i] = fminf((float)c->picture[best][from] / 65535 * most / gain[i % 3], 1);
+        photo->data[i] = fminf((float)c->picture[picture][from] / 65535 * most / gain[i % 3], 1);
     }
     return OK;
 }
@@ -148,7 +152,7 @@ static status read_capture(const char *path, stereo_object *out)
     status s = pst_capture_read(path, NULL, &out->capture);
     if (s != OK) return s;
     if (!out->capture.normal_true.data) return fail(ERROR_INPUT, "%s has no true normals to compare with", path);
-    return take_photo(&out->capture, &out->photo);
+    return stereo_object_photo(&out->capture, stereo_object_frontal(&out->capture), &out->photo);
 }
 
 status stereo_object_read(const char *path, stereo_object *out)

@@ -9,7 +9,7 @@ PATH=$scratch/bin:$PATH
 cd "$scratch" || exit 1
 manual=$(sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/merlin.1")
 commands=(estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval detail"
-    "eval doubts" "eval masks" "eval lights" "eval photos" bench info)
+    "eval doubts" "eval masks" "eval lights" "eval pictures" "eval photos" bench info)
 
 in_source() { # COMMAND: the names in its table, and those of the table that all have
     grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$MERLIN_SOURCE_DIR/src/cli/cmd_${1// /_}.c" \
