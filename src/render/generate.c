@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "render/contents.h"
 #include "render/streams.h"
 #include "scene/model_folder.h"
 #include "scene/texture.h"
@@ -226,26 +227,46 @@ static status check_apart(const render_options *o)
     return fail(ERROR_USAGE, "samples in %s would be taken for pictures of %s: choose another folder", o->folder, read);
 }
 
+/* Folders of older versions do not tell the contents, and go on. */
+static status compare_claims(const render_options *o, const char *path, const char *options, const char *contents)
+{
+    char *found = NULL;
+    size_t size, length = strlen(options);
+    status s = file_read(path, length + 4096, &found, &size);
+    if (s != OK) return s;
+    if (strncmp(found, options, length) != 0 || (found[length] && strncmp(found + length, "contents ", 9) != 0))
+        s = fail(ERROR_USAGE, "%s holds samples made with other options (see %s): choose another folder", o->folder,
+                 path);
+    else if (found[length] && strcmp(found + length, contents) != 0)
+        s = fail(ERROR_USAGE,
+                 "%s holds samples made of other files than are there now (see contents in %s): choose another folder",
+                 o->folder, path);
+    free(found);
+    return s;
+}
+
+static status claim_for(const render_options *o, const char *contents)
+{
+    char options[8192];
+    describe(o, options, sizeof options);
+    char *path = file_join(o->folder, "render.txt"), *text = NULL;
+    if (path && asprintf(&text, "%s%s", options, contents) < 0) text = NULL;
+    status s = path && text ? OK : fail(ERROR_MEMORY, "out of memory");
+    if (s == OK)
+        s = file_exists(path) ? compare_claims(o, path, options, contents) : file_write(path, text, strlen(text));
+    free(text);
+    free(path);
+    return s;
+}
+
 static status claim_folder(const render_options *o)
 {
-    char text[8192], *found = NULL;
-    size_t size;
-    describe(o, text, sizeof text);
+    char *contents = NULL;
     status s = check_apart(o);
+    if (s == OK) s = contents_describe(o, &contents);
     if (s == OK) s = file_make_folder(o->folder);
-    if (s != OK) return s;
-    char *path = file_join(o->folder, "render.txt");
-    if (!path) return fail(ERROR_MEMORY, "out of memory");
-    if (!file_exists(path)) {
-        s = file_write(path, text, strlen(text));
-    } else {
-        s = file_read(path, sizeof text, &found, &size);
-        if (s == OK && strcmp(found, text) != 0)
-            s = fail(ERROR_USAGE, "%s holds samples made with other options (see %s): choose another folder", o->folder,
-                     path);
-    }
-    free(found);
-    free(path);
+    if (s == OK) s = claim_for(o, contents);
+    free(contents);
     return s;
 }
 

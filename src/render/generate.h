@@ -8,7 +8,8 @@
  *
  * A sample depends on the options and (seed, index) alone, never on the number of threads. Samples already in the
  * folder are kept, so an interrupted run is continued by repeating it; render.txt in the folder says what made them,
- * and a run with other options is refused rather than mixed in. */
+ * options and what the files hold that they name (contents.h), and a run with others is refused rather than mixed in.
+ */
 #ifndef MERLIN_RENDER_GENERATE_H
 #define MERLIN_RENDER_GENERATE_H
 

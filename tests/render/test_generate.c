@@ -117,6 +117,58 @@ static void samples_of_other_options_are_not_mixed_in(void **state)
     scratch_remove(folder);
 }
 
+static void write_mesh(const char *path, const char *apex)
+{
+    char text[256];
+    int length =
+        snprintf(text, sizeof text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv %s\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", apex);
+    assert_int_equal(file_write(path, text, (size_t)length), OK);
+}
+
+/* By a folder's render.txt of a version that did not tell them, anything goes on. */
+static void forget_contents(const char *folder)
+{
+    char *path = file_join(folder, "render.txt"), *text;
+    size_t size;
+    assert_int_equal(file_read(path, 65536, &text, &size), OK);
+    char *contents = strstr(text, "contents ");
+    assert_non_null(contents);
+    assert_int_equal(file_write(path, text, (size_t)(contents - text)), OK);
+    free(text);
+    free(path);
+}
+
+static void samples_of_a_changed_mesh_are_not_mixed_in(void **state)
+{
+    (void)state;
+    for (int in_folder = 0; in_folder < 2; in_folder++) {
+        char *folder = scratch_new(), *meshes = scratch_new(), *mesh = file_join(meshes, "a.obj");
+        render_stats stats;
+        render_options o = small(folder);
+        o.count = 1;
+        o.environment = false;
+        *(in_folder ? &o.mesh_folder : &o.mesh) = in_folder ? meshes : mesh;
+        write_mesh(mesh, "0 0 1");
+        assert_int_equal(render_samples(&o, &stats), OK);
+        render_stats_free(&stats);
+        o.count = 2;
+        assert_int_equal(render_samples(&o, &stats), OK);
+        assert_int_equal(stats.kept, 1);
+        render_stats_free(&stats);
+        write_mesh(mesh, "0 0 2");
+        assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+        assert_non_null(strstr(status_message(), "made of other files than are there now"));
+        render_stats_free(&stats);
+        forget_contents(folder);
+        assert_int_equal(render_samples(&o, &stats), OK);
+        assert_int_equal(stats.kept, 2);
+        render_stats_free(&stats);
+        free(mesh);
+        scratch_remove(folder);
+        scratch_remove(meshes);
+    }
+}
+
 static void samples_are_not_rendered_among_what_they_are_made_of(void **state)
 {
     (void)state;
@@ -359,6 +411,7 @@ int main(void)
         cmocka_unit_test(set_is_the_same_from_one_thread_and_from_two),
         cmocka_unit_test(interrupted_set_is_continued_to_the_same_files),
         cmocka_unit_test(samples_of_other_options_are_not_mixed_in),
+        cmocka_unit_test(samples_of_a_changed_mesh_are_not_mixed_in),
         cmocka_unit_test(samples_are_not_rendered_among_what_they_are_made_of),
         cmocka_unit_test(impossible_options_are_refused),
         cmocka_unit_test(an_unreadable_mesh_claims_no_folder),
