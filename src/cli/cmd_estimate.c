@@ -94,7 +94,7 @@ static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
         {"mask", .text = &r->mask},
-        {"point", .take = photo_take_point, .into = &r->params.hint},
+        {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
         {"box", .take = photo_take_box, .into = &r->params.hint},
         {"output", 'o', .folder = &r->output},
         {"model", .text = &r->model_name},
@@ -103,7 +103,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"fov", .real = &r->params.fov, .low = 1, .high = 150},
         {"flash", .flag = &r->flash},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
-        {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name},
+        {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name, .many = true},
         {"share", .take = photo_take_share, .into = &r->share},
         {"resume", 'r', .flag = &r->resume},
         {"json", .flag = &r->json},

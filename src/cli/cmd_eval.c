@@ -116,7 +116,7 @@ static status parse(int argc, char **argv, request *r)
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"environments", .count = &r->options.environments, .low = 1, .high = 100000000},
         {"white", .real = &r->options.white, .low = 1, .high = 16},
-        {"given", .take = take_given, .into = &r->options.given},
+        {"given", .take = take_given, .into = &r->options.given, .many = true},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"precision", .take = take_precision, .into = &r->options.type},
         {"figure", .picture = &r->options.figure},

@@ -46,9 +46,12 @@ static status take_model(const char *path, void *into)
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
-        {"model", .take = take_model, .into = r}, {"mask", .text = &r->mask},
-        {"output", 'o', .picture = &r->output},   {"quiet", 'q', .flag = &r->quiet},
-        {"help", 'h', .flag = &r->help},          {0},
+        {"model", .take = take_model, .into = r, .many = true},
+        {"mask", .text = &r->mask},
+        {"output", 'o', .picture = &r->output},
+        {"quiet", 'q', .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;

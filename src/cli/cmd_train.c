@@ -55,7 +55,7 @@ static status parse(int argc, char **argv, request *r)
         {"output", 'o', .folder = &o->output},
         {"resume", 'r', .flag = &o->resume},
         {"init", 'i', .text = &o->init},
-        {"init-shared", .take = take_shared, .into = r},
+        {"init-shared", .take = take_shared, .into = r, .many = true},
         {"note", 'n', .text = &o->note},
         {"mpi", .flag = &r->mpi},
         {"quiet", 'q', .flag = &o->quiet},

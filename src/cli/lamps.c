@@ -12,7 +12,7 @@
 
 lamp_options lamp_options_new(void)
 {
-    return (lamp_options){.common = {1, {1, 1, 1}}};
+    return (lamp_options){.common = {.power = 1, .color = {1, 1, 1}}};
 }
 
 void lamp_options_free(lamp_options *lamps)
@@ -38,6 +38,7 @@ static status add(lamp_options *lamps, lamp l)
     lamps->style = style;
     l.tint = lamp_tint(&lamps->common);
     style[lamps->count] = lamps->common;
+    style[lamps->count].has_power = style[lamps->count].has_color = false;
     lamps->at[lamps->count++] = l;
     return OK;
 }
@@ -75,10 +76,20 @@ static void restyle(lamp_options *lamps)
     if (lamps->count) lamps->at[lamps->count - 1].tint = lamp_tint(&lamps->style[lamps->count - 1]);
 }
 
+/* Of one lamp, or of all that have none of their own. */
+static status mark(bool *given, const char *option)
+{
+    if (*given) return fail(ERROR_USAGE, "%s is given twice for the same lamps", option);
+    *given = true;
+    return OK;
+}
+
 status lamp_take_power(const char *text, void *into)
 {
     double power;
     status s = cli_float("--power", text, 1e-3, 1e6, &power);
+    if (s != OK) return s;
+    s = mark(&style_here(into)->has_power, "--power");
     if (s != OK) return s;
     style_here(into)->power = (float)power;
     restyle(into);
@@ -124,6 +135,8 @@ status lamp_take_color(const char *text, void *into)
                     "\"%s\"",
                     text);
     if (!(color.x + color.y + color.z > 0)) return fail(ERROR_USAGE, "--color %s is black: no light", text);
+    status s = mark(&style_here(into)->has_color, "--color");
+    if (s != OK) return s;
     style_here(into)->color = color;
     restyle(into);
     return OK;

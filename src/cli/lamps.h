@@ -15,8 +15,9 @@
 #include "optics/light.h"
 
 typedef struct lamp_style {
-    float power; /* times that of the training data's lamp */
-    vec3 color;  /* linear sRGB */
+    float power;               /* times that of the training data's lamp */
+    vec3 color;                /* linear sRGB */
+    bool has_power, has_color; /* its own options, not those before the first lamp */
 } lamp_style;
 
 typedef struct lamp_options {

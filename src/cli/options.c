@@ -174,11 +174,15 @@ status cli_read_options(int *argc, char ***argv, const cli_option *own)
     describe(options, longs, letters);
     opterr = 0;
     optind = 1;
+    bool met[CLI_MOST_OPTIONS] = {false};
     for (int value; (value = getopt_long(*argc, *argv, letters, longs, NULL)) != -1;) {
         if (value == ':' || value == '?') return refuse(options, value, *argv);
         const cli_option *option = find(options, value);
         const char *given = value_of(option, *argc, *argv);
         if (given && !*given) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
+        bool *before = &met[option - options];
+        if (*before && !option->many && !option->flag) return fail(ERROR_USAGE, "--%s is given twice", option->name);
+        *before = true;
         status s = take(option, given);
         if (s != OK) return s;
     }

@@ -35,13 +35,15 @@ typedef struct cli_option {
     long low, high;
     status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
     void *into;
+    bool many;                          /* may be given again; flags may, too */
     bool (*is_value)(const char *word); /* beside flag and take: the value may be missing, or be the next word */
 } cli_option;
 
 enum { CLI_MOST_OPTIONS = 40 }; /* with those of every command */
 
-/* Reads options wherever they stand, as getopt_long does; *argc and *argv are then the operands alone. A later value
- * replaces an earlier one, but take is called for each. ERROR_USAGE names the option. At most CLI_MOST_OPTIONS rows. */
+/* Reads options wherever they stand, as getopt_long does; *argc and *argv are then the operands alone. What is
+ * not `many` is refused the second time: a value that replaced another would be a guess. ERROR_USAGE names the option.
+ * At most CLI_MOST_OPTIONS rows. */
 status cli_read_options(int *argc, char ***argv, const cli_option *own);
 
 #endif

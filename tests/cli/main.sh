@@ -29,6 +29,10 @@ refuses 2 "-o wants a value" "$MERLIN" estimate photo.png -o
 succeeds "usage: merlin estimate" "$MERLIN" estimate --he
 refuses 2 "--m is short for several options" "$MERLIN" estimate photo.png --m mask.png
 refuses 2 "--li=0,0,0 is short for several options" "$MERLIN" relight photo.png --li=0,0,0
+refuses 2 "--mesh is given twice" "$MERLIN" render --count 1 -o set --mesh a.obj --mesh b.obj
+refuses 2 "--output is given twice" "$MERLIN" estimate photo.png -o one --output two
+refuses 2 "--power is given twice for the same lamps" "$MERLIN" relight photo.png --light 0,0,0 --power 2 --power 4
+refuses 1 "there is no photograph" "$MERLIN" relight no.png --power 2 --light 0,0,0 --power 4 --light 1,0,0 --json --json
 refuses 2 "unknown option --lamp (try" "$MERLIN" relight photo.png --lamp
 refuses 2 "unknown option --exposre=1: did you mean --exposure? (try" "$MERLIN" estimate photo.png --exposre=1
 refuses 2 "unknown option --ligth: did you mean --light?" "$MERLIN" relight photo.png --ligth 0,0,0
