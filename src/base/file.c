@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -330,9 +331,31 @@ bool file_ends_in_any(const char *name, const char *const *endings)
     return false;
 }
 
+/* Of the numbers that begin here, moved behind both. */
+static int compare_numbers(const char **a, const char **b)
+{
+    const char *x = *a + strspn(*a, "0"), *y = *b + strspn(*b, "0");
+    size_t n = strspn(x, "0123456789"), m = strspn(y, "0123456789");
+    *a = x + n;
+    *b = y + m;
+    return n != m ? (n > m) - (n < m) : memcmp(x, y, n);
+}
+
+int file_compare_names(const char *a, const char *b)
+{
+    const char *x = a, *y = b;
+    while (*x && *y) {
+        bool number = isdigit((unsigned char)*x) && isdigit((unsigned char)*y);
+        int order = number ? compare_numbers(&x, &y) : (unsigned char)*x++ - (unsigned char)*y++;
+        if (order) return order;
+    }
+    int order = (unsigned char)*x - (unsigned char)*y;
+    return order ? order : strcmp(a, b);
+}
+
 static int compare_names(const void *a, const void *b)
 {
-    return strverscmp(*(char *const *)a, *(char *const *)b);
+    return file_compare_names(*(char *const *)a, *(char *const *)b);
 }
 
 static bool append(char ***names, size_t *count, size_t *room, char *path)

@@ -58,6 +58,8 @@ typedef struct pst_capture {
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
     warnings noticed;     /* by whoever read it: pst_doubts passes them on */
     pst_camera camera;
+    int bits;              /* of a value in the pictures' files: 8, 16 or 32 (floats); 0: of pictures in memory */
+    bool linear;           /* those of 8 bits were taken for linear */
     int reduced;           /* so many of the first picture's pixels a side became one: 1 for most */
     int frames;            /* of an animation in the first picture's file, whose first is read: 1 for most */
     skipped_files skipped; /* of the folder */

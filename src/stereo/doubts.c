@@ -6,6 +6,7 @@
 
 #include "stereo/dense.h"
 #include "stereo/light_check.h"
+#include "stereo/model_check.h"
 
 /* Pixels and values that are looked at. */
 enum { SOME = 1 << 16 };
@@ -146,6 +147,38 @@ static void doubt_exposure(const pst_capture *c, warnings *out)
             100 * (double)burnt / (double)seen);
 }
 
+/* The brightest that a pixel is in any picture, as a share of full scale. */
+static float brightest_at(const pst_capture *c, size_t pixel)
+{
+    size_t channels = (size_t)c->channels;
+    uint16_t most = 0;
+    for (int k = 0; k < c->count; k++)
+        for (size_t ch = 0; ch < channels; ch++)
+            if (c->picture[k][pixel * channels + ch] > most) most = c->picture[k][pixel * channels + ch];
+    return (float)most / 65535;
+}
+
+/* Lamps light what they are pointed at: an object that is black in all pictures before what is bright is none. */
+static void doubt_mask(const pst_capture *c, warnings *out)
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, inside = 0, outside = 0;
+    size_t black = 0, bright = 0;
+    for (size_t i = 0; i < pixels; i += step) {
+        bool object = c->mask.data[i] > 0.5f;
+        float most = brightest_at(c, i);
+        inside += object;
+        outside += !object;
+        black += object && most < 0.02f;
+        bright += !object && most > 0.1f;
+    }
+    if (2 * black > inside && 2 * bright > outside)
+        warnings_add(
+            out, "mask_inverted",
+            "%.0f %% of what the mask shows is black in every picture, and %.0f %% of what it hides is bright: is "
+            "it inverted? The object is white in a mask",
+            100 * (double)black / (double)inside, 100 * (double)bright / (double)outside);
+}
+
 /* ---- what solvers and readers noticed ---- */
 
 static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
@@ -188,11 +221,13 @@ status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out)
 {
     bool known = s->method != PST_UNCALIBRATED;
     status result = known ? pst_check_lights(c, s, out) : OK;
+    if (known && result == OK && !warnings_find(out, "lights_do_not_fit")) result = pst_check_model(c, s, out);
     if (known && c->lighting == PST_DISTANT) doubt_directions(c, out);
     if (known && c->lighting == PST_NEAR) doubt_places(c, out);
     if (known && c->lighting == PST_NEAR) doubt_unit(c, out);
     if (result == OK) result = doubt_copies(c, out);
     doubt_exposure(c, out);
+    doubt_mask(c, out);
     pass_on(c, s, out);
     return result;
 }

@@ -8,8 +8,9 @@
 #include "base/warnings.h"
 #include "stereo/solve.h"
 
-/* Adds lights_do_not_fit, lights_behind, lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out,
- * lights_in_order, strengths_unsure, distance_unsure and lights_unsure, where they hold. */
+/* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
+ * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,
+ * distance_unsure and lights_unsure, where they hold. */
 status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out);
 
 #endif

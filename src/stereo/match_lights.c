@@ -138,7 +138,7 @@ static bool are_files_in_order(const light_list *list)
 {
     for (size_t i = 0; i < list->count; i++)
         if (!ends_as_a_file(list->name[i]) ||
-            (i && strverscmp(base_name(list->name[i - 1]), base_name(list->name[i])) >= 0))
+            (i && file_compare_names(base_name(list->name[i - 1]), base_name(list->name[i])) >= 0))
             return false;
     return true;
 }

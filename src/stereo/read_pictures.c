@@ -23,9 +23,11 @@ typedef struct reading {
     const watch *watch;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
-    img *first;       /* the first picture, until it is stored */
-    int bits;         /* its */
-    float *brightest; /* of every picture, of floats */
+    char *ambient_path;
+    size_t *lit, *below; /* of every picture: values that are not dark, and that are below the ambient picture's */
+    img *first;          /* the first picture, until it is stored */
+    int bits;            /* its */
+    float *brightest;    /* of every picture, of floats */
     pst_capture *into;
 } reading;
 
@@ -66,6 +68,20 @@ static status check_shape(const reading *r, const pst_capture *c, const char *na
         return fail(ERROR_INPUT, "%s/%s is %s, but %s is %s; all pictures must be of one kind", r->folder, name,
                     picture->channels == 1 ? "grey" : "in colour", c->name[0], c->channels == 1 ? "grey" : "in colour");
     return OK;
+}
+
+/* Light only adds: a value that is plainly below the ambient picture's says that this is none. */
+static void hold_against_ambient(const reading *r, int i, const img *picture)
+{
+    static const float noise = 0.02f;
+    size_t lit = 0, below = 0;
+    for (size_t k = 0, n = img_value_count(picture); k < n; k++) {
+        float value = picture->data[k] * r->scale;
+        lit += value > noise || r->ambient.data[k] > noise;
+        below += value < r->ambient.data[k] - noise;
+    }
+    r->lit[i] = lit;
+    r->below[i] = below;
 }
 
 static status store(const reading *r, const img *picture, uint16_t **out)
@@ -169,8 +185,36 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
         for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
             r->ambient.data[i] *= r->scale;
     }
-    free(path);
-    return s;
+    r->ambient_path = path;
+    size_t count = (size_t)c->count;
+    if (s != OK || !path) return s;
+    r->lit = calloc(count, sizeof *r->lit);
+    r->below = calloc(count, sizeof *r->below);
+    return r->lit && r->below ? OK : fail(ERROR_MEMORY, "no memory for %zu sums", count);
+}
+
+/* What is left when a picture under a light, or another exposure, is subtracted is no picture. */
+static status check_ambient(const reading *r, pst_capture *c)
+{
+    static const double few = 0.05, all = 0.95;
+    double lit = 1e-9, below = 0;
+    for (int i = 0; i < c->count && r->below; i++) {
+        lit += (double)r->lit[i];
+        below += (double)r->below[i];
+    }
+    if (below > all * lit)
+        return fail(
+            ERROR_INPUT,
+            "the ambient picture %s is brighter than all pictures: it must show the object in the light that is "
+            "there when no lamp is on",
+            r->ambient_path);
+    if (below > few * lit)
+        warnings_add(
+            &c->noticed, "ambient_brighter",
+            "the ambient picture %s is brighter than the pictures in %.0f %% of their values, and normals may be "
+            "many degrees off: it must show the object in the light that is there when no lamp is on",
+            r->ambient_path, 100 * below / lit);
+    return OK;
 }
 
 /* The first has been read for its shape. */
@@ -190,6 +234,7 @@ static status take_picture(const reading *r, int i)
     status s = get_picture(r, i, &picture, &bits);
     if (s != OK) return s;
     s = check_shape(r, r->into, r->into->name[i], &picture, bits);
+    if (s == OK && r->ambient.data) hold_against_ambient(r, i, &picture);
     if (s == OK) s = store(r, &picture, &r->into->picture[i]);
     img_free(&picture);
     return s;
@@ -201,9 +246,15 @@ status pst_read_pictures(const char *folder, const pst_read_options *options, ps
     reading r = {
         .folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c, .watch = options->watch};
     status s = read_first_shape(&r, c);
+    c->bits = r.bits;
+    c->linear = options->linear;
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = for_pictures(&r, take_picture);
+    if (s == OK) s = check_ambient(&r, c);
     img_free(&r.ambient);
     img_free(&first);
+    free(r.ambient_path);
+    free(r.lit);
+    free(r.below);
     return s;
 }

@@ -337,6 +337,18 @@ static void folders_are_made_with_those_above(void **state)
     free(deep), free(file), free(below);
 }
 
+static void numbers_in_names_count_whatever_their_zeros(void **state)
+{
+    (void)state;
+    static const char *const sorted[] = {"1.png", "02.png", "3.png", "04.png", "9.png", "10.png", "a",
+                                         "a0",    "a00",    "a1b2",  "a01b3",  "a1b10", "b"};
+    for (int i = 0; i < 13; i++)
+        for (int k = 0; k < 13; k++) {
+            int order = file_compare_names(sorted[i], sorted[k]);
+            assert_int_equal((order > 0) - (order < 0), (i > k) - (i < k));
+        }
+}
+
 static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **state)
 {
     (void)state;
@@ -381,6 +393,7 @@ int main(void)
         cmocka_unit_test(committing_replaces_the_file),
         cmocka_unit_test(a_folder_without_a_name_is_refused),
         cmocka_unit_test(folders_are_made_with_those_above),
+        cmocka_unit_test(numbers_in_names_count_whatever_their_zeros),
         cmocka_unit_test(lists_are_sorted_as_people_count_and_of_the_wanted_endings),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

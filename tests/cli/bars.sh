@@ -64,7 +64,7 @@ radiance disc.hdr 256 100
 
 echo "stereo"
 "$MERLIN" relight disc.merlin --dome 12 --near -o dome -q || complain "no dome"
-near=(stereo dome --near --distance 1 --fov 60 -o out)
+near=(stereo dome --near --distance 1.3 --fov 60 -o out)
 shows_bar '\(reading\|solving\|integrating\)' ./halted "${near[@]}"
 shows_none ./halted "${near[@]}" -q
 TERM=dumb shows_none ./halted "${near[@]}"

@@ -83,6 +83,23 @@ static void ambient_light_is_subtracted_and_clipping_stays(void **state)
     pst_capture_free(&c);
 }
 
+static void an_ambient_picture_is_darker_than_what_lamps_add_to(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    pst_capture c;
+    write_flat("ambient.png", 6, 4, 3, 0.01f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_null(warnings_find(&c.noticed, "ambient_brighter"));
+    pst_capture_free(&c);
+    write_flat("ambient.png", 6, 4, 3, 0.5f, IMG_LINEAR16); /* that of a lamp */
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_non_null(warnings_find(&c.noticed, "ambient_brighter"));
+    pst_capture_free(&c);
+    write_flat("ambient.png", 6, 4, 3, 1, IMG_LINEAR16);
+    assert_refused(&PLAIN, "ambient.png is brighter than all pictures");
+}
+
 static void three_float_pictures(const float value[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -508,6 +525,7 @@ int main(void)
         in_scratch(sixteen_bit_pictures_are_taken_as_they_are),
         in_scratch(eight_bit_pictures_are_decoded_unless_they_are_linear),
         in_scratch(ambient_light_is_subtracted_and_clipping_stays),
+        in_scratch(an_ambient_picture_is_darker_than_what_lamps_add_to),
         in_scratch(floats_share_one_scale_below_saturation),
         in_scratch(floats_and_whole_numbers_are_not_mixed),
         in_scratch(an_lp_file_says_which_picture_has_which_light),

@@ -12,6 +12,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "base/rng.h"
+#include "image/write.h"
 #include "relief.h"
 #include "stereo/doubts.h"
 
@@ -274,6 +275,123 @@ static void places_in_another_unit_or_behind_the_camera_are_told(void **state)
     capture_drop(&c);
 }
 
+static void other_strengths_than_equal_ones_are_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(PEAR, 0, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int i = 0; i < SIZE * SIZE; i++)
+            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.45f + 0.05f * (float)(7 * k % LIGHTS)));
+    assert_told(&c, "strengths_unequal", "light_intensities.txt");
+    for (int k = 0; k < LIGHTS; k++)
+        for (int ch = 0; ch < 3; ch++)
+            c.light[k].intensity[ch] = 0.45f + 0.05f * (float)(7 * k % LIGHTS);
+    assert_silent(&c);
+    capture_drop(&c);
+}
+
+static void change_tones(pst_capture *c, float (*tone)(float))
+{
+    for (int k = 0; k < LIGHTS; k++)
+        for (int i = 0; i < SIZE * SIZE; i++)
+            c->picture[k][i] = (uint16_t)lrintf(65535 * tone((float)c->picture[k][i] / 65535));
+}
+
+static void tones_that_were_taken_for_others_are_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(PEAR, 0.01f, &c);
+    c.bits = 8;
+    assert_silent(&c);
+    change_tones(&c, srgb_decode); /* linear values, decoded */
+    assert_told(&c, "other_tones", "say so by --linear");
+    capture_drop(&c);
+    take(PEAR, 0.01f, &c);
+    c.bits = 8;
+    c.linear = true;
+    change_tones(&c, srgb_encode);
+    assert_told(&c, "other_tones", "leave it out");
+    capture_drop(&c);
+}
+
+/* A ball of radius 0.45 at distance 2 in a picture 30 degrees wide, and lamps about the camera. */
+static void take_near(pst_capture *c)
+{
+    const vec3 middle = {0.05f, -0.03f, -2};
+    const float radius = 0.45f;
+    capture_new(c, SIZE, LIGHTS, 1);
+    c->lighting = PST_NEAR;
+    c->camera = pst_camera_of(SIZE, SIZE, 30);
+    c->camera.mean_distance = 1.65f;
+    for (int k = 0; k < LIGHTS; k++) {
+        float phi = 2.4f * (float)k, r = 0.9f * sqrtf(((float)k + 0.7f) / LIGHTS);
+        c->light[k].position = vec3_make(r * cosf(phi), r * sinf(phi), -0.1f - 0.3f * cosf(1.7f * (float)k));
+    }
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        float x = (float)(i % SIZE) + 0.5f - c->camera.center_x, y = c->camera.center_y - (float)(i / SIZE) - 0.5f;
+        vec3 ray = vec3_normalize(vec3_make(x / c->camera.focal, y / c->camera.focal, -1));
+        float along = vec3_dot(ray, middle), under = along * along - vec3_dot(middle, middle) + radius * radius;
+        if (under < 0.3f * radius * radius) continue;
+        vec3 at = vec3_scale(ray, along - sqrtf(under)), n = vec3_scale(vec3_sub(at, middle), 1 / radius);
+        c->mask.data[i] = 1;
+        for (int k = 0; k < LIGHTS; k++) {
+            vec3 to = vec3_sub(c->light[k].position, at);
+            float far = vec3_length(to);
+            c->picture[k][i] = relief_code(fmaxf(vec3_dot(n, to), 0) / (far * far * far));
+        }
+    }
+}
+
+static warnings near_doubts_of(const pst_capture *c)
+{
+    pst_surface surface;
+    warnings doubts = {0};
+    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_NEAR_LIGHTS}, &surface), OK);
+    assert_int_equal(pst_doubts(c, &surface, &doubts), OK);
+    pst_surface_free(&surface);
+    return doubts;
+}
+
+static void another_distance_or_lens_is_named(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take_near(&c);
+    warnings doubts = near_doubts_of(&c);
+    if (doubts.count) fail_msg("%s: %s", doubts.at[0].code, doubts.at[0].message);
+    static const float wrong[] = {0.8f, 3.3f, 16};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        float told = 0;
+        c.camera.mean_distance = wrong[i];
+        doubts = near_doubts_of(&c);
+        const warning *w = warnings_find(&doubts, "other_distance");
+        if (!w) fail_msg("at %g: %s", (double)wrong[i], doubts.count ? doubts.at[0].message : "no word");
+        assert_int_equal(sscanf(strstr(w->message, "about ") + 6, "%f", &told), 1);
+        assert_float_equal(told, 1.65f, 0.2f);
+    }
+    c.camera = pst_camera_of(SIZE, SIZE, 60);
+    c.camera.mean_distance = 1.65f;
+    doubts = near_doubts_of(&c);
+    assert_non_null(warnings_find(&doubts, "other_lens"));
+    capture_drop(&c);
+}
+
+static void an_inverted_mask_is_told(void **state)
+{
+    (void)state;
+    pst_capture c;
+    take(BALL, 0, &c);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        c.mask.data[i] = 1 - c.mask.data[i];
+    pst_surface none = {.method = PST_UNCALIBRATED};
+    warnings doubts = {0};
+    assert_int_equal(pst_doubts(&c, &none, &doubts), OK);
+    assert_non_null(warnings_find(&doubts, "mask_inverted"));
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +405,10 @@ int main(void)
         cmocka_unit_test(burnt_out_pictures_are_told),
         cmocka_unit_test(lights_from_one_side_or_from_behind_are_told),
         cmocka_unit_test(places_in_another_unit_or_behind_the_camera_are_told),
+        cmocka_unit_test(other_strengths_than_equal_ones_are_told),
+        cmocka_unit_test(tones_that_were_taken_for_others_are_told),
+        cmocka_unit_test(another_distance_or_lens_is_named),
+        cmocka_unit_test(an_inverted_mask_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
