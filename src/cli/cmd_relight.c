@@ -308,12 +308,35 @@ static status get_maps(const request *r, merlin_model *model, const watch *shown
 
 /* ---- what is said of it ---- */
 
+static void doubt_environment(const merlin_environment *e, warnings *doubts)
+{
+    if (e && e->negative > 0)
+        warnings_add(doubts, "environment_values",
+                     "%.3g %% of the surroundings' values are negative, and were taken for black", 100 * e->negative);
+}
+
+static void doubt_darkness(const relight_result *result, warnings *doubts)
+{
+    char which[64] = "the picture";
+    if (result->dark == 0) return;
+    if (result->pictures > 1) snprintf(which, sizeof which, "%zu of %zu pictures", result->dark, result->pictures);
+    warnings_add(doubts, "nothing_lit",
+                 "the object is black in %s: lamps light what faces them, from in front of 0,0,-1, where it is; or the "
+                 "exposure is too low",
+                 which);
+}
+
 /* Lists the doubts of the photograph first, if the maps are made of one now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
     doubts_list(job->maps, doubts);
     for (size_t i = 0; i < job->lamps.noticed.count; i++)
         warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
+    doubt_environment(job->environment, doubts);
+    doubt_darkness(result, doubts);
+    if (result->left > 0)
+        warnings_add(doubts, "pictures_left", "%zu picture%s of an earlier run %s still beside these, %s first",
+                     result->left, result->left == 1 ? "" : "s", result->left == 1 ? "is" : "are", result->left_name);
     if (result->burnt == 0) return;
     char of_several[96] = "";
     if (result->pictures > 1)

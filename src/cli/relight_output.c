@@ -29,19 +29,26 @@ size_t relight_count_whole(const relight_job *job)
 
 /* ---- one picture ---- */
 
-static void note_burnt_out(relight_work *w, const img *square)
+/* The least that is not 0 in a file of 8 bits. */
+static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
+static const double LITTLE_LIT = 0.01;
+
+/* Counts what is white of the object, and what is not black. */
+static void note_light(relight_work *w, const img *square)
 {
     const img *mask = &w->stage.full.mask;
-    size_t burnt = 0, count = 0;
+    size_t burnt = 0, lit = 0, count = 0;
     for (size_t i = 0; i < (size_t)mask->width * (size_t)mask->height; i++) {
         const float *value = square->data + 3 * i;
         if (mask->data[i] < 0.5f) continue;
         burnt += value[0] >= 1 || value[1] >= 1 || value[2] >= 1;
+        lit += value[0] >= LEAST_SEEN || value[1] >= LEAST_SEEN || value[2] >= LEAST_SEEN;
         count++;
     }
     double share = count ? (double)burnt / (double)count : 0;
     w->result->burnt_out = fmax(w->result->burnt_out, share);
     w->result->burnt += share >= RELIGHT_MUCH_BURNT_OUT;
+    w->result->dark += (double)lit < LITTLE_LIT * (double)count;
     w->result->pictures++;
 }
 
@@ -62,7 +69,7 @@ status relight_square(relight_work *w, const lamp *lights, int count, img *out)
 {
     network *n = model_network(w->job->model, w->job->maps, w->job->how);
     status s = stage_relight(n, &w->stage, lights, count, out);
-    if (s == OK) note_burnt_out(w, out);
+    if (s == OK) note_light(w, out);
     return s;
 }
 
@@ -213,7 +220,10 @@ status relight_output(const relight_job *job, relight_result *result)
     if (s != OK) return s;
     s = write_all(&w);
     if (s == OK) s = relight_check(&w);
-    return s == OK ? staging_commit(w.staging, &result->files) : staging_abort(w.staging, s);
+    if (s != OK) return staging_abort(w.staging, s);
+    s = staging_commit(w.staging, &result->files);
+    if (s == OK) relight_find_left(job, result);
+    return s;
 }
 
 /* ---- to standard output ---- */

@@ -52,10 +52,13 @@ typedef struct relight_job {
 /* The outcome of it. */
 typedef struct relight_result {
     staged_files files;
-    float ev;         /* stops by which the pictures are brighter than RELIGHT_AS_SOURCE has them */
-    double burnt_out; /* largest share of the object's pixels, of all pictures, with a channel at white */
-    size_t pictures;  /* how many there are, */
-    size_t burnt;     /* and with RELIGHT_MUCH_BURNT_OUT or more */
+    float ev;           /* stops by which the pictures are brighter than RELIGHT_AS_SOURCE has them */
+    double burnt_out;   /* largest share of the object's pixels, of all pictures, with a channel at white */
+    size_t pictures;    /* how many there are, */
+    size_t burnt;       /* and with RELIGHT_MUCH_BURNT_OUT or more */
+    size_t dark;        /* and in which the object is black */
+    size_t left;        /* numbered pictures of an earlier run that are still among them, */
+    char left_name[16]; /* and what the first is called */
 } relight_result;
 
 #define RELIGHT_MUCH_BURNT_OUT 0.05

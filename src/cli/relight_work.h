@@ -30,6 +30,8 @@ const char *relight_ending(const relight_job *job);
 lamp relight_dome_lamp(const relight_job *job, int i);
 /* ERROR_OUTPUT where the folder has files of another dome that would be taken with these. */
 status relight_dome_check(const relight_job *job);
+/* Counts the numbered pictures of an earlier run that stay beside those that were written. */
+void relight_find_left(const relight_job *job, relight_result *result);
 status relight_write_dome(relight_work *w);
 /* Lamp i of an orbit. */
 lamp relight_orbit_lamp(const relight_job *job, int i);

@@ -28,6 +28,7 @@ network *model_network(const merlin_model *model, const merlin_maps *maps, merli
 
 struct merlin_environment {
     env_map map;
+    double negative; /* share of the file's values that were negative */
 };
 
 static inline crop_square crop_of(const merlin_maps *maps)

@@ -10,6 +10,19 @@
 static const float MEAN_LUMINANCE = 1.0f;
 static const float MOST_EXPOSURE = 20.0f;
 
+/* Negative values that are next to nothing are what enlarging or packing leaves. */
+static double share_negative(const img *picture)
+{
+    const double nothing = 1e-3; /* of the mean */
+    double sum = 0;
+    size_t count = img_value_count(picture), negative = 0;
+    for (size_t i = 0; i < count; i++)
+        if (picture->data[i] > 0) sum += (double)picture->data[i];
+    for (size_t i = 0; i < count; i++)
+        negative += (double)picture->data[i] < -nothing * sum / (double)count;
+    return (double)negative / (double)count;
+}
+
 /* Divides by a power of two, so that nothing is rounded: the sums over the largest floats would not be finite. */
 static void bring_to_one(img *picture)
 {
@@ -45,6 +58,7 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
     if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
     img picture = {0};
     s = img_read_latlong(path, &picture);
+    if (s == OK) e->negative = share_negative(&picture);
     if (s == OK) bring_to_one(&picture);
     if (s == OK) s = env_map_new(&picture, &e->map);
     if (s == OK) s = prepare(path, turn, exposure, &e->map);

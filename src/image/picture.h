@@ -58,6 +58,8 @@ status picture_check_sides(const char *path, long long width, long long height);
 status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice);
 /* Refuses a picture of a kind that its decoder holds as a whole, where that would take too much memory. */
 status picture_check_held(const char *path, picture_kind kind, int width, int height);
+/* Refuses a WebP that has fewer bytes than it says, for which decoders have other words. */
+status picture_check_cut(const char *path, picture_kind kind);
 status picture_read_exr(const char *path, picture_colour how, img *color, img *alpha);
 status picture_look_exr(const char *path, picture_head *head);
 /* Upright and linear, in sRGB's primaries, white where the sensor saturates; 3 channels, 1 if it has no mosaic. White

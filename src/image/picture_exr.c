@@ -34,6 +34,7 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     static const char *const single[] = {"Y", "mask.A", "R", "A"};
     int layers = exr_has_channel(f, "Y") ? 0 : find_layer(f, names);
     if (layers) return layers;
+    if (!exr_has_channel(f, "Y") && (exr_has_channel(f, "G") || exr_has_channel(f, "B"))) return 0;
     for (size_t i = 0; i < sizeof single / sizeof *single; i++) {
         if (!exr_has_channel(f, single[i])) continue;
         snprintf(names[0], NAME_SIZE, "%s", single[i]);
@@ -104,6 +105,19 @@ static status check_frame(const exr_file *f, const char *path)
     return picture_check_sides(path, d.width, d.height);
 }
 
+/* Of some of R, G and B neither a grey nor a coloured picture can be made. */
+static status refuse_channels(const exr_file *f, const char *path)
+{
+    for (int c = 0; c < 3; c++) {
+        const char name[] = {"RGB"[c], 0};
+        if (!exr_has_channel(f, name) &&
+            (exr_has_channel(f, "R") || exr_has_channel(f, "G") || exr_has_channel(f, "B")))
+            return fail(ERROR_INPUT, "cannot read %s: it has no channel %s beside the others of R, G and B", path,
+                        name);
+    }
+    return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+}
+
 /* Opens the first part that has a picture. */
 static status open_picture(const char *path, exr_file **out, channel_name names[3], int *channels)
 {
@@ -112,8 +126,7 @@ static status open_picture(const char *path, exr_file **out, channel_name names[
     status s = exr_open(path, &f);
     while (s == OK && (*channels = choose_channels(f, names)) == 0 && found)
         s = exr_next_part(f, &found);
-    if (s == OK && *channels == 0)
-        s = fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    if (s == OK && *channels == 0) s = refuse_channels(f, path);
     if (s == OK) s = check_frame(f, path);
     if (s == OK)
         *out = f;

@@ -37,3 +37,19 @@ status picture_check_held(const char *path, picture_kind kind, int width, int he
     if (file) fclose(file);
     return held ? picture_check_whole(path, width, height, BYTES_SCANS, "without scans (not progressive)") : OK;
 }
+
+status picture_check_cut(const char *path, picture_kind kind)
+{
+    enum { HEAD = 8 }; /* RIFF, and the count of the bytes behind it, the lowest first */
+    FILE *file = kind == PICTURE_WEBP ? file_open(path) : NULL;
+    if (!file) return OK;
+    uint8_t head[HEAD] = {0};
+    bool known = fread(head, 1, HEAD, file) == HEAD && fseek(file, 0, SEEK_END) == 0;
+    long size = known ? ftell(file) : -1;
+    fclose(file);
+    const long long said =
+        HEAD + ((long long)head[4] | (long long)head[5] << 8 | (long long)head[6] << 16 | (long long)head[7] << 24);
+    if (size < 0 || size >= said) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: it is cut short, %ld of its %lld bytes are there; copy or save it again",
+                path, size, said);
+}

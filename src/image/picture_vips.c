@@ -110,7 +110,8 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
                      ? load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, "page",
                             page.number, NULL)
                      : load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, NULL);
-    if (failed) return vips_refusal(ERROR_INPUT, "read", path);
+    if (failed && (s = picture_check_cut(path, kind)) == OK) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (failed) return s;
     s = picture_check_size(path, vips()->image_get_width(image), vips()->image_get_height(image));
     if (s == OK) s = picture_check_held(path, kind, vips()->image_get_width(image), vips()->image_get_height(image));
     if (s == OK && !divide_by_alpha(&image, &page)) s = vips_refusal(ERROR_INPUT, "read", path);

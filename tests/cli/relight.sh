@@ -100,6 +100,23 @@ succeeds '"code":"relit_burnt_out".*"burnt_out":0.9' relight disc.merlin --light
 grep -q '^merlin relight: disc.merlin: 9[0-9] % of the object is burnt out when relit' stderr || complain "no word: $(cat stderr)"
 succeeds '"warnings":\[\]' relight disc.merlin --light 0,0,0 --power 1000 --exposure auto -o glare --json
 
+echo "pictures that show nothing get a word"
+succeeds '"code":"nothing_lit","message":"the object is black in the picture' \
+    relight disc.merlin --light 0,0,0 --exposure -20 -o behind --json # behind it the tiny model sees bounces
+succeeds behind relight disc.merlin --light 0.5,0.2,-0.4 --light 0,0,0 --exposure -20 -o behind
+grep -q 'disc.merlin: the object is black in 2 of 2 pictures' stderr || complain "no word: $(cat stderr)"
+succeeds '"warnings":\[\]' relight disc.merlin --dome 5 -o around-it --json
+
+echo "pictures of an earlier run among the new ones get a word"
+succeeds left relight disc.merlin --orbit 5 --light 0,0,0 --light 0.5,0,0 --light 0,0.5,0 -o left
+[ -s stderr ] && complain "a word of nothing: $(cat stderr)"
+succeeds '"code":"pictures_left","message":"4 pictures of an earlier run are still beside these, frame_003.png first"' \
+    relight disc.merlin --orbit 3 --light 0,0,0 -o left --json
+succeeds left relight disc.merlin --light 0,0,0 --light 0.5,0,0 -o left
+grep -q '1 picture of an earlier run is still beside these, relit_002.png first' stderr || complain "no word: $(cat stderr)"
+succeeds left relight disc.merlin --light 0,0,0 --light 0.5,0,0 --light 0,0.5,0 -o left
+[ -s stderr ] && complain "a word of nothing: $(cat stderr)"
+
 echo "a list of directions is of far lamps, unless they are to be near"
 succeeds from relight disc.merlin --lights lights.lp --near -o from-near
 cmp -s from-near/relit_000.png from-lights.lp/relit_000.png && complain "--near makes no difference to an .lp file's lamps"

@@ -1,9 +1,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "estimate/api.h"
 #include "estimate/env_map.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
+#include "scratch.h"
 #include "surroundings.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
@@ -174,6 +176,22 @@ static void a_map_wider_than_is_resolved_is_its_means(void **state)
     img_free(&wide);
 }
 
+static void negative_values_of_a_file_are_counted(void **state)
+{
+    (void)state;
+    enum { VALUES = 3 * 32 * 16 };
+    float values[VALUES];
+    merlin_environment *room;
+    for (int i = 0; i < VALUES; i++)
+        values[i] = i < 2 ? -3 : i < 10 ? -1e-5f : 1; /* the latter is what enlarging leaves */
+    const exr_channel channels[] = {{"R", values, 3, true}, {"G", values + 1, 3, true}, {"B", values + 2, 3, true}};
+    const char *path = scratch_path("negative.exr");
+    assert_int_equal(exr_write(path, 32, 16, channels, 3, NULL, 0), OK);
+    assert_int_equal(merlin_environment_read(path, 0, 0, &room), MERLIN_OK);
+    assert_float_equal(room->negative, 2.0 / VALUES, 1e-9);
+    merlin_environment_free(room);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -183,6 +201,7 @@ int main(void)
         cmocka_unit_test(what_was_ahead_is_to_the_right_after_a_quarter_turn),
         cmocka_unit_test(coefficients_are_those_of_the_map),
         cmocka_unit_test(impossible_radiance_counts_as_black),
+        in_scratch(negative_values_of_a_file_are_counted),
         cmocka_unit_test(a_map_wider_than_is_resolved_is_its_means),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
