@@ -149,13 +149,13 @@ typedef struct merlin_timing {
     double mask, prepare, choose, compile, network, upsample; /* seconds; choose: which of two models it is for */
 } merlin_timing;
 
-/* Why maps may be wrong, the gravest first: each a bit of merlin_maps' doubts. The model knows one light, a flash at
- * the lens, one object and one lens; of anything else it makes maps, too. */
+/* Why maps may be wrong, the gravest first: each a bit of merlin_maps' doubts. A model knows one object, and most know
+ * one light, a flash at the lens; of anything else they make maps, too. */
 typedef enum merlin_doubt {
     MERLIN_DOUBT_NO_OBJECT = 1 << 0,       /* the object found, or the mask given, fills the photograph */
     MERLIN_DOUBT_BURNT_OUT = 1 << 1,       /* burnt_out is a tenth or more */
     MERLIN_DOUBT_OBJECT_UNSURE = 1 << 2,   /* mask_confidence is below 0.5 */
-    MERLIN_DOUBT_LIGHT_ELSEWHERE = 1 << 3, /* light_elsewhere says that it was not lit by a flash at the lens */
+    MERLIN_DOUBT_LIGHT_ELSEWHERE = 1 << 3, /* light_elsewhere, or light if that is known, says: not by a flash alone */
     MERLIN_DOUBT_NO_FLASH = 1 << 4,        /* params.shot says that no flash fired */
     MERLIN_DOUBT_HOLLOW = 1 << 5,          /* along the outline the normals turn inward, as of a bowl */
     MERLIN_DOUBT_DRAWING = 1 << 6,         /* most of it are areas of one colour: a drawing or a screenshot */

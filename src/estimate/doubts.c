@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "estimate/exposure.h"
 #include "estimate/found_light.h"
+#include "estimate/light_words.h"
 #include "estimate/mask.h"
 #include "image/color.h"
 #include "image/exif.h"
@@ -129,7 +130,8 @@ static unsigned doubts_of_pixels(const merlin_maps *maps)
 static unsigned doubts_of_light(const light_cues *cues, const merlin_shot *shot, const merlin_maps *maps)
 {
     unsigned doubts = 0;
-    if (maps->light_elsewhere >= LIKELY_ELSEWHERE && !maps->light.known) doubts |= MERLIN_DOUBT_LIGHT_ELSEWHERE;
+    bool elsewhere = maps->light_elsewhere >= LIKELY_ELSEWHERE;
+    if (maps->light.known ? !found_light_is_flash(&maps->light) : elsewhere) doubts |= MERLIN_DOUBT_LIGHT_ELSEWHERE;
     if (found_light_share(&maps->light).lamp > 0.5f && maps->light.lamp[2] < 0) doubts |= MERLIN_DOUBT_LIGHT_BEHIND;
     if (cues->known && cues->outward < LITTLE_OUTWARD && cues->inward > MUCH_INWARD) doubts |= MERLIN_DOUBT_HOLLOW;
     if (shot->flash == MERLIN_FLASH_NONE && !maps->light.known) doubts |= MERLIN_DOUBT_NO_FLASH;
@@ -203,12 +205,25 @@ static int mask_words(const merlin_maps *maps, char *text, size_t size)
     return snprintf(text, size, "the mask covers %.0f %% of the photograph: no outline tells the shape", share);
 }
 
+static int light_sentence(const merlin_maps *maps, char *text, size_t size)
+{
+    char words[LIGHT_WORDS];
+    if (!maps->light.known)
+        return snprintf(
+            text, size,
+            "it does not look lit by a flash at the lens, the one light the model knows, and its maps may be "
+            "quite wrong: photograph it in the dark by the flash");
+    light_words(&maps->light, words);
+    return snprintf(
+        text, size,
+        "it is lit by %s, as far as the model can tell: shape and material are surer by a flash in the dark, "
+        "and how bright the albedo is is a guess",
+        words);
+}
+
 static const char *plain_words(merlin_doubt doubt)
 {
     switch (doubt) {
-    case MERLIN_DOUBT_LIGHT_ELSEWHERE:
-        return "it does not look lit by a flash at the lens, the one light the model knows, and its maps may be quite "
-               "wrong: photograph it in the dark by the flash";
     case MERLIN_DOUBT_NO_FLASH:
         return "by its EXIF no flash fired, the one light the model knows";
     case MERLIN_DOUBT_LIGHT_BEHIND:
@@ -270,6 +285,8 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
                         "it is not sure which part is the object (confidence %.2f): check mask.png; --point X,Y or "
                         "--box X,Y,W,H helps the search, --mask FILE does without",
                         (double)maps->mask_confidence);
+    case MERLIN_DOUBT_LIGHT_ELSEWHERE:
+        return light_sentence(maps, text, room);
     case MERLIN_DOUBT_LENS_NARROW:
     case MERLIN_DOUBT_LENS_WIDE:
         return lens_words(maps, text, room);

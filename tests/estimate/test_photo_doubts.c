@@ -68,9 +68,14 @@ static void light_from_behind_is_told(void **state)
     merlin_maps maps;
     make(&maps, 20, 10, 100, 80);
     maps.light = (merlin_found_light){.known = 1, .flash = 0.1f, .lamp = {0.8f, 0, -0.6f}, .lamp_strength = {1, 1, 1}};
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), MERLIN_DOUBT_LIGHT_BEHIND);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), MERLIN_DOUBT_LIGHT_BEHIND | MERLIN_DOUBT_LIGHT_ELSEWHERE);
     maps.light.lamp[2] = 0.6f;
-    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), 0);
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){0}), MERLIN_DOUBT_LIGHT_ELSEWHERE);
+    char words[256];
+    merlin_doubt_message(&maps, MERLIN_DOUBT_LIGHT_ELSEWHERE, words, sizeof words);
+    assert_non_null(strstr(words, "it is lit by a lamp from the right"));
+    maps.light = (merlin_found_light){.known = 1, .flash = 1};
+    assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_NONE}), 0);
     merlin_maps_free(&maps);
 }
 
