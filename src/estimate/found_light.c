@@ -10,7 +10,7 @@
 
 static const vec3 middle = {0, 0, -1};
 /* A lamp is that from this on; farther than so far, its light is parallel to any eye. */
-static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.8f;
+static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.95f;
 
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
 {

@@ -81,8 +81,8 @@ present out/demo/{overview.png,orbit/orbit.webp,mesh.glb}
 echo "a picture of one's own"
 cp examples/demo.png photo.jpg
 radiance room.hdr 32 6 64
-run_all Start 'merlin (estimate|relight photo.merlin --(light|orbit|env|direction))'
-present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg
+run_all Start 'merlin (estimate|relight (photo.merlin|window) --(light|orbit|env|direction|found-light))'
+present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg window/relit/relit.png
 mapfile -t files < <(awk '/^## / { on = $0 == "## What you get" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$readme")
 ((${#files[@]} > 8)) || complain "the table of files has only ${files[*]}"
 present "${files[@]/#/photo.merlin/}"
