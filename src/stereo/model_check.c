@@ -7,7 +7,7 @@
 #include "stereo/shrink.h"
 
 /* Pixels that are solved again, up to four times as many; pictures; and so few explain everything. */
-enum { SMALL = 700, PICTURES = 24, FEWEST = 5 };
+enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
 /* A residual from which on something is looked for, and how much less of it has to be left. Measured: of real captures
  * and rendered ones with gloss and shadows nothing wrong leaves less than 0.75 of it; linear values taken for sRGB
  * leave twice as much as they need, a distance wrong by half ten times as much. */
