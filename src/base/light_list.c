@@ -215,8 +215,9 @@ static status check_count(const light_table *t)
     const light_list *list = t->list;
     if (t->announced == 0 || (size_t)t->announced == list->count) return OK;
     const char *name = list->name ? list->name[list->count - 1] : "";
-    return fail(ERROR_INPUT, "%s: the first line says %ld lights, but there are %zu%s%.80s: correct that number",
-                t->where, t->announced, list->count, *name ? ", the last one for " : "", name);
+    return fail(ERROR_INPUT, "%s: the first line says %ld light%s, but there %s %zu%s%.80s: correct that number",
+                t->where, t->announced, t->announced == 1 ? "" : "s", list->count == 1 ? "is" : "are", list->count,
+                *name ? ", the last one for " : "", name);
 }
 
 static status take_lights(light_table *t)

@@ -101,9 +101,9 @@ static status announce(const request *r, const pst_calibration *c, const staged_
 {
     if (r->json) return print_json(r, c, written, seconds);
     if (!r->quiet)
-        printf("%s: %d lights in %s/lights.txt; the ball %s at %.1f, %.1f with radius %.1f (%.2f s)\n", r->input,
-               c->count, r->output, c->from_mask ? "of the mask is" : "was found", (double)c->circle.x,
-               (double)c->circle.y, (double)c->circle.radius, seconds);
+        printf("%s: %d light%s in %s/lights.txt; the ball %s at %.1f, %.1f with radius %.1f (%.2f s)\n", r->input,
+               c->count, c->count == 1 ? "" : "s", r->output, c->from_mask ? "of the mask is" : "was found",
+               (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius, seconds);
     return OK;
 }
 

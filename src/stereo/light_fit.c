@@ -138,7 +138,7 @@ static status sum_products(pst_light_fit *f)
         for (size_t k = 0; k < j; k++)
             f->gram[k * n + j] = f->gram[j * n + k];
     }
-    return f->energy > 0 ? OK : fail(ERROR_INPUT, "the pictures are black");
+    return f->energy > 0 ? OK : fail(ERROR_INPUT, "the pictures are black where the object is");
 }
 
 status pst_light_fit_new(const pst_capture *c, const pst_surface *s, pst_light_fit *out)

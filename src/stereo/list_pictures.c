@@ -162,8 +162,8 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
     status s = list_pictures(folder, numbered, &f, &count);
     if (s != OK) return s;
     if (lights && count != wanted)
-        s = fail(ERROR_INPUT, "%s has %zu %spictures, but %s has %zu lights; each picture needs one", folder, count,
-                 numbered ? "numbered " : "", lights, wanted);
+        s = fail(ERROR_INPUT, "%s has %zu %spicture%s, but %s has %zu light%s; each picture needs one", folder, count,
+                 numbered ? "numbered " : "", count == 1 ? "" : "s", lights, wanted, wanted == 1 ? "" : "s");
     if (s == OK) s = pst_capture_reserve(c, count);
     for (size_t i = 0; i < count && s == OK; i++)
         s = pst_capture_set_name(c, i, f.at[i].name);

@@ -216,8 +216,9 @@ static status take_names(const listing *in, const char *lights, const light_list
 
 static status refuse_count(const listing *in, const char *lights, const light_list *list)
 {
-    return fail(ERROR_INPUT, "%s has %d pictures, but %s has %zu lights; each picture needs one", in->folder,
-                in->pictures.count, lights, list->count);
+    return fail(ERROR_INPUT, "%s has %d picture%s, but %s has %zu light%s; each picture needs one", in->folder,
+                in->pictures.count, in->pictures.count == 1 ? "" : "s", lights, list->count,
+                list->count == 1 ? "" : "s");
 }
 
 static status take_numbers(const listing *in, const char *lights, const light_list *list, const size_t *place,

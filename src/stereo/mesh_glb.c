@@ -337,7 +337,10 @@ static status assemble(const char *path, const glb *g)
 
 status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
-    if (m->triangles == 0) return fail(ERROR_INPUT, "cannot write %s: the surface has no triangle", path);
+    if (m->triangles == 0)
+        return fail(ERROR_INPUT,
+                    "cannot write %s: the surface has no triangle; its mask is too thin, or depth jumps everywhere",
+                    path);
     glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
     int longest = from->depth->width > from->depth->height ? from->depth->width : from->depth->height;
     if (!from->camera.perspective) g.scale = 1.0 / longest; /* positions are in pixels */

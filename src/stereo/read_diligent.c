@@ -48,7 +48,8 @@ static status take_names(char *text, const char *path, const char *folder, pst_c
         count++;
     }
     if (count == c->count) return OK;
-    return fail(ERROR_INPUT, "%s names %d pictures, but light_directions.txt has %d lights", path, count, c->count);
+    return fail(ERROR_INPUT, "%s names %d picture%s, but light_directions.txt has %d light%s", path, count,
+                count == 1 ? "" : "s", c->count, c->count == 1 ? "" : "s");
 }
 
 static status read_names(const char *path, const char *folder, pst_capture *c)

@@ -132,7 +132,8 @@ static status take_rows(const char *path, const text_rows *rows, const char *fol
         for (size_t i = 0; i < count && s == OK; i++)
             s = take_row(path, row[i], folder, i < (size_t)c->count ? (int)i : c->count, c);
         if (s == OK && count != (size_t)c->count)
-            s = fail(ERROR_INPUT, "%s has %zu intensities for %d lights", path, count, c->count);
+            s = fail(ERROR_INPUT, "%s has %zu intensit%s for %d light%s", path, count, count == 1 ? "y" : "ies",
+                     c->count, c->count == 1 ? "" : "s");
     }
     free(row);
     return s;

@@ -124,7 +124,9 @@ static status take_rows(const text_rows *rows, const char *where, luces_params *
         if (s != OK) return s;
     }
     if (!p->light) return fail(ERROR_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", where);
-    if (lights != p->count) return fail(ERROR_INPUT, "%s: %d lights for %d images", where, lights, p->count);
+    if (lights != p->count)
+        return fail(ERROR_INPUT, "%s: %d light%s for %d image%s", where, lights, lights == 1 ? "" : "s", p->count,
+                    p->count == 1 ? "" : "s");
     return OK;
 }
 

@@ -20,6 +20,27 @@ status pst_find_mask(const char *folder, const char *asked, char **path)
     return !asked || *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
 }
 
+/* A surface's smallest piece is a triangle of three of a square's four pixels. */
+static bool holds_a_triangle(const img *mask)
+{
+    const float *m = mask->data;
+    const size_t width = (size_t)mask->width;
+    for (int y = 0; y + 1 < mask->height; y++)
+        for (size_t at = (size_t)y * width, end = at + width - 1; at < end; at++)
+            if (m[at] + m[at + 1] + m[at + width] + m[at + width + 1] > 2.5f) return true;
+    return false;
+}
+
+/* Dim pictures are no black ones: whoever gives a mask of what is dark knows that it is. */
+static bool is_ever_lit(const pst_capture *c)
+{
+    const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    for (int k = 0; k < c->count; k++)
+        for (size_t i = 0; i < pixels * channels; i++)
+            if (c->picture[k][i] > 0 && c->mask.data[i / channels] > 0) return true;
+    return false;
+}
+
 static status check_mask(const char *path, pst_capture *c)
 {
     if (c->mask.width != c->width || c->mask.height != c->height)
@@ -28,18 +49,34 @@ static status check_mask(const char *path, pst_capture *c)
     size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
     for (size_t p = 0; p < pixels; p++)
         inside += (c->mask.data[p] = c->mask.data[p] >= 0.5f) > 0;
-    return inside ? OK : fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
+    if (!inside) return fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
+    if (!holds_a_triangle(&c->mask))
+        return fail(ERROR_INPUT,
+                    "the mask %s shows %zu pixel%s, too few or too far apart for a surface: it must be white wherever "
+                    "the object is",
+                    path, inside, inside == 1 ? "" : "s");
+    if (!is_ever_lit(c))
+        return fail(ERROR_INPUT,
+                    "the pictures are black where the mask %s is white: is it theirs, and the object white in it?",
+                    path);
+    return OK;
 }
 
 static status find_mask(const char *folder, pst_capture *c)
 {
     status s = pst_capture_find_mask(c);
     size_t pixels = (size_t)c->width * (size_t)c->height;
+    size_t inside = 0;
     for (size_t p = 0; p < pixels && s == OK; p++)
-        if (c->mask.data[p] > 0) return OK;
+        inside += c->mask.data[p] > 0;
     if (s != OK) return s;
-    return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask", folder,
-                (double)(100 * PST_BLACK));
+    if (!inside)
+        return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask",
+                    folder, (double)(100 * PST_BLACK));
+    if (holds_a_triangle(&c->mask)) return OK;
+    return fail(ERROR_INPUT,
+                "no object is to be found in %s: %zu pixel%s stand%s out, too few for a surface; give a mask", folder,
+                inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
 }
 
 status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)

@@ -25,6 +25,7 @@ typedef struct reading {
     img ambient;
     char *ambient_path;
     size_t *lit, *below; /* of every picture: values that are not dark, and that are below the ambient picture's */
+    size_t *other;       /* those that are not the ambient picture's exactly */
     img *first;          /* the first picture, until it is stored */
     int bits;            /* its */
     float *brightest;    /* of every picture, of floats */
@@ -74,14 +75,16 @@ static status check_shape(const reading *r, const pst_capture *c, const char *na
 static void hold_against_ambient(const reading *r, int i, const img *picture)
 {
     static const float noise = 0.02f;
-    size_t lit = 0, below = 0;
+    size_t lit = 0, below = 0, other = 0;
     for (size_t k = 0, n = img_value_count(picture); k < n; k++) {
         float value = picture->data[k] * r->scale;
         lit += value > noise || r->ambient.data[k] > noise;
         below += value < r->ambient.data[k] - noise;
+        other += value != r->ambient.data[k];
     }
     r->lit[i] = lit;
     r->below[i] = below;
+    r->other[i] = other;
 }
 
 static status store(const reading *r, const img *picture, uint16_t **out)
@@ -190,7 +193,16 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
     if (s != OK || !path) return s;
     r->lit = calloc(count, sizeof *r->lit);
     r->below = calloc(count, sizeof *r->below);
-    return r->lit && r->below ? OK : fail(ERROR_MEMORY, "no memory for %zu sums", count);
+    r->other = calloc(count, sizeof *r->other);
+    return r->lit && r->below && r->other ? OK : fail(ERROR_MEMORY, "no memory for %zu sums", count);
+}
+
+/* The first picture that has the ambient picture's values, NULL if none has; pictures of nothing are all alike. */
+static const char *copied_as_ambient(const reading *r)
+{
+    for (int i = 0; i < r->into->count && r->other; i++)
+        if (r->other[i] == 0 && r->lit[i] > 0) return r->into->name[i];
+    return NULL;
 }
 
 /* What is left when a picture under a light, or another exposure, is subtracted is no picture. */
@@ -208,7 +220,14 @@ static status check_ambient(const reading *r, pst_capture *c)
             "the ambient picture %s is brighter than all pictures: it must show the object in the light that is "
             "there when no lamp is on",
             r->ambient_path);
-    if (below > few * lit)
+    const char *copied = copied_as_ambient(r);
+    if (copied)
+        warnings_add(
+            &c->noticed, "ambient_copied",
+            "the ambient picture %s is the same as %s, of which nothing is left, and normals may be many degrees "
+            "off: it must show the object in the light that is there when no lamp is on",
+            r->ambient_path, copied);
+    else if (below > few * lit)
         warnings_add(
             &c->noticed, "ambient_brighter",
             "the ambient picture %s is brighter than the pictures in %.0f %% of their values, and normals may be "
@@ -256,5 +275,6 @@ status pst_read_pictures(const char *folder, const pst_read_options *options, ps
     free(r.ambient_path);
     free(r.lit);
     free(r.below);
+    free(r.other);
     return s;
 }

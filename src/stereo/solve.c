@@ -56,7 +56,9 @@ static status check_known_directions(const pst_light *light, int count)
         behind += light[i].direction.z <= 0;
     if (behind == count)
         return fail(ERROR_INPUT,
-                    "all %d lights stand behind the object; z of a direction to a light points toward the camera",
+                    "all %d lights stand behind or beside the object (z is nowhere above 0); z of a direction to a "
+                    "light points "
+                    "toward the camera",
                     count);
     return pst_check_directions(light, count);
 }

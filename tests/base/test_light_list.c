@@ -169,7 +169,7 @@ static void counts_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
     assert_refused("3\na 0 0 1\n", "3 lights");
-    assert_refused("1\na 0 0 1\nb 0 0 1\n", "1 lights");
+    assert_refused("1\na 0 0 1\nb 0 0 1\n", "1 light, but there are 2");
     assert_refused("0\n", "lights.txt:1");
     assert_refused("-2\n", "lights.txt:1");
     assert_refused("1000000\n", "more than 4096");

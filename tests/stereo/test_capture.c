@@ -92,9 +92,15 @@ static void an_ambient_picture_is_darker_than_what_lamps_add_to(void **state)
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_null(warnings_find(&c.noticed, "ambient_brighter"));
     pst_capture_free(&c);
-    write_flat("ambient.png", 6, 4, 3, 0.5f, IMG_LINEAR16); /* that of a lamp */
+    write_flat("ambient.png", 6, 4, 3, 0.6f, IMG_LINEAR16); /* that of a lamp */
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_non_null(warnings_find(&c.noticed, "ambient_brighter"));
+    pst_capture_free(&c);
+    write_flat("ambient.png", 6, 4, 3, 0.5f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    const warning *copied = warnings_find(&c.noticed, "ambient_copied");
+    assert_non_null(copied);
+    assert_non_null(strstr(copied->message, "ambient.png is the same as b.png"));
     pst_capture_free(&c);
     write_flat("ambient.png", 6, 4, 3, 1, IMG_LINEAR16);
     assert_refused(&PLAIN, "ambient.png is brighter than all pictures");
@@ -400,7 +406,7 @@ static void a_mask_may_have_any_usual_name(void **state)
                                         "c_matte.png",   "b.png.mask.png", "silhouette.png"};
     img mask;
     assert_int_equal(img_new(&mask, 6, 4, 1), OK);
-    mask.data[7] = mask.data[8] = 1;
+    mask.data[7] = mask.data[8] = mask.data[13] = 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(img_write_png(scratch_path("mask"), &mask, IMG_LINEAR8), OK);
         assert_int_equal(rename(scratch_path("mask"), scratch_path(names[i])), 0);
@@ -478,6 +484,53 @@ static void raw_pictures_come_before_what_the_camera_made_of_them(void **state)
     pst_capture_free(&c);
 }
 
+static void write_mask_of(const int *pixel, int count)
+{
+    img mask;
+    assert_int_equal(img_new(&mask, 6, 4, 1), OK);
+    for (int i = 0; i < count; i++)
+        mask.data[pixel[i]] = 1;
+    assert_int_equal(img_write_png(scratch_path("mask.png"), &mask, IMG_LINEAR8), OK);
+    img_free(&mask);
+}
+
+static void a_mask_without_three_neighbours_is_refused(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_mask_of((const int[]){7}, 1);
+    assert_refused(&PLAIN, "mask.png shows 1 pixel, too few or too far apart for a surface");
+    write_mask_of((const int[]){6, 7, 8, 9, 10, 11}, 6); /* a line */
+    assert_refused(&PLAIN, "mask.png shows 6 pixels, too few or too far apart for a surface");
+    write_mask_of((const int[]){0, 7, 14, 12, 2, 16}, 6); /* a chessboard's */
+    assert_refused(&PLAIN, "mask.png shows 6 pixels, too few or too far apart for a surface");
+    write_mask_of((const int[]){22, 23, 17}, 3);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    pst_capture_free(&c);
+}
+
+static void a_mask_of_what_is_black_in_all_pictures_is_refused(void **state)
+{
+    (void)state;
+    img p;
+    three_pictures(IMG_LINEAR16);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(img_new(&p, 6, 4, 3), OK);
+        for (int k = 0; k < 36; k++)
+            p.data[k] = 0.5f;
+        assert_int_equal(img_write_png(scratch_path((const char *[]){"a.png", "b.png", "c.png"}[i]), &p, IMG_LINEAR16),
+                         OK);
+        img_free(&p);
+    }
+    write_mask_of((const int[]){12, 13, 18, 19}, 4); /* of the lower half */
+    assert_refused(&PLAIN, "the pictures are black where the mask");
+    write_mask_of((const int[]){6, 7, 12, 13}, 4);
+    pst_capture c;
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    pst_capture_free(&c);
+}
+
 static void black_pictures_are_called_black(void **state)
 {
     (void)state;
@@ -543,6 +596,8 @@ int main(void)
         in_scratch(a_mask_may_have_any_usual_name),
         in_scratch(what_is_left_aside_is_listed_with_the_reason),
         in_scratch(raw_pictures_come_before_what_the_camera_made_of_them),
+        in_scratch(a_mask_without_three_neighbours_is_refused),
+        in_scratch(a_mask_of_what_is_black_in_all_pictures_is_refused),
         in_scratch(black_pictures_are_called_black),
         in_scratch(what_does_not_fit_is_refused_in_one_line),
     };

@@ -254,7 +254,7 @@ static void damaged_led_files_are_refused(void **state)
         {"header\n1 4 6 900 3 2\n", ":2: expected N_img"},
         {"1.5 4 6 900 3 2 150\n", "not a camera"},
         {"1 4 6 0 3 2 150\n", "not a camera"},
-        {"2 4 6 900 3 2 150\n0 0 0 0 0 1 1 1\n", "1 lights for 2 images"},
+        {"2 4 6 900 3 2 150\n0 0 0 0 0 1 1 1\n", "1 light for 2 images"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 1\n", ":2: expected a light's"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 1 1 1 1 0 0\n", ":2: expected a light's"},
         {"1 4 6 900 3 2 150\n0 0 0 0 0 1 0 1\n", "intensity"},
@@ -317,7 +317,7 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     make_luces(3);
     unlink(scratch_path("02.png"));
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
-    assert_says("1 numbered pictures, but led_params.txt has 2 lights");
+    assert_says("1 numbered picture, but led_params.txt has 2 lights");
 }
 
 static void luces_normals_face_the_camera_whatever_their_axes(void **state)
@@ -376,7 +376,7 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     assert_says("not a plain file name");
     write_text("filenames.txt", "001.png\n");
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
-    assert_says("names 1 pictures");
+    assert_says("names 1 picture, but");
 }
 
 static void programs_with_decimal_commas_read_intensities(void **state)
@@ -414,7 +414,7 @@ static void a_diligent_folder_needs_no_list_of_names(void **state)
     pst_capture_free(&c);
     unlink(scratch_path("10.png"));
     assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
-    assert_says("1 pictures, but");
+    assert_says("1 picture, but");
     assert_says("light_directions.txt has 2 lights");
     /* another list of lights was meant for this program */
     write_text("lights.txt", "0 0 1\n");
