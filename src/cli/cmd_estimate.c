@@ -9,6 +9,7 @@
 #include "base/messages.h"
 #include "base/progress.h"
 #include "cli/check_files.h"
+#include "cli/check_replaced.h"
 #include "cli/cli.h"
 #include "cli/expect.h"
 #include "cli/json_line.h"
@@ -314,6 +315,7 @@ static int estimate_all(request *r, const photo_list *photos)
         const photo_job *job = &photos->at[i];
         begin_photo(r, photos, i, &done, all);
         status s = cli_interrupted() ? ERROR_STOPPED : check_photo_and_mask(job->photo, job->mask);
+        if (s == OK) s = check_replaced(job->output, false);
         if (s == OK) s = check_output(job->output);
         if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, &ready, &broken);
         if (s != OK) stage_bar_hide(r->bar);

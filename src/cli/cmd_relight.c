@@ -261,7 +261,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
         {"photo-exposure", .take = photo_take_exposure, .into = &r->params},
         {"model", .text = &r->model},
-        {"output", 'o', .folder = &r->output},
+        {"output", 'o', .folder = &r->output, .printed = true},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "cli/check_files.h"
+#include "cli/check_replaced.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
@@ -294,6 +295,7 @@ static status run(request *r)
     cJSON *report = report_begin(NULL);
     status s = output && report ? OK : fail(ERROR_MEMORY, "no memory for a report");
     if (s == OK) s = check_photo_and_mask(r->input, r->folder.read.mask);
+    if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
     if (s == OK) s = check_output(output);
     if (s == OK) s = work(r, output, report);
     cJSON_Delete(report);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/progress.h"
+#include "cli/check_replaced.h"
 #include "cli/cli.h"
 #include "cli/json_line.h"
 #include "cli/options.h"
@@ -127,6 +128,8 @@ static status write_files(const request *r, const pst_calibration *c, staged_fil
 static status run(request *r)
 {
     double began = clock_seconds();
+    status s = check_list_replaced(r->output);
+    if (s != OK) return s;
     pst_calibration c;
     staged_files written = {0};
     stage_bar bar;
@@ -134,7 +137,7 @@ static status run(request *r)
     stage_bar_plan(&bar, (const stage_cost[]){{"reading", 1}}, 1);
     const watch shown = stage_bar_watch(&bar);
     r->options.watch = &shown;
-    status s = pst_calibrate_sphere(r->input, &r->options, &c);
+    s = pst_calibrate_sphere(r->input, &r->options, &c);
     r->options.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
     if (s == ERROR_STOPPED) return interrupted(r);

@@ -131,6 +131,11 @@ static status take_folder(const cli_option *o, const char *value)
                                            ".tiff", ".webp", ".gif",  ".hdr", NULL};
     if (file_ends_in_any(value, pictures))
         return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name, value);
+    if (strcmp(value, "-") == 0 && !o->printed)
+        return fail(ERROR_USAGE,
+                    "--%s names a folder for several files, which standard output cannot hold; ./- is one "
+                    "called -",
+                    o->name);
     *o->folder = value;
     return OK;
 }

@@ -26,7 +26,7 @@ typedef struct cli_option {
     char letter;      /* of -l, or 0 */
     bool *flag;       /* takes no value; is set to true */
     const char **text;
-    const char **folder;  /* a folder to write; a picture's name is refused */
+    const char **folder;  /* a folder to write; a picture's name is refused, and so is - unless it is `printed` */
     const char **picture; /* a picture to write, which ends in .png */
     int *integer;         /* from low to high */
     size_t *count;        /* from low to high */
@@ -35,6 +35,7 @@ typedef struct cli_option {
     long low, high;
     status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
     void *into;
+    bool printed;                       /* a folder may be -, standard output */
     bool many;                          /* may be given again; flags may, too */
     bool (*is_value)(const char *word); /* beside flag and take: the value may be missing, or be the next word */
 } cli_option;

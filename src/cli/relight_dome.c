@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/light_list.h"
+#include "cli/check_replaced.h"
 #include "cli/relight_work.h"
 
 /* The first words of a list of a near dome's lamps. */
@@ -123,6 +124,7 @@ status relight_dome_check(const relight_job *job)
         if (is_left_over(job, file_name_of(names[i]))) s = refuse(job, file_name_of(names[i]));
     file_list_free(names, count);
     if (s == OK && job->dome.near > 0 && has_directions(job->output)) s = refuse(job, "dome.lp");
+    if (s == OK && job->dome.near > 0) s = check_list_replaced(job->output);
     if (s == OK && job->dome.near == 0 && has_places(job->output)) s = refuse(job, "lights.txt");
     return s;
 }

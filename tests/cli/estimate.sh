@@ -146,11 +146,13 @@ done
 echo "what is read is not replaced"
 mkdir own
 cp disc.hdr own/albedo.png # by its content a Radiance picture
+refuses 1 'own: its albedo.png is no earlier result' estimate own/albedo.png --size 64 -o own
+cp disc.merlin/report.json own
 refuses 1 'own/albedo.png: it is what was read' estimate own/albedo.png --size 64 -o own
 cmp -s disc.hdr own/albedo.png || complain "the photograph was replaced"
 cp disc.merlin/mask.png own
 refuses 1 'own/mask.png: it is what was read' estimate disc.hdr --mask own/mask.png --size 64 -o own/../own
-[ "$(ls -A own | tr '\n' ' ')" = 'albedo.png mask.png ' ] || complain "own has $(ls -A own)"
+[ "$(ls -A own | tr '\n' ' ')" = 'albedo.png mask.png report.json ' ] || complain "own has $(ls -A own)"
 
 echo "a batch goes on after a failure and says so"
 mkdir batch

@@ -127,6 +127,9 @@ present beside/dome_00{0..3}.jpg beside/lights.txt beside/mask.webp
 absent beside/dome.lp beside/dome_000.png
 [ "$(grep -vc '^#' beside/lights.txt)" = 4 ] || complain "lights.txt does not list four lamps: $(cat beside/lights.txt)"
 refuses 1 'lights.txt is of another dome' relight disc.merlin --dome 4 --format jpg -o beside
+mkdir listed && echo '0 0 1 # mine' >listed/lights.txt
+refuses 1 'listed/lights.txt: it is no earlier result' relight disc.merlin --dome 4 --near -o listed
+[ "$(ls -A listed)" = lights.txt ] || complain "listed has $(ls -A listed)"
 refuses 1 'dome_003.jpg is of another dome' relight disc.merlin --dome 3 --near --format jpg -o beside
 refuses 1 'dome_000.jpg is of another dome' relight disc.merlin --dome 4 --near -o beside
 mkdir from-dome && printf '1\ndome_000.png 0 0 1\n' >from-dome/dome.lp

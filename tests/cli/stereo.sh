@@ -94,6 +94,23 @@ lists_its_files lights calibration.png lights.txt
 mkdir -p taken/lights.txt
 refuses 1 'taken/lights.txt' stereo calibrate --sphere chrome ball -o taken
 [ "$(ls -A taken)" = lights.txt ] || complain "taken has $(ls -A taken)"
+succeeds lights stereo calibrate --sphere chrome ball -o lights
+rmdir taken/lights.txt && echo '0 0 1 # mine' >taken/lights.txt
+refuses 1 'taken/lights.txt: it is no earlier result' stereo calibrate --sphere chrome ball -o taken
+[ "$(cat taken/lights.txt)" = '0 0 1 # mine' ] || complain "a list of lights was replaced by $(cat taken/lights.txt)"
+
+echo "results do not take the place of another capture's files"
+mkdir another
+cp dome/dome_00?.png dome/dome.lp another
+refuses 1 'cannot write into another: it holds a capture' stereo dome --method ls -o another
+refuses 1 'cannot write into another: it holds a capture' "$MERLIN" estimate disc.hdr --size 64 -o another
+cp disc.merlin/mask.png another
+refuses 1 'another: its mask.png is no earlier result' stereo dome --method ls -o another
+cmp -s disc.merlin/mask.png another/mask.png || complain "a mask was replaced"
+succeeds again stereo dome --method ls -o again
+succeeds again stereo dome --method ls -o again
+rm again/maps.exr
+succeeds again stereo dome --method ls -o again
 
 echo "wrong use"
 refuses 2 'no folder' stereo
@@ -103,6 +120,7 @@ refuses 2 '--integrate' stereo dome --integrate magic
 refuses 2 'c.stl' stereo dome --mesh c.stl
 refuses 2 'unknown option' stereo dome --nonsense
 refuses 2 'for one photograph' stereo dome --views 8
+refuses 2 'standard output cannot hold' stereo dome --method ls -o -
 refuses 2 'is the folder of the pictures' stereo dome --method ls -o ./dome/
 refuses 2 'for a folder' stereo disc.hdr --near
 refuses 2 'for a folder' stereo disc.hdr --fov 40

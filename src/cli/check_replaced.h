@@ -1,0 +1,18 @@
+/* Whether a command would write over what is not its own, looked at before anything that takes time. Its own results
+ * are replaced: whoever runs it again wants that. */
+#ifndef MERLIN_CLI_CHECK_REPLACED_H
+#define MERLIN_CLI_CHECK_REPLACED_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+/* ERROR_OUTPUT where the folder of results to write has files of these names that no run has left, for neither maps.exr
+ * nor report.json is beside them, or holds another capture, which would take them for its own. meshes: mesh.ply and the
+ * like will be written, too. */
+status check_replaced(const char *folder, bool meshes);
+
+/* ERROR_OUTPUT where the folder has a lights.txt that neither stereo calibrate nor relight --dome wrote. */
+status check_list_replaced(const char *folder);
+
+#endif
