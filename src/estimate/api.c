@@ -139,7 +139,7 @@ network *model_network(const merlin_model *model, const merlin_maps *maps, merli
     if (!model->flash) return model->network;
     if (how == MERLIN_BY_NETWORK && network_config(model->network)->relight != MODEL_RELIGHT_NETWORK)
         return model->flash;
-    return strcmp(maps->model, network_config(model->flash)->name) == 0 ? model->flash : model->network;
+    return strcmp(maps->model, network_config(model->network)->name) == 0 ? model->network : model->flash;
 }
 
 void merlin_model_close(merlin_model *model)

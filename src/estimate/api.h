@@ -23,7 +23,8 @@ struct merlin_model {
 /* flash: weights for merlin_model_add_flash, or NULL. */
 status model_open_pair(const char *weights, const char *flash, merlin_model **out);
 
-/* That which made the maps; by the relighting decoder, one that has it. */
+/* That which made the maps, the flash's for those of others: it knows how light goes on between surfaces where that of
+ * a flash is all it is given. By the relighting decoder, one that has it. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
 struct merlin_environment {
