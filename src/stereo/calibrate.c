@@ -328,6 +328,15 @@ static void doubt(const ball_outlines *outlines, int chosen, pst_calibration *c)
             behind, c->count);
 }
 
+static status doubt_fit(const pst_capture *c, pst_calibration *out)
+{
+    img outlines = {0};
+    status s = outline_picture(&out->brightest, &outlines);
+    if (s == OK) s = ball_doubt(&c->mask, &outlines, out);
+    img_free(&outlines);
+    return s;
+}
+
 static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
 {
     img picture = {0};
@@ -337,6 +346,7 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
     if (s == OK) s = find_outlines(folder, options, c, out, &picture, &outlines);
     if (s == OK) s = choose_outline(c, &picture, &outlines, out, &chosen);
     if (s == OK) doubt(&outlines, chosen, out);
+    if (s == OK) s = doubt_fit(c, out);
     img_free(&picture);
     if (s != OK) return s;
     out->name = c->name;

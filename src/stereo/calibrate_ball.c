@@ -195,6 +195,16 @@ status ball_find(const img *picture, const pst_circle *beside, pst_circle *circl
     return OK;
 }
 
+status ball_share_seen(const img *picture, const pst_circle *circle, float *share)
+{
+    edges e;
+    status s = find_edges(picture, MOST_EDGES, &e);
+    if (s != OK) return s;
+    *share = share_seen(&e, circle);
+    free(e.at);
+    return OK;
+}
+
 /* Keeps those near the circle alone, so that stronger ones elsewhere take no room. */
 static void keep_near(edges *e, const pst_circle *c)
 {

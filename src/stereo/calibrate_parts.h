@@ -8,6 +8,9 @@
  * none. */
 status ball_find(const img *picture, const pst_circle *beside, pst_circle *circle, bool *found);
 
+/* The share of a circle along which the picture has an edge. */
+status ball_share_seen(const img *picture, const pst_circle *circle, float *share);
+
 /* A circle around one that was found, all along which the picture, of logarithms, steps sharply up or down
  * (calibrate_outline.c); false if there is none. */
 bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer);
@@ -49,5 +52,9 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
 status ball_shading_light(const img *picture, const ball_view *view, float *residual, vec3 *direction);
 /* The mean of what a ball shows where it faces away from a light; false where that is hardly seen. */
 bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, float *level);
+
+/* Adds what is to be doubted of lights that were found: shading_unlike, and of a mask's circle mask_not_round and
+ * circle_unsure. mask: as the capture has it; outlines: of the brightest that each pixel is, as ball_find takes it. */
+status ball_doubt(const img *mask, const img *outlines, pst_calibration *c);
 
 #endif

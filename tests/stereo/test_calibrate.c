@@ -74,14 +74,22 @@ static void write_balls(float shade(vec3, vec3), img_encoding encoding)
     write_tinted_balls(shade, (const float[]){1}, 1, encoding);
 }
 
-static void write_mask(void)
+/* A disc, or a square as wide. */
+static void write_mask_at(float x, float y, float radius, bool square)
 {
     img p;
     assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
-    for (int k = 0; k < SIZE * SIZE; k++)
-        p.data[k] = hypotf((float)(k % SIZE) + 0.5f - CENTER_X, (float)(k / SIZE) + 0.5f - CENTER_Y) < RADIUS;
+    for (int k = 0; k < SIZE * SIZE; k++) {
+        float right = fabsf((float)(k % SIZE) + 0.5f - x), down = fabsf((float)(k / SIZE) + 0.5f - y);
+        p.data[k] = (square ? fmaxf(right, down) : hypotf(right, down)) < radius;
+    }
     assert_int_equal(img_write_png(scratch_path("mask.png"), &p, IMG_LINEAR8), OK);
     img_free(&p);
+}
+
+static void write_mask(void)
+{
+    write_mask_at(CENTER_X, CENTER_Y, RADIUS, false);
 }
 
 /* One pixel of the circle or the highlight is 1 / RADIUS = 1 degree of the normal at the middle of the ball and 2 of a
@@ -92,6 +100,7 @@ static void assert_lights_found(pst_ball ball, bool from_mask, float pixels, flo
     assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = ball}, &c), OK);
     assert_int_equal(c.count, LIGHTS);
     assert_int_equal(c.from_mask, from_mask);
+    if (c.doubts.count) fail_msg("%s: %s", c.doubts.at[0].code, c.doubts.at[0].message);
     assert_float_equal(c.circle.x, CENTER_X, pixels);
     assert_float_equal(c.circle.y, CENTER_Y, pixels);
     assert_float_equal(c.circle.radius, RADIUS, pixels);
@@ -178,6 +187,39 @@ static void a_ball_beside_the_axis_tells_its_lights(void **state)
         if (degrees(c.direction[i], light(i)) > 0.7f)
             fail_msg("light %d is off by %.2f degrees", i, (double)degrees(c.direction[i], light(i)));
     pst_calibration_free(&c);
+}
+
+static void assert_doubted(pst_ball ball, const char *code)
+{
+    pst_calibration c;
+    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = ball}, &c), OK);
+    if (!warnings_find(&c.doubts, code)) fail_msg("no word of %s", code);
+    pst_calibration_free(&c);
+}
+
+static void what_shades_like_no_matte_ball_is_told(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    assert_doubted(PST_MATTE, "shading_unlike");
+    write_balls(matte, IMG_LINEAR16);
+    write_mask_at(CENTER_X, CENTER_Y + 20, 0.5f * RADIUS, false);
+    assert_doubted(PST_MATTE, "shading_unlike");
+}
+
+static void a_mask_that_is_not_the_balls_is_told(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    write_mask_at(CENTER_X, CENTER_Y, RADIUS, true);
+    assert_doubted(PST_CHROME, "mask_not_round");
+    write_mask_at(CENTER_X - 0.3f * RADIUS, CENTER_Y, RADIUS, false);
+    assert_doubted(PST_CHROME, "circle_unsure");
+    write_mask_at(CENTER_X, CENTER_Y, 1.2f * RADIUS, false);
+    assert_doubted(PST_CHROME, "circle_unsure");
+    write_balls(matte, IMG_LINEAR16);
+    write_mask_at(CENTER_X + 0.3f * RADIUS, CENTER_Y, RADIUS, false);
+    assert_doubted(PST_MATTE, "circle_unsure");
 }
 
 static void what_was_found_is_written(void **state)
@@ -368,6 +410,8 @@ int main(void)
         in_scratch(a_matte_ball_tells_its_lights_in_a_lit_room),
         in_scratch(what_one_channel_clips_is_no_shading),
         in_scratch(a_ball_beside_the_axis_tells_its_lights),
+        in_scratch(what_shades_like_no_matte_ball_is_told),
+        in_scratch(a_mask_that_is_not_the_balls_is_told),
         in_scratch(what_was_found_is_written),
         in_scratch(pictures_without_a_ball_or_its_light_are_refused),
         in_scratch(a_highlight_that_does_not_stand_out_is_refused),
