@@ -152,8 +152,8 @@ static status take_picture(const cli_option *o, const char *value)
 static status take(const cli_option *o, const char *value)
 {
     if (o->take && value) return o->take(value, o->into);
-    if (o->folder) return take_folder(o, value);
-    if (o->picture) return take_picture(o, value);
+    if (o->folder && value) return take_folder(o, value); /* getopt_long has refused it without */
+    if (o->picture && value) return take_picture(o, value);
     if (o->flag)
         *o->flag = true;
     else if (o->text)
