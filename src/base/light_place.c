@@ -219,11 +219,25 @@ typedef struct columns {
     bool index_behind; /* one behind them is the name */
 } columns;
 
+/* Tells whether rows of four numbers are names that are whole numbers, of which no two are the same, before directions:
+ * 15.png may be "15". */
+static bool are_named_units(const light_table *t)
+{
+    for (size_t i = 0; i < t->count; i++) {
+        const text_word *w = t->row[i].word;
+        if (t->row[i].count != 4 || !is_whole_of(w, floor(fabs(w->value)))) return false;
+        if (fabs(length_of((const text_word *const[]){w + 1, w + 2, w + 3}) - 1) > unit_tolerance) return false;
+        for (size_t k = 0; k < i; k++)
+            if (t->row[k].word->value == w->value) return false;
+    }
+    return t->count > 1 && !has_unit_rows(t);
+}
+
 /* Without words: x y z, strengths, and a column that counts or is a picture's name. */
 static status of_numbers(const light_table *t, size_t n, columns *out)
 {
     bool known = n == 3 || (t->announced > 0 && n == 6);
-    bool index = !known && n > 3 && (t->announced > 0 || is_index(t, 0));
+    bool index = !known && n > 3 && (t->announced > 0 || is_index(t, 0) || are_named_units(t));
     bool behind = !known && !index && n > 3 && t->count > 2 && is_index(t, n - 1);
     size_t left = n - index - behind;
     if (left != 3 && left != 4 && left != 6) return refuse_row(t, &t->row[0]);

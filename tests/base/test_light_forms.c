@@ -240,6 +240,8 @@ static void numbers_of_lights_are_no_numbers_of_places(void **state)
     assert_names("1 0.6 0 0.8\n2 0 -0.6 0.8\n3 -0.8 0 0.6\n4 0 0 1\n", "1", "4");
     assert_names("0,0.6,0,0.8\n1,0,-0.6,0.8\n2,-0.8,0,0.6\n3,0,0,1\n", "0", "3");
     assert_names("1;0,6;0;0,8\n2;0;-0,6;0,8\n3;-0,8;0;0,6\n4;0;0;1\n", "1", "4");
+    assert_names("5 0.6 0 0.8\n6 0 -0.6 0.8\n7 -0.8 0 0.6\n8 0 0 1\n", "5", "8");
+    assert_names("0 0.6 0 0.8\n15 0 -0.6 0.8\n45 -0.8 0 0.6\n30 0 0 1\n", "0", "30");
     assert_names("0.6 0 0.8 2\n0 -0.6 0.8 1\n-0.8 0 0.6 3\n0 0 1 4\n", "2", "4");
     assert_names("Light 1 0.6 0 0.8\nLight 2 0 -0.6 0.8\nLight 3 -0.8 0 0.6\nLight 4 0 0 1\n", "Light 1", "Light 4");
     assert_names("Light 1: 0.6, 0, 0.8\nLight 2: 0, -0.6, 0.8\nLight 3: -0.8, 0, 0.6\nLight 4: 0, 0, 1\n", "Light 1",
