@@ -26,6 +26,12 @@ status pst_find_ambient(const char *folder, const char *picture, char **path);
  * which may be NULL, nor beside them by its name. */
 status pst_list_skipped(const char *folder, const char *mask, const char *ambient, pst_capture *c);
 
+/* The folder's file of the first of these names, which end in NULL, that it has, in capitals or not; *path is NULL
+ * without one. Free it. */
+status pst_find_named(const char *folder, const char *const *usual, char **path);
+/* The folder's light_intensities.txt, likewise. */
+status pst_find_intensities(const char *folder, char **path);
+
 /* Reads the folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights or,
  * behind a picture's name, for that one's; or a light in each column. */
 status pst_read_intensities(const char *folder, pst_capture *c);

@@ -156,11 +156,17 @@ static status read_intensities(const char *path, const char *folder, pst_capture
     return s;
 }
 
+status pst_find_intensities(const char *folder, char **path)
+{
+    static const char *const usual[] = {"light_intensities.txt", NULL};
+    return pst_find_named(folder, usual, path);
+}
+
 status pst_read_intensities(const char *folder, pst_capture *c)
 {
-    char *path = file_join(folder, "light_intensities.txt");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    status s = file_exists(path) ? read_intensities(path, folder, c) : OK;
+    char *path;
+    status s = pst_find_intensities(folder, &path);
+    if (s == OK && path) s = read_intensities(path, folder, c);
     free(path);
     return s;
 }

@@ -9,16 +9,15 @@
 #include "stereo/capture_parts.h"
 #include "stereo/match_lights.h"
 
-/* Finds a file of one of these names, in capitals or not; *path stays NULL without one. */
-static status find_usual(const char *folder, char **path)
+status pst_find_named(const char *folder, const char *const *usual, char **path)
 {
-    static const char *const usual[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat"};
     char **names;
     size_t count;
+    *path = NULL;
     status s = file_list(folder, NULL, &names, &count);
     if (s != OK) return s;
     const char *found = NULL;
-    for (size_t k = 0; k < sizeof usual / sizeof *usual && !found; k++)
+    for (size_t k = 0; usual[k] && !found; k++)
         for (size_t i = 0; i < count; i++) {
             bool exact = strcmp(file_name_of(names[i]), usual[k]) == 0;
             if (exact || (!found && strcasecmp(file_name_of(names[i]), usual[k]) == 0)) found = names[i];
@@ -31,9 +30,10 @@ static status find_usual(const char *folder, char **path)
 /* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
 static status find_lights(const char *folder, const char *asked, char **path)
 {
+    static const char *const usual[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
     size_t found = 0;
     *path = NULL;
-    status s = asked ? OK : find_usual(folder, path);
+    status s = asked ? OK : pst_find_named(folder, usual, path);
     if (s == OK && !*path) s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
     if (s != OK || found < 2) return s;
     free(*path);
@@ -129,10 +129,13 @@ status pst_set_lights(const char *path, const light_list *list, const pst_read_o
 
 status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c)
 {
-    if (listed && file_is_in(folder, "light_intensities.txt"))
-        return fail(ERROR_INPUT, "%s and %s/light_intensities.txt both say how strong the lights are; remove one",
-                    lights, folder);
-    return pst_read_intensities(folder, c);
+    char *path;
+    if (!listed) return pst_read_intensities(folder, c);
+    status s = pst_find_intensities(folder, &path);
+    if (s == OK && path)
+        s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
+    free(path);
+    return s;
 }
 
 status pst_read_light_list(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c)

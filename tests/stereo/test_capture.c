@@ -336,6 +336,11 @@ static void given_intensities_are_kept(void **state)
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_float_equal(c.light[0].intensity[0], 2, 0);
     pst_capture_free(&c);
+    assert_int_equal(rename(scratch_path("light_intensities.txt"), scratch_path("Light_Intensities.TXT")), 0);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_float_equal(c.light[2].intensity[0], 4, 0);
+    pst_capture_free(&c);
+    assert_int_equal(unlink(scratch_path("Light_Intensities.TXT")), 0);
     write_text("light_intensities.txt", "1\nx\n1\n");
     assert_refused(&PLAIN, "light_intensities.txt:2");
     write_text("light_intensities.txt", "1\n0\n1\n");
