@@ -5,18 +5,13 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "eval/metrics.h"
 
 enum { MAX_RUNS = 64, COPY_BYTES = 256 << 20 };
 
 bench_patience bench_patience_of(bool quick)
 {
     return quick ? (bench_patience){3, 0.5} : (bench_patience){9, 4};
-}
-
-static int compare_seconds(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 status bench_time(bench_work work, void *context, bench_patience p, double *seconds)
@@ -32,8 +27,7 @@ status bench_time(bench_work work, void *context, bench_patience p, double *seco
         times[runs] = now - started;
     }
     if (s != OK) return s;
-    qsort(times, (size_t)runs, sizeof times[0], compare_seconds);
-    *seconds = times[runs / 2];
+    *seconds = eval_median(times, (size_t)runs);
     return OK;
 }
 

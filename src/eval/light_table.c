@@ -260,12 +260,6 @@ static status measure_file(run *r, const char *path)
     return st;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void finish(run *r)
 {
     light_table *t = r->table;
@@ -273,8 +267,7 @@ static void finish(run *r)
         directions *d = &r->found[kind];
         for (int f = 0; f < LIGHT_FIGURES; f++)
             t->mean[kind][f] = t->count[kind] ? t->mean[kind][f] / (double)t->count[kind] : (double)NAN;
-        if (d->count) qsort(d->angle, d->count, sizeof *d->angle, by_value);
-        t->mean[kind][LIGHT_DIRECTION] = d->count ? d->angle[d->count / 2] : (double)NAN;
+        t->mean[kind][LIGHT_DIRECTION] = eval_median(d->angle, d->count);
         free(d->angle);
     }
 }

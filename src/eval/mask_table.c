@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "estimate/mask.h"
+#include "eval/metrics.h"
 
 static const double SURE = 0.8;
 
@@ -106,12 +107,6 @@ status mask_table_add_samples(mask_table *t, char *const *paths, size_t count, u
 
 /* ---- counts ---- */
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 status mask_table_count(const mask_table *t, int kind, double low, double high, mask_counts *out)
 {
     mask_counts c = {0};
@@ -127,8 +122,7 @@ status mask_table_count(const mask_table *t, int kind, double low, double high, 
         c.sure_right += sure && right;
         c.told += row->confidence < MASK_LITTLE_CONFIDENCE;
     }
-    qsort(ious, c.pictures, sizeof *ious, compare);
-    if (c.pictures) c.median = ious[c.pictures / 2];
+    if (c.pictures) c.median = eval_median(ious, c.pictures);
     free(ious);
     *out = c;
     return OK;

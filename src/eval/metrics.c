@@ -140,6 +140,19 @@ static void compare_row(void *context, size_t y)
     w->means[y] = sum / w->width;
 }
 
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double eval_median(double *values, size_t count)
+{
+    if (count == 0) return (double)NAN;
+    qsort(values, count, sizeof *values, by_value);
+    return values[count / 2];
+}
+
 status eval_ssim(const img *a, const img *b, double *out)
 {
     if (a->width != b->width || a->height != b->height || a->channels != b->channels)

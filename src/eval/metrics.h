@@ -25,6 +25,9 @@ double eval_mean(const img *a, const img *mask);
 /* Mean angle in degrees between unit vectors (3 channels) over the mask's pixels; 0 for an empty mask. */
 double eval_angle(const img *a, const img *b, const img *mask);
 
+/* Median of count values, which it sorts: of an even number the upper one in the middle; NAN of none. */
+double eval_median(double *values, size_t count);
+
 /* Structural similarity (Wang et al. 2004) of two images of one size with values in [0, 1]: Gaussian window of 11 with
  * σ 1.5, C1 = 0.01², C2 = 0.03², windows wholly inside only, mean over windows per channel, then over channels. In
  * [-1, 1], 1 for equal images. Refuses unequal images and sides below 11. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "estimate/report.h"
+#include "eval/metrics.h"
 #include "eval/picture_table.h"
 
 typedef struct summary {
@@ -11,21 +12,14 @@ typedef struct summary {
     int as_flash, lights; /* lights: how many were found */
 } summary;
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The median of what was found; NAN if memory ran out or nothing was. */
 static double median_light(const picture_column *o, int *found)
 {
-    double *all = malloc(((size_t)o->count + 1) * sizeof *all), median = (double)NAN;
+    double *all = malloc(((size_t)o->count + 1) * sizeof *all);
     *found = 0;
     for (int i = 0; all && i < o->count; i++)
         if (!isnan(o->picture[i].light)) all[(*found)++] = o->picture[i].light;
-    if (all) qsort(all, (size_t)*found, sizeof *all, by_value);
-    if (all && *found) median = all[*found / 2];
+    const double median = eval_median(all, (size_t)*found);
     free(all);
     return median;
 }

@@ -38,15 +38,13 @@ static double light_error(const pst_capture *c, int i, const merlin_found_light 
 
 static status judge(const pst_capture *c, const merlin_maps *maps, picture_score *score)
 {
-    if (maps->crop.x != 0 || maps->crop.y != 0 || maps->crop.side != c->width)
-        return fail(ERROR_INPUT,
-                    "shrunk to %d pixels a side the object does not fill its frame: its parts are too thin", c->width);
     img normal = {0};
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
     const bool by_sight = !maps->light.known;
     const img from = img_of(&maps->normal);
     const pst_camera assumed = pst_camera_of(c->width, c->height, SURFACE_FOV);
-    status s = img_copy(&normal, &from);
+    status s = stereo_frame_check(c, maps);
+    if (s == OK) s = img_copy(&normal, &from);
     if (s != OK) return s;
     if (by_sight) normal_frame_change(&normal, &assumed, &c->camera);
     score->error = normal_mean_angle(&normal, c, NULL);

@@ -1,8 +1,10 @@
 /* What an estimate from one picture is worth, for every picture of real captures: each is lit by a lamp from elsewhere.
  *
- *     picture_options options = {.folder = folders, .count = 2, .lights = "lights.txt", .weights =
- * "merlin-any.safetensors"}; picture_table table; status s = picture_table_run(&options, &table); if (s == OK)
- * picture_table_print(&table, stdout); picture_table_free(&table);
+ *     picture_options options = {.folder = folders, .count = 2, .weights = "merlin-any.safetensors"};
+ *     picture_table table;
+ *     status s = picture_table_run(&options, &table);
+ *     if (s == OK) picture_table_print(&table, stdout);
+ *     picture_table_free(&table);
  *
  * Normals are held against the capture's true ones or, where it has none, against those of photometric stereo from all
  * pictures; the estimate is told the mask and nothing of light and lens. */

@@ -9,6 +9,7 @@
 #include "eval/draws.h"
 #include "eval/normal_frame.h"
 #include "eval/relit.h"
+#include "eval/stereo_frame.h"
 #include "eval/stereo_object.h"
 #include "eval/stereo_sheet.h"
 #include "eval/surface_error.h"
@@ -39,21 +40,12 @@ static void subject_free(subject *s)
 
 /* ---- one row ---- */
 
-/* Normals are compared pixel by pixel. An object of thin parts may lose them where stereo_frame shrinks it, and a
- * closer square is what merlin_estimate takes then. */
-static status check_frame(const merlin_maps *maps, const pst_capture *c)
-{
-    if (maps->crop.x == 0 && maps->crop.y == 0 && maps->crop.side == c->width) return OK;
-    return fail(ERROR_INPUT, "shrunk to %d pixels a side the object does not fill its frame: its parts are too thin",
-                c->width);
-}
-
 static status estimate(evaluation *e, subject *s)
 {
     merlin_maps maps = {0};
     merlin_image photo = image_of(&s->object.photo), mask = image_of(&s->object.capture.mask);
     status result = (status)merlin_estimate(e->model, &photo, &mask, NULL, &maps);
-    if (result == OK) result = check_frame(&maps, &s->object.capture);
+    if (result == OK) result = stereo_frame_check(&s->object.capture, &maps);
     if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
     merlin_maps_free(&maps);
     if (result == OK) result = img_copy(&s->shown[STEREO_SINGLE], &s->relit.maps.normal);
