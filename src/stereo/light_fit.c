@@ -85,20 +85,9 @@ static status list_lights(const pst_capture *c, const pst_surface *s, pst_light_
 
 static status shrink(const pst_capture *c, pst_light_fit *f)
 {
-    pst_capture some = *c;
-    uint16_t *picture[PST_CHECKED_PICTURES];
-    size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
-    for (size_t i = 0; i < pixels; i++)
-        inside += c->mask.data[i] > 0.5f;
-    f->count = c->count < PST_CHECKED_PICTURES ? c->count : PST_CHECKED_PICTURES;
-    for (int k = 0; k < f->count; k++) {
-        f->picture[k] = (int)((long)k * c->count / f->count);
-        picture[k] = c->picture[f->picture[k]];
-    }
-    some.picture = picture;
-    some.count = f->count;
-    int factor = (int)sqrt((double)inside / SMALL);
-    return pst_shrink(&some, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, &f->small);
+    status s = pst_shrink_to(c, SMALL, PST_CHECKED_PICTURES, f->picture, &f->small);
+    f->count = s == OK ? f->small.count : 0;
+    return s;
 }
 
 /* A pixel's values, mean of the channels; below 0: saturated. Returns their length, 0 off the object or in the dark. */

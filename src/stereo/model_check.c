@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "image/write.h"
+#include "optics/camera.h"
 #include "stereo/shrink.h"
 
 /* Pixels that are solved again, up to four times as many; pictures; and so few explain everything. */
@@ -60,17 +61,12 @@ static bool is_better(const check *c, double left)
 
 /* ---- distance and lens ---- */
 
-static status with_distance(const check *c, double factor, double *left)
-{
-    pst_capture other = c->small;
-    other.camera.mean_distance *= (float)factor;
-    return residual_of(&other, c->method, left);
-}
-
 static status try_distance(const check *c, double at, double *best, double *factor)
 {
     double left;
-    status s = with_distance(c, at, &left);
+    pst_capture other = c->small;
+    other.camera.mean_distance *= (float)at;
+    status s = residual_of(&other, c->method, &left);
     if (s == OK && left < *best) *best = left, *factor = at;
     return s;
 }
@@ -93,7 +89,7 @@ static status check_distance(const check *c, double *best, double *factor)
 
 static double degrees_wide(const pst_capture *c)
 {
-    return 2 * atan(0.5 * c->width / (double)c->camera.focal) * 180 / 3.14159265358979;
+    return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)CAMERA_RADIAN;
 }
 
 static status check_lens(const check *c, double *best, double *degrees)
@@ -105,8 +101,7 @@ static status check_lens(const check *c, double *best, double *degrees)
     for (size_t i = 0; i < sizeof tried / sizeof *tried && s == OK; i++) {
         double left;
         pst_capture other = c->small;
-        pst_camera wide = pst_camera_of(other.width, other.height, (float)tried[i]);
-        other.camera.focal = wide.focal;
+        other.camera.focal = pst_camera_of(other.width, other.height, (float)tried[i]).focal;
         s = residual_of(&other, c->method, &left);
         if (left < *best) *best = left, *degrees = tried[i];
     }
@@ -115,9 +110,9 @@ static status check_lens(const check *c, double *best, double *degrees)
 
 static status check_place(const check *c, warnings *out)
 {
-    double by_distance, factor, by_lens = HUGE_VAL, degrees = 0, distance = (double)c->small.camera.mean_distance;
+    const double distance = (double)c->small.camera.mean_distance;
+    double by_distance = HUGE_VAL, factor = 1, by_lens = HUGE_VAL, degrees = 0;
     status s = OK;
-    by_distance = HUGE_VAL, factor = 1;
     if (distance > 0) s = check_distance(c, &by_distance, &factor);
     if (s == OK) s = check_lens(c, &by_lens, &degrees);
     if (s != OK || !is_better(c, fmin(by_distance, by_lens))) return s;
@@ -198,26 +193,6 @@ static status check_values(check *c, const pst_capture *of, warnings *out)
 
 /* ---- all of it ---- */
 
-static status shrink(const pst_capture *c, pst_capture *small)
-{
-    pst_capture some = *c;
-    uint16_t *picture[PICTURES];
-    pst_light light[PICTURES];
-    size_t inside = 0;
-    for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; i < n; i++)
-        inside += c->mask.data[i] > 0.5f;
-    some.count = c->count < PICTURES ? c->count : PICTURES;
-    for (int k = 0; k < some.count; k++) {
-        int at = (int)((long)k * c->count / some.count);
-        picture[k] = c->picture[at];
-        light[k] = c->light[at];
-    }
-    some.picture = picture;
-    some.light = light;
-    int factor = (int)sqrt((double)inside / SMALL);
-    return pst_shrink(&some, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, small);
-}
-
 static status check_all(check *c, const pst_capture *of, warnings *out)
 {
     status s = residual_of(&c->small, c->method, &c->own);
@@ -232,7 +207,8 @@ status pst_check_model(const pst_capture *c, const pst_surface *s, warnings *out
 {
     check all = {.method = s->method};
     if (c->lighting == PST_UNKNOWN_LIGHT || c->count < FEWEST) return OK;
-    status result = shrink(c, &all.small);
+    int picture[PICTURES];
+    status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);
     if (result == OK) result = check_all(&all, c, out);
     pst_capture_free(&all.small);
     return result;

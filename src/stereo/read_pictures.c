@@ -17,6 +17,11 @@ static const float FLOAT_DIM = 0.1f;
 /* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
 enum { READERS = 4 };
 
+/* A picture's values that are not dark, that are below the ambient picture's, and that are others than these. */
+typedef struct ambient_sums {
+    size_t lit, below, other;
+} ambient_sums;
+
 typedef struct reading {
     const char *folder;
     bool decode;
@@ -24,11 +29,10 @@ typedef struct reading {
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
     char *ambient_path;
-    size_t *lit, *below; /* of every picture: values that are not dark, and that are below the ambient picture's */
-    size_t *other;       /* those that are not the ambient picture's exactly */
-    img *first;          /* the first picture, until it is stored */
-    int bits;            /* its */
-    float *brightest;    /* of every picture, of floats */
+    ambient_sums *beside; /* of every picture; NULL without an ambient one */
+    img *first;           /* the first picture, until it is stored */
+    int bits;             /* its */
+    float *brightest;     /* of every picture, of floats */
     pst_capture *into;
 } reading;
 
@@ -75,16 +79,14 @@ static status check_shape(const reading *r, const pst_capture *c, const char *na
 static void hold_against_ambient(const reading *r, int i, const img *picture)
 {
     static const float noise = 0.02f;
-    size_t lit = 0, below = 0, other = 0;
+    ambient_sums sums = {0};
     for (size_t k = 0, n = img_value_count(picture); k < n; k++) {
         float value = picture->data[k] * r->scale;
-        lit += value > noise || r->ambient.data[k] > noise;
-        below += value < r->ambient.data[k] - noise;
-        other += value != r->ambient.data[k];
+        sums.lit += value > noise || r->ambient.data[k] > noise;
+        sums.below += value < r->ambient.data[k] - noise;
+        sums.other += value != r->ambient.data[k];
     }
-    r->lit[i] = lit;
-    r->below[i] = below;
-    r->other[i] = other;
+    r->beside[i] = sums;
 }
 
 static status store(const reading *r, const img *picture, uint16_t **out)
@@ -189,19 +191,16 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
             r->ambient.data[i] *= r->scale;
     }
     r->ambient_path = path;
-    size_t count = (size_t)c->count;
     if (s != OK || !path) return s;
-    r->lit = calloc(count, sizeof *r->lit);
-    r->below = calloc(count, sizeof *r->below);
-    r->other = calloc(count, sizeof *r->other);
-    return r->lit && r->below && r->other ? OK : fail(ERROR_MEMORY, "no memory for %zu sums", count);
+    r->beside = calloc((size_t)c->count, sizeof *r->beside);
+    return r->beside ? OK : fail(ERROR_MEMORY, "no memory for %d sums", c->count);
 }
 
 /* The first picture that has the ambient picture's values, NULL if none has; pictures of nothing are all alike. */
 static const char *copied_as_ambient(const reading *r)
 {
-    for (int i = 0; i < r->into->count && r->other; i++)
-        if (r->other[i] == 0 && r->lit[i] > 0) return r->into->name[i];
+    for (int i = 0; i < r->into->count; i++)
+        if (r->beside[i].other == 0 && r->beside[i].lit > 0) return r->into->name[i];
     return NULL;
 }
 
@@ -210,9 +209,9 @@ static status check_ambient(const reading *r, pst_capture *c)
 {
     static const double few = 0.05, all = 0.95;
     double lit = 1e-9, below = 0;
-    for (int i = 0; i < c->count && r->below; i++) {
-        lit += (double)r->lit[i];
-        below += (double)r->below[i];
+    for (int i = 0; i < c->count; i++) {
+        lit += (double)r->beside[i].lit;
+        below += (double)r->beside[i].below;
     }
     if (below > all * lit)
         return fail(
@@ -269,12 +268,10 @@ status pst_read_pictures(const char *folder, const pst_read_options *options, ps
     c->linear = options->linear;
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = for_pictures(&r, take_picture);
-    if (s == OK) s = check_ambient(&r, c);
+    if (s == OK && r.ambient.data) s = check_ambient(&r, c);
     img_free(&r.ambient);
     img_free(&first);
     free(r.ambient_path);
-    free(r.lit);
-    free(r.below);
-    free(r.other);
+    free(r.beside);
     return s;
 }

@@ -1,5 +1,6 @@
 #include "stereo/shrink.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -121,6 +122,35 @@ status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst
     shrink_mask(&job);
     parallel_for((size_t)c->count, shrink_picture, &job);
     return OK;
+}
+
+/* Those pictures and their lights come first, in arrays of the caller's. */
+static status shrink_some(const pst_capture *c, int pixels, const int picture[], pst_capture *some, pst_capture *out)
+{
+    size_t inside = 0;
+    for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; i < n; i++)
+        inside += c->mask.data[i] > 0.5f;
+    for (int k = 0; k < some->count; k++) {
+        some->picture[k] = c->picture[picture[k]];
+        some->light[k] = c->light[picture[k]];
+    }
+    int factor = (int)sqrt((double)inside / pixels);
+    return pst_shrink(some, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, out);
+}
+
+status pst_shrink_to(const pst_capture *c, int pixels, int most_pictures, int picture[], pst_capture *out)
+{
+    pst_capture some = *c;
+    some.count = c->count < most_pictures ? c->count : most_pictures;
+    some.picture = malloc((size_t)some.count * sizeof *some.picture);
+    some.light = malloc((size_t)some.count * sizeof *some.light);
+    for (int k = 0; k < some.count; k++)
+        picture[k] = (int)((long)k * c->count / some.count);
+    status s = some.picture && some.light ? shrink_some(c, pixels, picture, &some, out)
+                                          : fail(ERROR_MEMORY, "no memory for %d pictures", some.count);
+    free(some.picture);
+    free(some.light);
+    return s;
 }
 
 /* Bilinear between the small pixels' middles, as far as they are on the object. */

@@ -25,6 +25,10 @@ pst_blocks pst_blocks_of(const pst_capture *c, int factor);
  * Names and truth are left out. */
 status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst_capture *out);
 
+/* Shrinks a capture to about so many pixels of the object, at most four times as many, and to at most so many of its
+ * pictures, spread evenly; picture gets their numbers. The lights are those of these. */
+status pst_shrink_to(const pst_capture *c, int pixels, int most_pictures, int picture[], pst_capture *out);
+
 /* Values between the means of 1 channel, for the pixels of mask that the small mask covers; out has the mask's size. */
 void pst_enlarge(const img *small, const img *small_mask, const img *mask, int factor, img *out);
 
