@@ -18,4 +18,6 @@ srun --mpi=pmix merlin train "$1" --data "$2" -o "$3" --mpi --threads "$SLURM_CP
 steps=$!
 trap 'stopped=1; scancel --signal=TERM "$SLURM_JOB_ID.0"' TERM
 wait "$steps"
+status=$?
 [[ -z ${stopped:-} ]] || { wait "$steps"; scontrol requeue "$SLURM_JOB_ID"; }
+exit "$status"
