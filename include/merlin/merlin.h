@@ -82,7 +82,7 @@ typedef struct merlin_model merlin_model;
 merlin_status merlin_model_open(const char *weights, merlin_model **out);
 /* Gives a model of any light another for photographs that are lit by a flash alone, which knows that light better:
  * merlin_estimate asks the first what it sees, and maps.model says which one the maps are by. MERLIN_WRONG_USE if the
- * first knows one light alone, or has such another. */
+ * first knows one light alone, or has such another. The weights are read when a photograph first asks for them. */
 merlin_status merlin_model_add_flash(merlin_model *model, const char *weights);
 void merlin_model_close(merlin_model *model);
 const char *merlin_model_name(const merlin_model *model); /* as long as the model is open; "" for NULL */

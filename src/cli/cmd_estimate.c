@@ -232,16 +232,19 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
                          lap_times *laps)
 {
     double began = clock_seconds(), clock = began;
+    const bool last = job == &r->photos->at[r->photos->count - 1];
     merlin_maps maps = {0};
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
     mesh_work meshes = {r, job, inputs};
     plan(r, (double)photo->width * photo->height);
     object->watch = r->watch;
+    object->last = last;
     maps_output to = {.folder = job->output,
                       .inputs = inputs,
                       .stop = cli_interrupted,
                       .watch = r->watch,
+                      .last = last,
                       .more = write_meshes,
                       .context = &meshes,
                       .written = &written};

@@ -120,7 +120,7 @@ merlin_status merlin_model_add_flash(merlin_model *model, const char *weights)
     if (s == OK && network_config(model->network)->lighting != MODEL_LIGHT_ANY)
         s = fail(ERROR_USAGE, "%s tells no flash from other light, so that no other model can see flashes for it",
                  network_config(model->network)->name);
-    if (s == OK) s = network_open(weights, &model->flash);
+    if (s == OK) s = network_open_later(weights, &model->flash);
     return result_of(s);
 }
 
@@ -140,6 +140,14 @@ network *model_network(const merlin_model *model, const merlin_maps *maps, merli
     if (how == MERLIN_BY_NETWORK && network_config(model->network)->relight != MODEL_RELIGHT_NETWORK)
         return model->flash;
     return strcmp(maps->model, network_config(model->network)->name) == 0 ? model->network : model->flash;
+}
+
+void model_keep(merlin_model *model, network *kept)
+{
+    if (!model->flash) return;
+    network_close(kept == model->flash ? model->network : model->flash);
+    model->network = kept;
+    model->flash = NULL;
 }
 
 void merlin_model_close(merlin_model *model)

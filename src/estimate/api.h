@@ -27,6 +27,9 @@ status model_open_pair(const char *weights, const char *flash, merlin_model **ou
  * a flash is all it is given. By the relighting decoder, one that has it. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
+/* Closes that of its networks which is not `kept`: no photograph follows that would want it. */
+void model_keep(merlin_model *model, network *kept);
+
 struct merlin_environment {
     env_map map;
     double negative; /* share of the file's values that were negative */
@@ -53,6 +56,7 @@ typedef struct photo_object {
     merlin_shot shot;   /* unknown, unless it is told */
     light_cues cues;    /* what estimate_object found of the light */
     const watch *watch; /* told of what estimate_object does; may be NULL */
+    bool last;          /* no photograph follows: the network that is not chosen is closed */
     double seconds;     /* that finding it took */
 } photo_object;
 
@@ -103,6 +107,7 @@ typedef struct maps_output {
     const char *const *inputs; /* as in staging_begin */
     int (*stop)(void);         /* asked between files */
     const watch *watch;        /* told "writing" */
+    bool last;                 /* no photograph follows: the network is released before the files are written */
     /* writes other files beside the maps, or elsewhere, and adds where */
     status (*more)(const void *context, const merlin_maps *maps, maps_staging *to);
     const void *context;

@@ -33,6 +33,7 @@ typedef struct work {
     light_cues cues;
     merlin_shot shot;
     const watch *watch;
+    bool last;    /* as of photo_object */
     double clock; /* when the current stage began */
 } work;
 
@@ -45,11 +46,11 @@ static void work_free(work *w)
     surface_free(&w->full);
 }
 
-/* Seconds since the last call; fails if the caller wants to stop. */
+/* Adds the seconds since the last call; fails if the caller wants to stop. */
 static status lap(work *w, double *seconds)
 {
     double now = clock_seconds();
-    *seconds = now - w->clock;
+    *seconds += now - w->clock;
     w->clock = now;
     if (w->params->stop && w->params->stop()) return fail(ERROR_STOPPED, "stopped");
     return OK;
@@ -109,6 +110,7 @@ static void take_object(work *w, photo_object *object, merlin_maps *maps)
     w->crop = object->crop;
     w->shot = object->shot;
     w->watch = object->watch;
+    w->last = object->last;
     object->mask = (img){0};
     maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
     maps->mask_confidence = object->choice.confidence;
@@ -298,16 +300,21 @@ static status judge_light(work *w, const merlin_image *photo, float gain)
 }
 
 /* The caller may have had some of it compiled before, and the question which network it is another. */
-static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+static status lap_compile(const merlin_model *model, work *w, double *seconds)
 {
-    const int finer = detail_side(w->params->size, w->crop.side);
-    double *compile = &maps->timing.compile;
-    status s = network_prepare(n, maps->size, w->params->views);
-    if (s == OK && finer > 0) s = network_prepare_normals(n, finer);
-    if (s == OK) s = lap(w, compile);
-    *compile = network_take_compile_seconds(model->network);
-    if (model->flash) *compile += network_take_compile_seconds(model->flash);
+    double passed = 0;
+    status s = lap(w, &passed);
+    *seconds += network_take_compile_seconds(model->network);
+    if (model->flash) *seconds += network_take_compile_seconds(model->flash);
     return s;
+}
+
+/* What came before makes room where nothing wants it any more. */
+static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
+{
+    if (w->last) network_release_maps(n);
+    status s = finer > 0 ? network_prepare_normals(n, finer) : OK;
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
 
 static status estimate(merlin_model *model, work *w, merlin_maps *maps)
@@ -324,12 +331,18 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s != OK) return s;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
     s = lap(w, &t->choose);
-    if (s == OK) s = prepare(model, n, w, maps);
+    if (s == OK) s = lap_compile(model, w, &t->compile);
+    if (w->last) model_keep(model, n);
+    if (s == OK) s = network_prepare(n, maps->size, views);
+    if (s == OK) s = lap_compile(model, w, &t->compile);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
     if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
+    if (s == OK) s = lap(w, &t->network);
+    if (s == OK) s = prepare_finer(model, n, w, finer, maps);
     if (s == OK) s = add_detail(n, w, finer, maps->gain);
+    if (w->last) network_release_maps(n);
     if (s == OK) s = lap(w, &t->network);
     watch_tell(w->watch, "refining", 0);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);

@@ -155,7 +155,9 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const maps_outpu
     b->owner = pthread_self();
     watch_tell(to->watch, "writing", 0);
     /* before the files are written side by side, because the network uses every processor itself */
-    status s = overview_new(model_network(model, maps, MERLIN_BY_BRDF), maps, &b->job.overview);
+    network *n = model_network(model, maps, MERLIN_BY_BRDF);
+    status s = overview_new(n, maps, &b->job.overview);
+    if (to->last) network_release(n);
     if (s == OK) s = write_through(b);
     overview_free(&b->job.overview);
     free(b);

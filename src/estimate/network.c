@@ -1,5 +1,6 @@
 #include "estimate/network.h"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,8 @@ typedef struct compiled {
 
 struct network {
     model_config config;
-    nn_params *params;
+    nn_params *params;                             /* NULL until they are asked for, */
+    char *weights;                                 /* of which the file is this */
     pthread_mutex_t lock;                          /* of the programs: a run uses their buffers */
     compiled maps, normals, look, relit, indirect; /* normals: alone, of larger pictures */
     double compile_seconds;
@@ -35,23 +37,52 @@ struct network_look {
     view_features views[NETWORK_VIEWS];
 };
 
-status network_open(const char *weights, network **out)
+static bool is_same_config(const model_config *a, const model_config *b)
+{
+    char *one = model_config_write(a), *other = model_config_write(b);
+    bool same = one && other && strcmp(one, other) == 0;
+    free(one);
+    free(other);
+    return same;
+}
+
+/* Callers know the configuration already, so that it must be what it was when the file was opened. */
+static status load_params(network *n)
+{
+    model_config now;
+    status s = model_load(n->weights, &now, &n->params);
+    if (s != OK || is_same_config(&now, &n->config)) return s;
+    nn_params_free(n->params);
+    n->params = NULL;
+    return fail(ERROR_INPUT, "%s was replaced by other weights since it was opened", n->weights);
+}
+
+status network_open_later(const char *weights, network **out)
 {
     *out = NULL;
     network *n = calloc(1, sizeof *n);
     if (!n) return fail(ERROR_MEMORY, "no memory for a model");
-    status s = model_load(weights, &n->config, &n->params);
-    if (s != OK) {
-        free(n);
-        return s;
-    }
     if (pthread_mutex_init(&n->lock, NULL) != 0) {
-        nn_params_free(n->params);
         free(n);
         return fail(ERROR_MEMORY, "no memory for a lock");
     }
-    *out = n;
-    return OK;
+    n->weights = strdup(weights);
+    status s = n->weights ? model_load_config(weights, &n->config) : fail(ERROR_MEMORY, "no memory for a model");
+    if (s != OK)
+        network_close(n);
+    else
+        *out = n;
+    return s;
+}
+
+status network_open(const char *weights, network **out)
+{
+    status s = network_open_later(weights, out);
+    if (s == OK) s = load_params(*out);
+    if (s == OK) return OK;
+    network_close(*out);
+    *out = NULL;
+    return s;
 }
 
 static void compiled_free(compiled *c)
@@ -61,17 +92,45 @@ static void compiled_free(compiled *c)
     *c = (compiled){0};
 }
 
-void network_close(network *n)
+static void free_maps(network *n)
 {
-    if (!n) return;
     compiled_free(&n->maps);
     compiled_free(&n->normals);
+}
+
+static void free_programs(network *n)
+{
+    free_maps(n);
     compiled_free(&n->look);
     compiled_free(&n->relit);
     compiled_free(&n->indirect);
+}
+
+void network_release(network *n)
+{
+    pthread_mutex_lock(&n->lock);
+    free_programs(n);
+    pthread_mutex_unlock(&n->lock);
+    malloc_trim(0);
+}
+
+void network_release_maps(network *n)
+{
+    pthread_mutex_lock(&n->lock);
+    free_maps(n);
+    pthread_mutex_unlock(&n->lock);
+    malloc_trim(0);
+}
+
+void network_close(network *n)
+{
+    if (!n) return;
+    free_programs(n);
     nn_params_free(n->params);
     pthread_mutex_destroy(&n->lock);
+    free(n->weights);
     free(n);
+    malloc_trim(0); /* the C library keeps what was freed otherwise */
 }
 
 const model_config *network_config(const network *n)
@@ -105,7 +164,8 @@ static status compile(network *n, model_part part, const char *const *outputs, i
                           .outputs = outputs,
                           .beside = largest(n)};
     double began = clock_seconds();
-    status s = model_build(&n->config, part, &c->graph);
+    status s = n->params ? OK : load_params(n);
+    if (s == OK) s = model_build(&n->config, part, &c->graph);
     if (s == OK) s = nn_compile(c->graph, n->params, &options, &c->program);
     n->compile_seconds += clock_seconds() - began;
     if (s != OK)

@@ -33,6 +33,8 @@ typedef struct network network;
 
 /* ERROR_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type. */
 status network_open(const char *weights, network **out);
+/* The configuration alone; the parameters, most of the file, are read when a program is first made. */
+status network_open_later(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
@@ -40,6 +42,10 @@ const model_config *network_config(const network *n);
  * Those of the last size are kept. */
 status network_prepare(network *n, int size, int views);
 status network_prepare_normals(network *n, int size);
+/* Frees the programs and what memory they hold, most of a network's, or those alone that see photographs; they are made
+ * anew when they are asked for. */
+void network_release(network *n);
+void network_release_maps(network *n);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
 

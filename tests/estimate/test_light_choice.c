@@ -2,6 +2,7 @@
  * sees. */
 #include <limits.h>
 #include <math.h>
+#include <unistd.h>
 
 #include "estimate/found_light.h"
 #include "image/public.h"
@@ -149,6 +150,31 @@ static void a_model_of_one_light_takes_no_other_beside_it(void **state)
     merlin_model_close(model);
 }
 
+static void weights_for_flashes_are_read_when_one_is_seen(void **state)
+{
+    const fixture *f = *state;
+    merlin_params p = merlin_params_default();
+    float code[MODEL_LIGHTS];
+    merlin_model *model = NULL;
+    merlin_maps maps;
+    p.size = 64;
+    p.views = 1;
+    flash_code(0, 1, code);
+    see(f, code);
+    assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_flash(model, f->flash), MERLIN_OK);
+    assert_int_equal(write_random_weights_of("merlin-env", f->flash), OK);
+    assert_int_equal(merlin_estimate(model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
+    merlin_maps_free(&maps);
+    p.flash = 1;
+    assert_int_equal(merlin_estimate(model, &f->photo, &f->mask, &p, &maps), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "was replaced by other weights"));
+    assert_int_equal(truncate(f->flash, 1000), 0);
+    assert_int_equal(merlin_estimate(model, &f->photo, &f->mask, &p, &maps), MERLIN_BAD_INPUT);
+    merlin_model_close(model);
+    assert_int_equal(write_random_weights(f->flash), OK);
+}
+
 static merlin_maps maps_of(const fixture *f, merlin_model **model)
 {
     merlin_params p = merlin_params_default();
@@ -267,6 +293,7 @@ int main(void)
         cmocka_unit_test(what_is_seen_decides),
         cmocka_unit_test(the_camera_and_the_photographer_know_better),
         cmocka_unit_test(a_model_of_one_light_takes_no_other_beside_it),
+        cmocka_unit_test(weights_for_flashes_are_read_when_one_is_seen),
         cmocka_unit_test(found_light_is_the_sum_of_its_lamps),
         cmocka_unit_test(found_light_is_kept_and_turns),
         cmocka_unit_test(share_of_the_flash),

@@ -1,6 +1,7 @@
 #include "nn/cpu/tuning.h"
 
 #include <limits.h>
+#include <stdint.h>
 
 #include "nn/cpu/dnn.h"
 #include "nn/cpu/steps.h"
@@ -45,7 +46,8 @@ nn_type tuning_fastest_type(void)
  * products, the more so backwards. */
 typedef struct filtered {
     size_t least_tiles;
-    int least_channels; /* of the result */
+    int least_channels;         /* of the result */
+    size_t most_weights_a_tile; /* filtered ones */
 } filtered;
 
 enum { NEVER = INT_MAX };
@@ -53,17 +55,18 @@ enum { NEVER = INT_MAX };
 /* Measured on Zen 4 (two cores, 256×256 pictures, milliseconds filtered and summed): in float32 layers of 32×32 pixels
  * 4.3 and 11.0, of 64×64 7.9 and 19.5, of 128×128 7.1 and 14.6, and about as much in training; in bfloat16 4.2 and 5.9,
  * 7.8 and 9.9, and in training, forward and backward together, 32 channels of 128×128 106 and 94, of 64×64 the same.
- * Where nothing is trained, layers of 64 tiles would spare 9 ms of 59 and hold 16 MB more for it. */
+ * Where nothing is trained, layers of 64 tiles are filtered in float32 up to 160 channels, and not those of 256 that
+ * 512×512 pictures have: these would hold 40 MB more. */
 static filtered filtered_in(nn_type type, bool trained)
 {
 #if defined(__AVX2__) && defined(__FMA__)
     const bool amx = has_isa(dnnl_cpu_isa_avx512_core_amx); /* computes bfloat16 faster than filtering spares */
-    if (type == NN_FLOAT32) return (filtered){trained ? 48 : 128, 0};
-    if (!amx) return (filtered){trained ? 48 : 128, trained ? 48 : 0};
+    if (type == NN_FLOAT32) return trained ? (filtered){48, 0, SIZE_MAX} : (filtered){64, 0, 12000};
+    if (!amx) return trained ? (filtered){48, 48, SIZE_MAX} : (filtered){128, 0, SIZE_MAX};
 #endif
     (void)type;
     (void)trained;
-    return (filtered){0, NEVER};
+    return (filtered){0, NEVER, SIZE_MAX};
 }
 
 bool tuning_filters(const nn_step *step)
@@ -73,5 +76,7 @@ bool tuning_filters(const nn_step *step)
     const nn_tensor *x = &step->in[0];
     const winograd shape = {.n = x->n, .h = x->h, .w = x->w};
     const filtered pays = filtered_in(step->compute, step->backs);
-    return winograd_tiles(&shape) >= pays.least_tiles && step->out.c >= pays.least_channels;
+    const size_t tiles = winograd_tiles(&shape), weights = winograd_weights(x->c, step->out.c);
+    return tiles >= pays.least_tiles && step->out.c >= pays.least_channels &&
+           weights / tiles <= pays.most_weights_a_tile;
 }
