@@ -281,7 +281,7 @@ static status estimate_first(request *r, const photo_job *job, bool *ready, bool
     photo_begin(&first, job);
     status opened = model_open_pair(r->weights, r->flash_weights, &r->model), s = OK;
     laps.model = lap(&now);
-    if (opened == OK) opened = network_prepare(r->model->network, network_side(r->params.size), r->params.views);
+    if (opened == OK) opened = model_prepare(r->model, &r->params);
     *ready = opened == OK;
     *broken = !*ready;
     laps.compile = lap(&now);

@@ -142,6 +142,14 @@ network *model_network(const merlin_model *model, const merlin_maps *maps, merli
     return strcmp(maps->model, network_config(model->network)->name) == 0 ? model->network : model->flash;
 }
 
+status model_prepare(merlin_model *model, const merlin_params *params)
+{
+    const int size = network_side(params->size);
+    if (!model->flash) return network_prepare(model->network, size, params->views);
+    return params->flash ? network_prepare(model->flash, size, params->views)
+                         : network_prepare_lights(model->network, size);
+}
+
 void model_keep(merlin_model *model, network *kept)
 {
     if (!model->flash) return;

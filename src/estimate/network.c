@@ -20,10 +20,10 @@ typedef struct compiled {
 
 struct network {
     model_config config;
-    nn_params *params;                             /* NULL until they are asked for, */
-    char *weights;                                 /* of which the file is this */
-    pthread_mutex_t lock;                          /* of the programs: a run uses their buffers */
-    compiled maps, normals, look, relit, indirect; /* normals: alone, of larger pictures */
+    nn_params *params;                                     /* NULL until they are asked for, */
+    char *weights;                                         /* of which the file is this */
+    pthread_mutex_t lock;                                  /* of the programs: a run uses their buffers */
+    compiled lights, maps, normals, look, relit, indirect; /* lights, normals: alone; these of larger pictures */
     double compile_seconds;
 };
 
@@ -31,6 +31,7 @@ struct network {
 static const char *const single_outputs[] = {"albedo",           "normal", "roughness",  "depth", "indirect",
                                              "environment_code", "lights", "visibility", NULL};
 static const char *const normal_outputs[] = {"normal", NULL};
+static const char *const light_outputs[] = {"lights", NULL};
 
 struct network_look {
     img mask;
@@ -94,6 +95,7 @@ static void compiled_free(compiled *c)
 
 static void free_maps(network *n)
 {
+    compiled_free(&n->lights);
     compiled_free(&n->maps);
     compiled_free(&n->normals);
 }
@@ -141,8 +143,8 @@ const model_config *network_config(const network *n)
 /* That with most memory: all use it, for inputs are put before every run, and outputs taken after it. */
 static const nn_program *largest(const network *n)
 {
-    const nn_program *all[] = {n->maps.program, n->normals.program, n->look.program, n->relit.program,
-                               n->indirect.program};
+    const nn_program *all[] = {n->lights.program, n->maps.program,  n->normals.program,
+                               n->look.program,   n->relit.program, n->indirect.program};
     const nn_program *found = NULL;
     size_t most = 0;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
@@ -182,6 +184,14 @@ status network_prepare(network *n, int size, int views)
     /* that of the bounces first: it needs more memory, and whatever is compiled later shares it */
     status s = follows ? compile(n, MODEL_INDIRECT, NULL, size, &n->indirect) : OK;
     if (s == OK) s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
+status network_prepare_lights(network *n, int size)
+{
+    pthread_mutex_lock(&n->lock);
+    status s = compile(n, MODEL_MAPS, light_outputs, size, &n->lights);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -345,8 +355,8 @@ status network_lights(network *n, const img *photo, const img *mask, const sight
     if (n->config.lighting != MODEL_LIGHT_ANY)
         return fail(ERROR_USAGE, "model \"%s\" does not tell what lights a photograph", n->config.name);
     pthread_mutex_lock(&n->lock);
-    status s = run_view(n, &at, 0, n->maps.outputs ? n->maps.outputs : view_outputs, &n->maps);
-    if (s == OK) memcpy(lights, nn_output_data(n->maps.program, "lights"), MODEL_LIGHTS * sizeof *lights);
+    status s = run_view(n, &at, 0, light_outputs, &n->lights);
+    if (s == OK) memcpy(lights, nn_output_data(n->lights.program, "lights"), MODEL_LIGHTS * sizeof *lights);
     pthread_mutex_unlock(&n->lock);
     return s;
 }

@@ -38,9 +38,10 @@ status network_open_later(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
-/* Makes the programs for this size and so many views now, so that the time is seen apart; that of network_normals.
- * Those of the last size are kept. */
+/* Makes the programs for this size and so many views now, so that the time is seen apart; that of network_lights; that
+ * of network_normals. Those of the last size are kept. */
 status network_prepare(network *n, int size, int views);
+status network_prepare_lights(network *n, int size);
 status network_prepare_normals(network *n, int size);
 /* Frees the programs and what memory they hold, most of a network's, or those alone that see photographs; they are made
  * anew when they are asked for. */
@@ -63,8 +64,8 @@ typedef struct network_estimation {
  * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
-/* What lit the photograph alone, as of network_estimate's first view, by the program of its maps: ERROR_USAGE unless it
- * is a model of any light. */
+/* Tells what lit the photograph alone, as network_estimate's first view does: ERROR_USAGE unless it is a model of any
+ * light. */
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
 void network_estimation_free(network_estimation *e);
 /* The normals alone, as of network_estimate: for what is fine in a larger picture. */
