@@ -29,16 +29,17 @@ status pst_list_skipped(const char *folder, const char *mask, const char *ambien
 /* The folder's file of the first of these names, which end in NULL, that it has, in capitals or not; *path is NULL
  * without one. Free it. */
 status pst_find_named(const char *folder, const char *const *usual, char **path);
-/* The folder's light_intensities.txt, likewise. */
-status pst_find_intensities(const char *folder, char **path);
+/* Finds light_intensities.txt or a file of a name like it, in the folder or beside the list of lights (NULL: there is
+ * none), likewise. ERROR_INPUT where there are two. */
+status pst_find_intensities(const char *folder, const char *lights, char **path);
 
-/* Reads the folder's light_intensities.txt, if there is one: one or three numbers a line, for the capture's lights or,
- * behind a picture's name, for that one's; or a light in each column. */
-status pst_read_intensities(const char *folder, pst_capture *c);
+/* Reads what pst_find_intensities finds, if anything: one or three numbers a line, for the capture's lights or, behind
+ * a picture's name, for that one's; or a light in each column. */
+status pst_read_intensities(const char *folder, const char *lights, pst_capture *c);
 
 /* Sets the lights of a capture that has their pictures' names. */
 status pst_set_lights(const char *path, const light_list *list, const pst_read_options *options, pst_capture *c);
-/* Reads the folder's light_intensities.txt, if there is one; refuses it beside a list that says the same. */
+/* Reads what pst_find_intensities finds, if anything; refuses it beside a list that says the same (listed). */
 status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c);
 /* Reads a list of lights, and which pictures of the folder they belong to. */
 status pst_read_light_list(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c);

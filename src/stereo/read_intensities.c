@@ -1,5 +1,6 @@
 /* How strong lights are, from a file of its own: one number a line, or three, or a light in each column. */
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -156,16 +157,45 @@ static status read_intensities(const char *path, const char *folder, pst_capture
     return s;
 }
 
-status pst_find_intensities(const char *folder, char **path)
+/* The first of a folder's, unless *path is one already that says the same of the lights. */
+static status find_in(const char *folder, char **path)
 {
-    static const char *const usual[] = {"light_intensities.txt", NULL};
-    return pst_find_named(folder, usual, path);
+    static const char *const bases[] = {"light_intensities", "light_intensity", "intensities"};
+    static const char *const endings[] = {"txt", "csv", "tsv", "dat"};
+    status s = OK;
+    for (size_t i = 0; i < sizeof bases / sizeof *bases; i++)
+        for (size_t k = 0; k < sizeof endings / sizeof *endings && s == OK; k++) {
+            char name[32], *found;
+            snprintf(name, sizeof name, "%s.%s", bases[i], endings[k]);
+            s = pst_find_named(folder, (const char *const[]){name, NULL}, &found);
+            if (s != OK || !found) continue;
+            if (*path)
+                s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", *path, found);
+            else
+                *path = found;
+            if (s != OK) free(found);
+        }
+    return s;
 }
 
-status pst_read_intensities(const char *folder, pst_capture *c)
+status pst_find_intensities(const char *folder, const char *lights, char **path)
+{
+    char *beside = lights ? file_folder_of(lights) : NULL;
+    status s = lights && !beside ? fail(ERROR_MEMORY, "no memory for a file name") : OK;
+    *path = NULL;
+    if (s == OK) s = find_in(folder, path);
+    if (s == OK && beside && !file_is_same(folder, beside)) s = find_in(beside, path);
+    free(beside);
+    if (s == OK) return OK;
+    free(*path);
+    *path = NULL;
+    return s;
+}
+
+status pst_read_intensities(const char *folder, const char *lights, pst_capture *c)
 {
     char *path;
-    status s = pst_find_intensities(folder, &path);
+    status s = pst_find_intensities(folder, lights, &path);
     if (s == OK && path) s = read_intensities(path, folder, c);
     free(path);
     return s;

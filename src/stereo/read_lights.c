@@ -130,8 +130,8 @@ status pst_set_lights(const char *path, const light_list *list, const pst_read_o
 status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c)
 {
     char *path;
-    if (!listed) return pst_read_intensities(folder, c);
-    status s = pst_find_intensities(folder, &path);
+    if (!listed) return pst_read_intensities(folder, lights, c);
+    status s = pst_find_intensities(folder, lights, &path);
     if (s == OK && path)
         s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
     free(path);
@@ -155,7 +155,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
     char *lights = NULL;
     if (options->unknown_lights) {
         status s = pst_take_pictures(folder, false, NULL, 0, c);
-        return s == OK ? pst_read_intensities(folder, c) : s;
+        return s == OK ? pst_read_intensities(folder, NULL, c) : s;
     }
     status s = find_lights(folder, options->lights, &lights);
     if (s == OK && !lights) s = pst_check_pictures(folder);

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include "capture_files.h"
 #include "image/exr.h"
 #include "stereo/capture.h"
@@ -349,6 +351,33 @@ static void given_intensities_are_kept(void **state)
     assert_refused(&PLAIN, "2 intensities for 3 lights");
 }
 
+static void intensities_are_found_by_names_like_theirs_and_beside_the_list(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    static const char *const names[] = {"light_intensities.csv", "Light_Intensity.txt", "intensities.tsv"};
+    pst_capture c;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        write_text(names[i], "1\n2\n5\n");
+        assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+        assert_true(c.intensities_known);
+        assert_float_equal(c.light[2].intensity[1], 5, 0);
+        pst_capture_free(&c);
+        assert_int_equal(unlink(scratch_path(names[i])), 0);
+    }
+    assert_int_equal(mkdir(scratch_path("lists"), 0777), 0);
+    write_text("lists/lights.txt", "0 0 1\n0.3 0 1\n0 0.3 1\n");
+    write_text("lists/light_intensities.txt", "1\n2\n6\n");
+    char lights[256];
+    snprintf(lights, sizeof lights, "%s", scratch_path("lists/lights.txt"));
+    const pst_read_options elsewhere = {.lights = lights};
+    assert_int_equal(pst_capture_read(scratch, &elsewhere, &c), OK);
+    assert_float_equal(c.light[2].intensity[1], 6, 0);
+    pst_capture_free(&c);
+    write_text("intensities.txt", "1\n2\n7\n");
+    assert_refused(&elsewhere, "both say how strong");
+}
+
 static void a_mask_is_read_and_must_fit(void **state)
 {
     (void)state;
@@ -595,6 +624,7 @@ int main(void)
         in_scratch(a_distance_is_of_a_camera_that_is_known),
         in_scratch(unknown_lights_need_no_list),
         in_scratch(given_intensities_are_kept),
+        in_scratch(intensities_are_found_by_names_like_theirs_and_beside_the_list),
         in_scratch(a_mask_is_read_and_must_fit),
         in_scratch(results_beside_the_pictures_are_none),
         in_scratch(rarer_kinds_are_taken_where_they_are_alone),
