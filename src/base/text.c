@@ -58,6 +58,9 @@ static size_t decode_units(const unsigned char *b, size_t size, encoding e, char
     return (size_t)(to - begin);
 }
 
+/* Control-Z, with which DOS and what learned from it end a text. */
+enum { END_OF_TEXT = 0x1a };
+
 /* Rewrites in place, which only shortens. */
 static status make_plain(char *text, size_t size, const char *where)
 {
@@ -66,6 +69,7 @@ static status make_plain(char *text, size_t size, const char *where)
     int line = 1;
     for (size_t i = 0; i < size; i++) {
         char c = text[i];
+        if (c == END_OF_TEXT && i + 1 == size) break;
         if (!c) return fail(ERROR_INPUT, "%s:%d: not a text file", where, line);
         if (c == '\r') {
             c = '\n';

@@ -45,10 +45,22 @@ static bool parts_words(const scanner *s, size_t i)
     return mark != MARK_NONE || text_is_blank(s->text[i]) || s->text[i] == ';';
 }
 
+/* Returns whether a dash stands there that begins an item of a list, as in YAML; before a number it may be a minus. */
+static bool is_item(const scanner *s, size_t i, size_t end)
+{
+    if (s->text[i] != '-' || s->marks[i] != MARK_NONE) return false;
+    for (i++; i < end && text_is_blank(s->text[i]) && s->marks[i] == MARK_NONE;)
+        i++;
+    return i < end && s->marks[i] == MARK_OPEN_ROW;
+}
+
 /* The words that blanks, tabs, semicolons, brackets and quotes part, of the signs from i to end. */
 static status take_words(scanner *s, size_t i, size_t end)
 {
     bool apart = true;
+    while (i < end && text_is_blank(s->text[i]))
+        i++;
+    if (i < end && is_item(s, i, end)) i++;
     while (i < end) {
         if (parts_words(s, i)) {
             apart = apart || s->text[i] == ';' || s->text[i] == '\t' || s->marks[i] == MARK_OPEN_ROW;

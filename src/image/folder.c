@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "image/mask_look.h"
 #include "image/mask_names.h"
 #include "image/read.h"
@@ -182,9 +183,12 @@ static bool is_text(const char *path)
     if (!file) return false;
     size_t size = fread(head, 1, sizeof head, file);
     fclose(file);
-    for (size_t i = 0; i < size; i++)
-        if ((unsigned char)head[i] < ' ' && !memchr(blanks, head[i], sizeof blanks)) return false;
-    return true;
+    char *text = NULL;
+    bool plain = text_decode(head, size, path, &text) == OK;
+    for (const char *c = text; plain && *c; c++)
+        plain = (unsigned char)*c >= ' ' || memchr(blanks, *c, sizeof blanks);
+    free(text);
+    return plain;
 }
 
 /* Whether it goes with pictures, so that it is not worth a word. */

@@ -5,6 +5,7 @@
 
 #include "stereo/calibrate_parts.h"
 #include "stereo/capture_parts.h"
+#include "stereo/doubts.h"
 #include "stereo/pixel_fit.h"
 
 void pst_calibration_free(pst_calibration *c)
@@ -333,6 +334,7 @@ static status doubt_fit(const pst_capture *c, pst_calibration *out)
     img outlines = {0};
     status s = outline_picture(&out->brightest, &outlines);
     if (s == OK) s = ball_doubt(&c->mask, &outlines, out);
+    if (s == OK) s = pst_doubt_copies(c, &out->doubts);
     img_free(&outlines);
     return s;
 }

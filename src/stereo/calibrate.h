@@ -36,7 +36,7 @@ typedef struct pst_calibration {
     vec3 *direction;       /* unit, to the light */
     pst_circle *highlight; /* chrome: centre of each highlight, radius of a disk of its area; NULL for matte */
     float *residual;       /* matte: root mean square over the pixels used, relative to the light; NULL for chrome */
-    warnings doubts;       /* circle_unsure, mask_not_round, shading_unlike, lights_behind */
+    warnings doubts;       /* circle_unsure, mask_not_round, shading_unlike, lights_behind, same_pictures */
     skipped_files skipped; /* of the folder */
     img brightest;         /* 3 channels, linear: the pixelwise maximum, which calibration.png shows */
 } pst_calibration;

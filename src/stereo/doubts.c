@@ -99,7 +99,7 @@ static bool may_be_the_same(const pst_capture *c, int j, int k)
     return c->lighting == PST_NEAR && !(vec3_length(apart) > 1e-3f * vec3_length(a->position));
 }
 
-static status doubt_copies(const pst_capture *c, warnings *out)
+status pst_doubt_copies(const pst_capture *c, warnings *out)
 {
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
     int copies = 0, first = 0, second = 0;
@@ -116,7 +116,7 @@ static status doubt_copies(const pst_capture *c, warnings *out)
     free(hash);
     if (copies)
         warnings_add(out, "same_pictures",
-                     "pictures %d and %d%s are the same, under different lights: was one copied in another's place?",
+                     "pictures %d and %d%s are the same, value for value: was one copied in another's place?",
                      first + 1, second + 1, copies > 1 ? ", and others," : "");
     return OK;
 }
@@ -225,7 +225,7 @@ status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out)
     if (known && c->lighting == PST_DISTANT) doubt_directions(c, out);
     if (known && c->lighting == PST_NEAR) doubt_places(c, out);
     if (known && c->lighting == PST_NEAR) doubt_unit(c, out);
-    if (result == OK) result = doubt_copies(c, out);
+    if (result == OK) result = pst_doubt_copies(c, out);
     doubt_exposure(c, out);
     doubt_mask(c, out);
     pass_on(c, s, out);

@@ -89,6 +89,7 @@ static void commas_may_be_decimal(void **state)
     assert_reads("0,6\t0\t0,8\n0\t-0,6\t0,8\n-0,8\t0\t0,6\n0\t0\t1\n");
     assert_reads("0,6, 0,0, 0,8\n0,0, -0,6, 0,8\n-0,8, 0,0, 0,6\n0,0, 0,0, 1,0\n");
     assert_reads("\"0,6\",\"0\",\"0,8\"\n\"0\",\"-0,6\",\"0,8\"\n\"-0,8\",\"0\",\"0,6\"\n\"0\",\"0\",\"1\"\n");
+    assert_reads("lights:\n  - [0.6, 0, 0.8]\n  - [0, -0.6, 0.8]\n  - [-0.8, 0, 0.6]\n  - [0, 0, 1]\n");
     assert_reads("[0,6; 0; 0,8]\n[0; -0,6; 0,8]\n[-0,8; 0; 0,6]\n[0; 0; 1]\n");
     assert_names("a 1.png;0,6;0;0,8\nb.png;0;-0,6;0,8\nc.png;-0,8;0;0,6\nd.png;0;0;1\n", "a 1.png", "d.png");
     assert_refused("0,6,0,0,0,8\n0,0,-0,6,0,8\n", "write decimal points");
@@ -99,6 +100,7 @@ static void lines_end_as_on_any_system(void **state)
 {
     (void)state;
     assert_reads("0.6 0 0.8\r\n0 -0.6 0.8\r\n-0.8 0 0.6\r\n0 0 1\r\n");
+    assert_reads("0.6 0 0.8\r\n0 -0.6 0.8\r\n-0.8 0 0.6\r\n0 0 1\r\n\x1a");
     assert_reads("0.6 0 0.8\r0 -0.6 0.8\r-0.8 0 0.6\r0 0 1\r");
     assert_reads("\xef\xbb\xbf"
                  "0.6 0 0.8\n0 \xe2\x88\x92"

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 /* Balls rendered here under known lights, and the real ones where they are at hand. */
 #include "base/light_list.h"
 #include "base/rng.h"
@@ -207,6 +209,15 @@ static void what_shades_like_no_matte_ball_is_told(void **state)
     assert_doubted(PST_MATTE, "shading_unlike");
 }
 
+static void a_picture_that_is_there_twice_is_told(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    assert_int_equal(unlink(scratch_path("02.png")), 0);
+    assert_int_equal(link(scratch_path("01.png"), scratch_path("02.png")), 0);
+    assert_doubted(PST_CHROME, "same_pictures");
+}
+
 static void a_mask_that_is_not_the_balls_is_told(void **state)
 {
     (void)state;
@@ -411,6 +422,7 @@ int main(void)
         in_scratch(what_one_channel_clips_is_no_shading),
         in_scratch(a_ball_beside_the_axis_tells_its_lights),
         in_scratch(what_shades_like_no_matte_ball_is_told),
+        in_scratch(a_picture_that_is_there_twice_is_told),
         in_scratch(a_mask_that_is_not_the_balls_is_told),
         in_scratch(what_was_found_is_written),
         in_scratch(pictures_without_a_ball_or_its_light_are_refused),

@@ -465,6 +465,8 @@ static void what_is_left_aside_is_listed_with_the_reason(void **state)
     write_text("d.jxl", "\xff\x0a and more");
     assert_int_equal(file_write(scratch_path("movie.mov"), "\0\0\0\x14", 4), OK);
     write_text("notes.txt", "no picture");
+    static const char wide[] = "\xff\xfen\0o\0";
+    assert_int_equal(file_write(scratch_path("more.txt"), wide, sizeof wide - 1), OK);
     write_text("Thumbs.db", "no picture");
     write_text(".hidden.png", "no picture");
     write_flat("normal.png", 6, 4, 3, 0.5f, IMG_SRGB8);
