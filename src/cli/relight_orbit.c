@@ -38,21 +38,16 @@ static status render_frame(relight_work *w, env_map *environment, int i, relight
 {
     const relight_job *job = w->job;
     const lamp moving = relight_orbit_lamp(job, i), *lights = &moving;
+    const float further = 360.0f / (float)job->orbit;
     int count = 1, step = (job->orbit + RELIGHT_MOST_TILES - 1) / RELIGHT_MOST_TILES;
     char label[RELIGHT_LABEL];
     status s = OK;
     relight_label(lights, 1, label);
     if (relight_surroundings_turn(job)) snprintf(label, sizeof label, "turned by %.0f°", 360.0 * i / job->orbit);
-    if (job->found) {
-        s = relight_stand_found(w, 360.0f * (float)i / (float)job->orbit);
-        lights = w->found.lamps;
-        count = w->found.count;
-    } else if (job->environment) {
-        lights = job->lamps.at;
-        count = job->lamps.count > 0;
-        if (i > 0) env_map_turn(environment, 360.0f / (float)job->orbit);
-        s = stage_surround(&w->stage, environment);
-    }
+    if (relight_surroundings_turn(job)) lights = relight_lamps(w, 0, &count);
+    if (job->found && i > 0) found_lights_turn(&w->found, further);
+    if (job->environment && i > 0) env_map_turn(environment, further);
+    if (job->environment) s = stage_surround(&w->stage, environment);
     if (s == OK) s = relight_square(w, lights, count, frame);
     return s == OK && i % step == 0 ? relight_sheet_add(some, frame, label) : s;
 }

@@ -57,12 +57,11 @@ bool relight_surroundings_turn(const relight_job *job)
     return job->environment || job->found;
 }
 
-status relight_stand_found(relight_work *w, float further)
+const lamp *relight_lamps(const relight_work *w, size_t i, int *count)
 {
-    status s = stage_surround(&w->stage, NULL);
-    env_map_free(&w->found.rest);
-    if (s == OK) s = found_light_stand(&w->job->maps->light, w->job->turn + further, &w->found);
-    return s == OK && w->found.rest.levels[0].data ? stage_surround(&w->stage, &w->found.rest) : s;
+    const relight_job *job = w->job;
+    *count = job->found ? w->found.count : job->lamps.count > 0;
+    return job->found ? w->found.lamps : job->lamps.at + i;
 }
 
 status relight_square(relight_work *w, const lamp *lights, int count, img *out)
@@ -121,8 +120,8 @@ static status write_lights(relight_work *w)
     relight_sheet all = {.count = 0};
     status s = OK;
     for (size_t i = 0; i < count && s == OK; i++) {
-        relight_picture p = {"relit", i, job->lamps.at + i, job->lamps.count > 0, count > 1 ? &all : NULL, count == 1};
-        if (job->found) p.lights = w->found.lamps, p.count = w->found.count;
+        relight_picture p = {.name = "relit", .number = i, .sheet = count > 1 ? &all : NULL, .alone = count == 1};
+        p.lights = relight_lamps(w, i, &p.count);
         s = relight_check(w);
         if (s == OK) s = relight_write(w, &p);
     }
@@ -191,7 +190,8 @@ static status set_stage(relight_work *w, int side)
     status s = stage_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->stage);
     if (s == OK && job->matte) s = stage_make_matte(&w->stage);
     if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
-    if (s == OK && job->found) s = relight_stand_found(w, 0);
+    if (s == OK && job->found) s = found_light_stand(&job->maps->light, job->turn, &w->found);
+    if (s == OK && job->found) s = stage_surround(&w->stage, found_lights_rest(&w->found));
     return s == OK ? expose(w) : s;
 }
 
@@ -243,10 +243,9 @@ status relight_print(const relight_job *job, relight_result *result)
     size_t size = 0;
     status s = set_stage(&w, 0);
     watch_tell(job->watch, "relighting", 0);
-    if (s == OK && job->found)
-        s = relight_square(&w, w.found.lamps, w.found.count, &square);
-    else if (s == OK)
-        s = relight_square(&w, job->lamps.at, job->lamps.count > 0, &square);
+    int count;
+    const lamp *lights = relight_lamps(&w, 0, &count);
+    if (s == OK) s = relight_square(&w, lights, count, &square);
     if (s == OK) s = frame_whole(&w, &square, &whole);
     if (s == OK) s = img_encode_picture("standard output", &whole, job->format, &data, &size);
     if (s == OK) s = relight_check(&w);

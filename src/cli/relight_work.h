@@ -10,7 +10,7 @@ typedef struct relight_work {
     const relight_job *job;
     staging *staging;
     stage stage;
-    found_lights found; /* of a job's `found` */
+    found_lights found; /* of a job's `found`; an orbit turns it */
     relight_result *result;
     size_t done; /* of relight_count_whole */
 } relight_work;
@@ -19,8 +19,8 @@ typedef struct relight_work {
 status relight_check(const relight_work *w);
 /* Whether surroundings go round in an orbit, and no lamp. */
 bool relight_surroundings_turn(const relight_job *job);
-/* Stands the found light up, so much further round. */
-status relight_stand_found(relight_work *w, float further);
+/* Returns the lamps that shine together in picture i, and how many: the found light's, else the user's i-th, if any. */
+const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
 /* The stage's square under so many lamps together; counts what is burnt out. */
 status relight_square(relight_work *w, const lamp *lights, int count, img *out);
 /* ".png" or ".jpg" */

@@ -94,7 +94,7 @@ merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps,
         s = fail(ERROR_USAGE, "the relighting decoder knows one lamp alone; relight by BRDF");
     if (s == OK && !isfinite(turn)) s = fail(ERROR_USAGE, "the light's turn must be finite");
     if (s == OK) s = found_light_stand(&maps->light, turn, &lights);
-    const lighting by = {lights.lamps, lights.count, lights.rest.levels[0].data ? &lights.rest : NULL};
+    const lighting by = {lights.lamps, lights.count, found_lights_rest(&lights)};
     if (s == OK) s = relight_maps(model, maps, &by, how, out);
     env_map_free(&lights.rest);
     return result_of(s);

@@ -86,7 +86,7 @@ static vec3 turned(vec3 d, float degrees)
     return vec3_make(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
 }
 
-static status stand_rest(const merlin_found_light *light, float turn, env_map *out)
+static status stand_rest(const merlin_found_light *light, env_map *out)
 {
     img picture = {0};
     status s = picture_of_rest(light, &picture);
@@ -94,7 +94,6 @@ static status stand_rest(const merlin_found_light *light, float turn, env_map *o
     for (size_t i = 0; s == OK && i < img_value_count(&picture); i++)
         most = fmaxf(most, picture.data[i]);
     if (s == OK && most > 0) s = env_map_new(&picture, out);
-    if (s == OK && most > 0) env_map_turn(out, turn);
     img_free(&picture);
     return s;
 }
@@ -102,7 +101,6 @@ static status stand_rest(const merlin_found_light *light, float turn, env_map *o
 status found_light_stand(const merlin_found_light *light, float turn, found_lights *out)
 {
     *out = (found_lights){.count = 0};
-    merlin_found_light l = *light;
     if (!light->known)
         return fail(ERROR_INPUT, "the model of these maps knows one light alone and so found none in the photograph: "
                                  "estimate it by merlin-any");
@@ -110,12 +108,27 @@ status found_light_stand(const merlin_found_light *light, float turn, found_ligh
         out->lamps[out->count] = lamp_at(vec3_make(0, 0, 0));
         out->lamps[out->count++].tint = vec3_make(light->flash, light->flash, light->flash);
     }
-    vec3_put(turned(vec3_of(light->lamp), turn), l.lamp);
-    if (found_light_lamp(&l, &out->lamps[out->count])) out->count++;
-    status s = stand_rest(light, turn, &out->rest);
-    if (s == OK && out->count == 0 && !out->rest.levels[0].data)
+    out->fixed = out->count;
+    if (found_light_lamp(light, &out->lamps[out->count])) out->count++;
+    status s = stand_rest(light, &out->rest);
+    if (s == OK && out->count == 0 && !found_lights_rest(out))
         s = fail(ERROR_INPUT, "the light that was found in the photograph is dark");
+    if (s == OK) found_lights_turn(out, turn);
     return s;
+}
+
+const env_map *found_lights_rest(const found_lights *l)
+{
+    return l->rest.levels[0].data ? &l->rest : NULL;
+}
+
+void found_lights_turn(found_lights *l, float degrees)
+{
+    for (int i = l->fixed; i < l->count; i++) {
+        const vec3 about = l->lamps[i].distant ? vec3_make(0, 0, 0) : middle;
+        l->lamps[i].at = vec3_add(about, turned(vec3_sub(l->lamps[i].at, about), degrees));
+    }
+    if (found_lights_rest(l)) env_map_turn(&l->rest, degrees);
 }
 
 /* ---- the photograph rebuilt ---- */

@@ -28,15 +28,20 @@ bool found_light_is_flash(const merlin_found_light *light);
 /* The lamp as relighting has it; tint: its strength by channel. False where there is none. */
 bool found_light_lamp(const merlin_found_light *light, lamp *out);
 
-/* What was found as relighting takes it: flash and lamp, and surroundings of the rest's radiance where that is not dark
- * (else rest.levels[0] has no data), all but the flash turned about the vertical as env_map_turn does it, the lamp
- * about the object's middle. ERROR_INPUT where nothing is known or all is dark; ERROR_MEMORY. */
+/* The found light as relighting takes it. */
 typedef struct found_lights {
-    lamp lamps[2];
-    int count;
-    env_map rest;
+    lamp lamps[2]; /* the flash and the lamp, as far as there are any */
+    int count;     /* of lamps */
+    int fixed;     /* those before this one, the flash, do not turn */
+    env_map rest;  /* surroundings of everything else's radiance; found_lights_rest tells whether there are any */
 } found_lights;
+/* Makes them of what was found, turned by so many degrees. ERROR_INPUT where nothing is known or all is dark;
+ * ERROR_MEMORY. rest is to be freed by env_map_free. */
 status found_light_stand(const merlin_found_light *light, float turn, found_lights *out);
+/* Returns the surroundings, NULL where they are dark. */
+const env_map *found_lights_rest(const found_lights *l);
+/* Turns all but the flash further about the vertical as env_map_turn does it, the lamp about the object's middle. */
+void found_lights_turn(found_lights *l, float degrees);
 
 /* Adds flash, lamp and the rest to out (3 channels, the surface's size). visibility: 1 channel, of any size, of the
  * lamp; without data it reaches all that faces it. ERROR_MEMORY. */

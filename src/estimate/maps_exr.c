@@ -1,5 +1,7 @@
 /* maps.exr, both ways. Beside the maps it holds the photograph, so that a folder can be relit by the network too. */
+#include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,8 +45,10 @@ static bool outgrows_half(const merlin_image *photo)
     return largest > HALF_LARGEST || largest < dim;
 }
 
-/* The light that was found, where a model knows it: each field of merlin_found_light behind `known`. */
-enum { LIGHT_NUMBERS = 36 };
+/* merlinLight, where a model knows the light: the fields of merlin_found_light behind `known`, in their order. */
+enum { LIGHT_NUMBERS = 36, LIGHT_BEGINS = offsetof(merlin_found_light, flash) };
+static_assert(LIGHT_BEGINS + LIGHT_NUMBERS * sizeof(float) == sizeof(merlin_found_light),
+              "what a file holds of a light is all that stands behind `known`");
 /* Attributes that every file has, and all of them. */
 enum { ALWAYS = 8, MOST_ATTRIBUTES = ALWAYS + 2 };
 /* More is no light that a photograph can show. */
@@ -53,13 +57,7 @@ static const float MOST_LIGHT = 1e6f;
 static exr_attribute attribute_of_light(const merlin_found_light *l)
 {
     exr_attribute a = {.name = "merlinLight", .count = LIGHT_NUMBERS};
-    float *v = a.values;
-    *v++ = l->flash;
-    memcpy(v, l->lamp, sizeof l->lamp), v += 3;
-    *v++ = l->lamp_sure;
-    *v++ = l->lamp_distance;
-    memcpy(v, l->lamp_strength, sizeof l->lamp_strength), v += 3;
-    memcpy(v, l->rest, sizeof l->rest);
+    memcpy(a.values, (const char *)l + LIGHT_BEGINS, LIGHT_NUMBERS * sizeof *a.values);
     return a;
 }
 
@@ -182,19 +180,15 @@ static status read_mask_source(const exr_file *f, const char *path, merlin_maps 
 static status read_light(const exr_file *f, const char *path, merlin_found_light *l)
 {
     float numbers[LIGHT_NUMBERS];
-    const float *v = numbers;
     if (!exr_has_attribute(f, "merlinLight")) return OK;
     status s = take_numbers(f, path, "merlinLight", numbers, LIGHT_NUMBERS);
     if (s != OK) return s;
     for (int i = 0; i < LIGHT_NUMBERS; i++)
         if (!(fabsf(numbers[i]) <= MOST_LIGHT))
             return fail(ERROR_INPUT, "%s: merlinLight's %g is out of range", path, (double)numbers[i]);
-    l->flash = fmaxf(*v++, 0);
-    memcpy(l->lamp, v, sizeof l->lamp), v += 3;
-    l->lamp_sure = *v++;
-    l->lamp_distance = fmaxf(*v++, 0);
-    memcpy(l->lamp_strength, v, sizeof l->lamp_strength), v += 3;
-    memcpy(l->rest, v, sizeof l->rest);
+    memcpy((char *)l + LIGHT_BEGINS, numbers, sizeof numbers);
+    l->flash = fmaxf(l->flash, 0);
+    l->lamp_distance = fmaxf(l->lamp_distance, 0);
     l->known = 1;
     return OK;
 }

@@ -137,6 +137,28 @@ static merlin_found_light lamp_from(float aside, float turn, float strength, flo
                                 .lamp_strength = {strength, strength, strength}};
 }
 
+static void a_light_turned_by_steps_stands_as_one_turned_at_once(void **state)
+{
+    (void)state;
+    merlin_found_light light = lamp_from(40, 20, 1, 0.5f);
+    const float rounding = 1e-6f; /* of a few sums of values about 1 */
+    found_lights at_once, by_steps;
+    light.lamp_distance = 2;
+    light.rest[0][0] = light.rest[3][0] = 1;
+    assert_int_equal(found_light_stand(&light, 70, &at_once), OK);
+    assert_int_equal(found_light_stand(&light, 50, &by_steps), OK);
+    found_lights_turn(&by_steps, 15);
+    found_lights_turn(&by_steps, 5);
+    assert_int_equal(by_steps.count, 2);
+    for (int i = 0; i < 2; i++)
+        assert_true(vec3_length(vec3_sub(by_steps.lamps[i].at, at_once.lamps[i].at)) < rounding);
+    assert_true(vec3_length(by_steps.lamps[0].at) == 0); /* the flash stays at the lens */
+    for (int k = 0; k < 9; k++)
+        assert_true(fabsf(by_steps.rest.sh[k][0] - at_once.rest.sh[k][0]) < rounding);
+    env_map_free(&at_once.rest);
+    env_map_free(&by_steps.rest);
+}
+
 static void light_has_words(void **state)
 {
     (void)state;
@@ -168,6 +190,7 @@ int main(void)
         cmocka_unit_test(what_the_model_is_hardly_sure_of_is_no_lamp),
         cmocka_unit_test(flash_and_rest_add_up),
         cmocka_unit_test(what_hides_the_lamp_takes_its_light),
+        cmocka_unit_test(a_light_turned_by_steps_stands_as_one_turned_at_once),
         cmocka_unit_test(light_has_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
