@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "stereo/calibrate.h"
+#include "stereo/capture.h"
 
 static status refuse(const char *folder, const char *name)
 {
@@ -34,12 +36,11 @@ static const char *first_in(const char *folder, const char *const *names)
 /* What says of the pictures beside it where their lights were. */
 static bool holds_capture(const char *folder)
 {
-    static const char *const lists[] = {"lights.txt",           "lights.csv",     "lights.tsv", "lights.dat",
-                                        "light_directions.txt", "led_params.txt", NULL};
+    static const char *const data_sets[] = {"light_directions.txt", "led_params.txt", NULL};
     static const char *const endings[] = {".lp", NULL};
     char **names;
     size_t count = 0;
-    if (first_in(folder, lists)) return true;
+    if (first_in(folder, pst_list_names) || first_in(folder, data_sets)) return true;
     if (file_list(folder, endings, &names, &count) == OK) file_list_free(names, count);
     return count > 0;
 }
@@ -71,20 +72,37 @@ static bool begins_with(const char *line, const char *words)
 
 static bool is_ours(const char *line)
 {
-    return begins_with(line, "# Directions to the lights, found from") || begins_with(line, "# places of the lamps of");
+    return begins_with(line, PST_CALIBRATION_LIST) || begins_with(line, LIST_OF_PLACES);
+}
+
+enum { FIRST_LINE = 64 };
+
+/* Reads a file's first letters; false where there is no file, or nothing in it. */
+static bool read_first_line(const char *path, char line[FIRST_LINE])
+{
+    FILE *f = file_is_folder(path) ? NULL : file_open(path);
+    const bool got = f && fgets(line, FIRST_LINE, f);
+    if (f) fclose(f);
+    return got;
+}
+
+bool list_begins_with(const char *folder, const char *words)
+{
+    char *path = file_join(folder, "lights.txt"), line[FIRST_LINE];
+    const bool begins = path && read_first_line(path, line) && begins_with(line, words);
+    free(path);
+    return begins;
 }
 
 status check_list_replaced(const char *folder)
 {
-    char *path = file_join(folder, "lights.txt"), line[64];
+    char *path = file_join(folder, "lights.txt"), line[FIRST_LINE];
     if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
-    FILE *f = file_is_folder(path) ? NULL : file_open(path);
     status s = OK;
-    if (f && fgets(line, sizeof line, f) && !is_ours(line))
+    if (read_first_line(path, line) && !is_ours(line))
         s = fail(ERROR_OUTPUT,
                  "cannot write %s: it is no earlier result, and would be replaced; rename it, or choose another folder",
                  path);
-    if (f) fclose(f);
     free(path);
     return s;
 }

@@ -12,6 +12,11 @@
  * like will be written, too. */
 status check_replaced(const char *folder, bool meshes);
 
+/* The first words of a list of a near dome's lamps, by which relight knows it again. */
+#define LIST_OF_PLACES "# places of the lamps of dome_000"
+/* Tells whether the folder has a lights.txt that begins with these words. */
+bool list_begins_with(const char *folder, const char *words);
+
 /* ERROR_OUTPUT where the folder has a lights.txt that neither stereo calibrate nor relight --dome wrote. */
 status check_list_replaced(const char *folder);
 

@@ -148,11 +148,10 @@ static status run_model(comparison *c, int model)
 {
     merlin_model *m = NULL;
     size_t count = c->photos->count;
-    char *weights, *flash;
-    status s = photo_find_models(c->request->models[model], &weights, &flash);
-    if (s == OK) s = model_open_pair(weights, flash, &m);
+    char *weights = NULL;
+    status s = photo_find_model(c->request->models[model], &weights);
+    if (s == OK) s = (status)merlin_model_open(weights, &m);
     free(weights);
-    free(flash);
     for (size_t i = 0; i < count && s == OK; i++) {
         if (cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written");
         if (s == OK && !c->failed[i]) leave_out_bad(c, i, take_apart(c, m, i, model));
@@ -218,11 +217,10 @@ static status check_models(const request *r)
 {
     status s = OK;
     for (int i = 0; i < r->model_count && s == OK; i++) {
-        char *weights, *flash;
-        s = photo_find_models(r->models[i], &weights, &flash);
+        char *weights = NULL;
+        s = photo_find_model(r->models[i], &weights);
         if (s == OK) s = check_named("weights file", weights);
         free(weights);
-        free(flash);
     }
     return s;
 }

@@ -1,5 +1,4 @@
 /* A dome: pictures under lights spread evenly over the frontal hemisphere, for RTI tools and for merlin stereo. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,9 +8,6 @@
 #include "base/light_list.h"
 #include "cli/check_replaced.h"
 #include "cli/relight_work.h"
-
-/* The first words of a list of a near dome's lamps. */
-#define PLACES "# places of the lamps of dome_000"
 
 /* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
 static vec3 dome_direction(int i, int count)
@@ -62,8 +58,8 @@ static vec3 in_lens_space(const merlin_maps *maps, vec3 v)
 static void print_places(FILE *f, const void *context)
 {
     const relight_job *job = context;
-    fprintf(f, PLACES "%s and on, x y z from the camera: for merlin stereo --near --fov %.2f\n", relight_ending(job),
-            field_of_view(job->maps));
+    fprintf(f, LIST_OF_PLACES "%s and on, x y z from the camera: for merlin stereo --near --fov %.2f\n",
+            relight_ending(job), field_of_view(job->maps));
     for (int i = 0; i < job->dome.count; i++) {
         vec3 l = in_lens_space(job->maps, relight_dome_lamp(job, i).at);
         fprintf(f, "%.6f %.6f %.6f\n", (double)l.x, (double)l.y, (double)l.z);
@@ -84,24 +80,11 @@ static bool has_directions(const char *folder)
     return has;
 }
 
-static bool has_places(const char *folder)
-{
-    char *path = file_join(folder, "lights.txt"), begin[sizeof PLACES] = "";
-    FILE *f = path && file_exists(path) && !file_is_folder(path) ? fopen(path, "r") : NULL;
-    bool has = f && fgets(begin, sizeof begin, f) && strcmp(begin, PLACES) == 0;
-    if (f) fclose(f);
-    free(path);
-    return has;
-}
-
 /* A picture of a dome, that this one does not replace. */
 static bool is_left_over(const relight_job *job, const char *name)
 {
-    if (strncmp(name, "dome_", 5) != 0) return false;
-    for (int i = 5; i < 8; i++)
-        if (!isdigit((unsigned char)name[i])) return false;
-    bool replaced = strcmp(name + 8, relight_ending(job)) == 0 && atoi(name + 5) < job->dome.count;
-    return !replaced && (strcmp(name + 8, ".png") == 0 || strcmp(name + 8, ".jpg") == 0);
+    if (!relight_is_numbered(name, "dome_")) return false;
+    return strcmp(name + 8, relight_ending(job)) != 0 || atoi(name + 5) >= job->dome.count;
 }
 
 static status refuse(const relight_job *job, const char *name)
@@ -125,7 +108,7 @@ status relight_dome_check(const relight_job *job)
     file_list_free(names, count);
     if (s == OK && job->dome.near > 0 && has_directions(job->output)) s = refuse(job, "dome.lp");
     if (s == OK && job->dome.near > 0) s = check_list_replaced(job->output);
-    if (s == OK && job->dome.near == 0 && has_places(job->output)) s = refuse(job, "lights.txt");
+    if (s == OK && job->dome.near == 0 && list_begins_with(job->output, LIST_OF_PLACES)) s = refuse(job, "lights.txt");
     return s;
 }
 

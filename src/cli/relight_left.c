@@ -6,8 +6,7 @@
 #include "base/file.h"
 #include "cli/relight_work.h"
 
-/* kind_000.png and on. */
-static bool is_numbered(const char *name, const char *kind)
+bool relight_is_numbered(const char *name, const char *kind)
 {
     size_t length = strlen(kind);
     if (strncmp(name, kind, length) != 0) return false;
@@ -31,8 +30,8 @@ void relight_find_left(const relight_job *job, relight_result *result)
     if (file_list(job->output, endings, &paths, &count) != OK) return; /* the pictures are there all the same */
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(paths[i]);
-        const bool beside = (relight_count_whole(job) > 0 && is_numbered(name, "relit_")) ||
-                            (job->orbit > 0 && is_numbered(name, "frame_"));
+        const bool beside = (relight_count_whole(job) > 0 && relight_is_numbered(name, "relit_")) ||
+                            (job->orbit > 0 && relight_is_numbered(name, "frame_"));
         if (!beside || was_written(&result->files, paths[i])) continue;
         if (result->left++ == 0) snprintf(result->left_name, sizeof result->left_name, "%s", name);
     }

@@ -23,6 +23,8 @@ bool relight_surroundings_turn(const relight_job *job);
 const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
 /* The stage's square under so many lamps together; counts what is burnt out. */
 status relight_square(relight_work *w, const lamp *lights, int count, img *out);
+/* Tells whether a name is kind_000.png or .jpg, or one with another number; kind: with its "_". */
+bool relight_is_numbered(const char *name, const char *kind);
 /* ".png" or ".jpg" */
 const char *relight_ending(const relight_job *job);
 

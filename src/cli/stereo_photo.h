@@ -9,8 +9,9 @@
 #include "stereo/solve.h"
 
 typedef struct stereo_photo {
-    const char *photo, *mask, *weights,
-        *flash; /* flash: as of photo_find_models; photo: or a folder of merlin estimate's, whose maps are taken */
+    const char *photo;           /* or a folder of merlin estimate's, whose maps are taken */
+    const char *mask;            /* the photograph's, or NULL */
+    const char *weights, *flash; /* as of photo_find_models */
     merlin_params params;
     pst_method method;  /* PST_AUTO: near */
     const watch *watch; /* told of the stages; may be NULL */

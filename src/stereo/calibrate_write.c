@@ -12,7 +12,7 @@ static status write_lights(const pst_calibration *c, const char *path)
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return fail(ERROR_MEMORY, "no memory for a list of lights");
-    fprintf(out, "# Directions to the lights, found from a %s ball: x right, y up, z toward the camera.\n",
+    fprintf(out, PST_CALIBRATION_LIST " a %s ball: x right, y up, z toward the camera.\n",
             c->ball == PST_CHROME ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];

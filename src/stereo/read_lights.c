@@ -9,6 +9,8 @@
 #include "stereo/capture_parts.h"
 #include "stereo/match_lights.h"
 
+const char *const pst_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
+
 status pst_find_named(const char *folder, const char *const *usual, char **path)
 {
     char **names;
@@ -30,10 +32,9 @@ status pst_find_named(const char *folder, const char *const *usual, char **path)
 /* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
 static status find_lights(const char *folder, const char *asked, char **path)
 {
-    static const char *const usual[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
     size_t found = 0;
     *path = NULL;
-    status s = asked ? OK : pst_find_named(folder, usual, path);
+    status s = asked ? OK : pst_find_named(folder, pst_list_names, path);
     if (s == OK && !*path) s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
     if (s != OK || found < 2) return s;
     free(*path);
