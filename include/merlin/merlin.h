@@ -195,7 +195,7 @@ typedef struct merlin_maps {
     merlin_mask_source mask_source;
     int has_environment;      /* the model knows of surroundings beside the flash: */
     float environment[9][3];  /* those of the photograph as it sees them, spherical harmonics of radiance per channel */
-    merlin_found_light light; /* what the photograph is lit by */
+    merlin_found_light light; /* the photograph's */
     float mask_confidence;    /* 1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it) */
     char model[64];
     merlin_timing timing;
@@ -208,7 +208,7 @@ typedef struct merlin_maps {
     struct {
         float normal, albedo, roughness, depth; /* shares of the object, in [0, 1]: normals that were not unit and were
                                                  * made so; the others out of their range, to which they were clamped */
-    } mended;                                   /* of maps that were read */
+    } mended;                                   /* zeros but of maps that were read */
 } merlin_maps;
 
 /* photo: 3 channels, at least 16 pixels a side and at most 64 million pixels. mask: 1 channel of the same size,
@@ -225,7 +225,7 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
 /* maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or, after a
  * failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. */
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder);
-/* From the maps.exr of such a folder, edited or not: values that are not finite, and maps that are wholly out of their
+/* Reads maps.exr of such a folder, edited or not: values that are not finite, and maps that are wholly out of their
  * range or of another size than was written, are MERLIN_BAD_INPUT. The reconstruction stays without data. */
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
 
@@ -259,7 +259,7 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
                                          const merlin_environment *environment, const float *light,
                                          merlin_relighting how, merlin_image *out);
 
-/* The object in the light that was found in the photograph (maps.light), its lamp and surroundings turned about the
+/* Relights by the light that was found in the photograph (maps.light), its lamp and surroundings turned about the
  * vertical by so many degrees: at 90 what was straight ahead of the camera is to its right; a flash stays at the lens.
  * MERLIN_BAD_INPUT where the model found none; not MERLIN_BY_NETWORK. */
 merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,

@@ -331,7 +331,7 @@ bool file_ends_in_any(const char *name, const char *const *endings)
     return false;
 }
 
-/* Of the numbers that begin here, moved behind both. */
+/* Compares the numbers that begin here, and moves behind both. */
 static int compare_numbers(const char **a, const char **b)
 {
     const char *x = *a + strspn(*a, "0"), *y = *b + strspn(*b, "0");

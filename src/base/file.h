@@ -71,7 +71,7 @@ char *file_in_scratch(const char *name);
 bool file_ends_in(const char *name, const char *ending);
 bool file_ends_in_any(const char *name, const char *const *endings);
 
-/* As strcmp, but with numbers as people count: 9.png before 10.png, 2.png and 02.png before 3.png. */
+/* Compares as strcmp does, but numbers as people count: 9.png before 10.png, 2.png and 02.png before 3.png. */
 int file_compare_names(const char *a, const char *b);
 
 /* The plain files of a folder whose names end in one of the endings (file_ends_in_any), sorted by name with numbers as

@@ -25,7 +25,7 @@ static bool is_file_in(const char *folder, const char *name)
     return is;
 }
 
-/* The first of the names that a file of the folder has; NULL if none has. */
+/* Returns the first of the names that a file of the folder has; NULL if none has. */
 static const char *first_in(const char *folder, const char *const *names)
 {
     while (*names && !is_file_in(folder, *names))
@@ -33,7 +33,7 @@ static const char *first_in(const char *folder, const char *const *names)
     return *names;
 }
 
-/* What says of the pictures beside it where their lights were. */
+/* Tells whether the folder has a file that says where the lights of the pictures beside it were. */
 static bool holds_capture(const char *folder)
 {
     static const char *const data_sets[] = {"light_directions.txt", "led_params.txt", NULL};

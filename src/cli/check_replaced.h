@@ -1,5 +1,5 @@
-/* Whether a command would write over what is not its own, looked at before anything that takes time. Its own results
- * are replaced: whoever runs it again wants that. */
+/* Refusals to write over what is not a command's own, before anything that takes time. Its own results are replaced:
+ * whoever runs it again wants that. */
 #ifndef MERLIN_CLI_CHECK_REPLACED_H
 #define MERLIN_CLI_CHECK_REPLACED_H
 

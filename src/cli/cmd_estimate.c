@@ -156,7 +156,7 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
 
 enum { LIT_BY = LIGHT_WORDS + 96 };
 
-/* What a model of any light sees, and which of two models the maps are by. */
+/* Writes words for the light that a model of any light sees, or for the other of two models that the maps are by. */
 static const char *lit_by(const request *r, const merlin_maps *maps, char words[LIT_BY])
 {
     char light[LIGHT_WORDS];

@@ -76,7 +76,7 @@ static void restyle(lamp_options *lamps)
     if (lamps->count) lamps->at[lamps->count - 1].tint = lamp_tint(&lamps->style[lamps->count - 1]);
 }
 
-/* Of one lamp, or of all that have none of their own. */
+/* Notes that an option was given, which it may be once for a lamp, and once for all that have none of their own. */
 static status mark(bool *given, const char *option)
 {
     if (*given) return fail(ERROR_USAGE, "%s is given twice for the same lamps", option);

@@ -63,8 +63,9 @@ const char *photo_without_maps_name(char *input);
  * beside the program or above it (a build folder in the source tree), else in share/merlin/models; *path is malloc'ed.
  */
 status photo_find_model(const char *asked, char **path);
-/* The same for photographs of any light: where nothing is asked, and merlin-any is there, that one, and *flash is
- * merlin-point for those that it sees lit by a flash alone; else *flash is NULL. Both are malloc'ed. */
+/* Finds the weights for photographs of any light: as photo_find_model does, but merlin-any where nothing is asked and
+ * it is there, and then *flash is merlin-point, for those that it sees lit by a flash alone; else *flash is NULL. Both
+ * are malloc'ed. */
 status photo_find_models(const char *asked, char **path, char **flash);
 
 /* The values of --size, and of --exposure ("auto" or EV), for a row of cli/options.h; into is a merlin_params. */

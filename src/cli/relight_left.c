@@ -1,4 +1,4 @@
-/* What an earlier run left beside the pictures: nothing is removed that this run has not made, but it is said. */
+/* Pictures that an earlier run left beside these: they are not removed, for this run has not made them, but told of. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>

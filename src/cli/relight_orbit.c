@@ -33,7 +33,7 @@ static status write_animations(const relight_work *w, const img_animation *frame
     return s;
 }
 
-/* Where surroundings turn, a step further for each frame, lamps of the user's stay where they are. */
+/* Renders frame i. Surroundings turn a step further for each, and the user's lamps stay where they are then. */
 static status render_frame(relight_work *w, env_map *environment, int i, relight_sheet *some, img *frame)
 {
     const relight_job *job = w->job;

@@ -29,7 +29,7 @@ size_t relight_count_whole(const relight_job *job)
 
 /* ---- one picture ---- */
 
-/* The least that is not 0 in a file of 8 bits. */
+/* The least linear value that is not 0 in a file of 8 bits. */
 static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
 static const double LITTLE_LIT = 0.01;
 

@@ -17,11 +17,11 @@ typedef struct relight_work {
 
 /* ERROR_STOPPED if the job is to stop. */
 status relight_check(const relight_work *w);
-/* Whether surroundings go round in an orbit, and no lamp. */
+/* Tells whether surroundings go round in an orbit, and no lamp. */
 bool relight_surroundings_turn(const relight_job *job);
 /* Returns the lamps that shine together in picture i, and how many: the found light's, else the user's i-th, if any. */
 const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
-/* The stage's square under so many lamps together; counts what is burnt out. */
+/* Renders the stage's square under so many lamps together; counts what is burnt out. */
 status relight_square(relight_work *w, const lamp *lights, int count, img *out);
 /* Tells whether a name is kind_000.png or .jpg, or one with another number; kind: with its "_". */
 bool relight_is_numbered(const char *name, const char *kind);

@@ -23,8 +23,8 @@ struct merlin_model {
 /* flash: weights for merlin_model_add_flash, or NULL. */
 status model_open_pair(const char *weights, const char *flash, merlin_model **out);
 
-/* That which made the maps, the flash's for those of others: it knows how light goes on between surfaces where that of
- * a flash is all it is given. By the relighting decoder, one that has it. */
+/* Returns the network that made the maps; for maps of others the flash's, which knows how light goes on between
+ * surfaces where a flash's is all it is given. To relight by the decoder it is one that has it. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
 /* Makes programs for photographs of this size and so many views before one is there: of a pair of networks what tells
@@ -100,8 +100,8 @@ status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white
 status stage_surround(stage *s, const env_map *environment);
 /* ERROR_USAGE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
 status stage_check(merlin_relighting how, const lamp *light, bool environment);
-/* The square under so many lamps together and the stage's environment, one of all at least and as stage_check wants
- * them, bounces included: 3 channels in [0, 1] of `white`. */
+/* Renders the square under so many lamps together and the stage's environment, one of all at least and as stage_check
+ * wants them, bounces included: 3 channels in [0, 1] of `white`. */
 status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out);
 
 /* Where merlin_maps_write writes, and what only the command line asks of it; each but folder may be NULL. */
@@ -120,7 +120,7 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const maps_outpu
 /* report.json's text, malloc'ed; NULL if memory ran out. */
 char *maps_report(const merlin_maps *maps);
 status maps_write_exr(const merlin_maps *maps, const char *path);
-/* The attribute of maps.exr that tells, after an editor has had it, whether it still is of the size it was. */
+/* Makes the attribute of maps.exr that tells, after an editor has had it, whether it still is of the size it was. */
 exr_attribute maps_picture_size(int width, int height);
 /* All maps of the file's size and what it holds of them; roughness and photo, unless photographed, are not looked for
  * and stay zero. ERROR_INPUT for maps that nothing can be made of (maps_examine.h); path is for messages. After a

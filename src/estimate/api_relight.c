@@ -31,7 +31,7 @@ static status put_back(const merlin_maps *maps, const img *square, const img *ma
     return s;
 }
 
-/* What maps are relit by: lamps together, and surroundings or NULL. */
+/* The light that maps are relit by: lamps together, and surroundings or NULL. */
 typedef struct lighting {
     const lamp *lamps;
     int count;
@@ -58,7 +58,7 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const l
     return s;
 }
 
-/* Under the point light, the environment, or both. */
+/* Relights by the point light, the environment, or both. */
 static status relight_by(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
                          merlin_relighting how, merlin_image *out)
 {

@@ -20,8 +20,8 @@ bool crop_is_sound(crop_square c);
 /* mask: 1 channel; a pixel belongs to the object from 0.5 on. ERROR_INPUT if fewer than 64 pixels do. */
 status crop_around(const img *mask, crop_square *out);
 
-/* Whether the object lies in the square, but for `slack` pixels a side, and is at least as long as this share of the
- * square's side. */
+/* Tells whether the object lies in the square, but for `slack` pixels a side, and is at least as long as this share of
+ * the square's side. */
 bool crop_holds(const img *mask, crop_square c, int slack, float least_share);
 
 /* The crop out of an image of the photograph's size, zero where it hangs over; and back into a zeroed image of that

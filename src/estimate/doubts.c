@@ -250,7 +250,7 @@ static double percent(float share)
     return 100 * (double)share;
 }
 
-/* Of maps that were read. */
+/* Writes the words for a doubt of maps that were read, and mended. */
 static int mended_words(const merlin_maps *maps, merlin_doubt doubt, char *text, size_t size)
 {
     switch (doubt) {

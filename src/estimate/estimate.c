@@ -299,7 +299,8 @@ static status judge_light(work *w, const merlin_image *photo, float gain)
     return light_cues_find(&w->low.maps, &w->low_photo, &frame, &w->cues);
 }
 
-/* The caller may have had some of it compiled before, and the question which network it is another. */
+/* Adds what compiling took: the caller may have had some of it done before, and the question which network it is more.
+ */
 static status lap_compile(const merlin_model *model, work *w, double *seconds)
 {
     double passed = 0;
@@ -309,7 +310,7 @@ static status lap_compile(const merlin_model *model, work *w, double *seconds)
     return s;
 }
 
-/* What came before makes room where nothing wants it any more. */
+/* Makes the network of the finer normals ready; the one before makes room if nothing wants it any more. */
 static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
 {
     if (w->last) network_release_maps(n);

@@ -61,7 +61,7 @@ bool found_light_lamp(const merlin_found_light *light, lamp *out)
 
 enum { REST_WIDTH = 128, REST_HEIGHT = 64 };
 
-/* The coefficients' radiance, which three bands of a bright sky may bring below zero: that is dark. */
+/* Draws the coefficients' radiance. Three bands of a bright sky may bring it below zero, which is dark. */
 static status picture_of_rest(const merlin_found_light *light, img *out)
 {
     status s = img_new(out, REST_WIDTH, REST_HEIGHT, 3);

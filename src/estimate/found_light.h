@@ -12,20 +12,19 @@
 #include "image/public.h"
 #include "model/model.h"
 
-/* From the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */
+/* Takes the light from the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out);
 
-/* Of all light that arrives in the object's middle, in the mean of the channels: from its lamp wherever that stands,
- * and of the rest what reaches a surface that faces the camera. They add up to 1, or are zeros where nothing is known.
- */
+/* Shares of all light that arrives in the object's middle, in the mean of the channels: the lamp's wherever that
+ * stands, and of the rest what reaches a surface that faces the camera. They add up to 1; zeros: nothing is known. */
 typedef struct found_light_shares {
     float flash, lamp, rest;
 } found_light_shares;
 found_light_shares found_light_share(const merlin_found_light *light);
-/* Whether the flash's is so much that what else there is may be a mistake. */
+/* Tells whether the flash's share is so large that what else there is may be a mistake. */
 bool found_light_is_flash(const merlin_found_light *light);
 
-/* The lamp as relighting has it; tint: its strength by channel. False where there is none. */
+/* Makes the lamp as relighting has it, its tint the strength by channel; false where there is none. */
 bool found_light_lamp(const merlin_found_light *light, lamp *out);
 
 /* The found light as relighting takes it. */

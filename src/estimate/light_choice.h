@@ -1,4 +1,5 @@
-/* Which of two networks sees a photograph: one of any light, or one that knows a flash at the lens alone, and better.
+/* The choice between two networks for a photograph: one of any light, and one that knows a flash at the lens alone, and
+ * better.
  *
  *     network *n;
  *     status s = light_choice(any, flash, &(light_question){&photo, &mask, &how, shot.flash}, &n);

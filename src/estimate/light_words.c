@@ -9,7 +9,7 @@
 static const float NAMED = 1 / 7.0f;
 enum { LAMP_WORDS = 96 }; /* leaves room for what else there is */
 
-/* From where, as the camera sees it: a lamp less than 5 degrees aside stands by the lens. */
+/* Says where a lamp is as the camera sees it; one less than 5 degrees aside stands by the lens. */
 static void lamp_words(const merlin_found_light *light, char words[LAMP_WORDS])
 {
     const float right = light->lamp[0], up = light->lamp[1], aside = hypotf(right, up);

@@ -10,7 +10,7 @@
 
 enum { LIGHT_WORDS = 128 };
 
-/* What sends a seventh of the light or more is named; "" where nothing is known. */
+/* Names what sends a seventh of the light or more; "" where nothing is known. */
 void light_words(const merlin_found_light *light, char words[LIGHT_WORDS]);
 
 #endif

@@ -15,13 +15,13 @@ static const double MUCH = 0.1, WORTH_A_WORD = 0.01;
 /* ---- what each map can be ---- */
 
 typedef struct range {
-    const char *prefix;    /* of channels' names */
-    float low, high;       /* what is beyond is clamped later on */
-    float lowest, highest; /* what is beyond is none of these maps' values at all */
+    const char *prefix;    /* channels' names begin so */
+    float low, high;       /* values beyond are clamped later on */
+    float lowest, highest; /* values beyond are none of these maps' at all */
     const char *words;
 } range;
 
-/* Half's rounding is allowed for. */
+/* Ranges of an estimate's maps; they allow for half's rounding. */
 static const range of_estimates[] = {
     {"albedo.", -0.01f, 1.01f, -0.5f, 2, "the linear albedo in [0, 1]"},
     {"roughness.", 0.029f, 1.001f, -0.1f, 1.5f, "the roughness in [0.03, 1]"},
@@ -50,10 +50,10 @@ static const range *range_of(const range *table, const char *name)
 
 /* ---- one channel ---- */
 
-/* Numbers of pixels. */
+/* The findings of one channel. */
 typedef struct tally {
-    size_t infinite, first; /* of those that are not finite the first pixel */
-    size_t off, far;        /* of the object: beyond a range, and far beyond */
+    size_t infinite, first; /* pixels that are not finite, and the first of them */
+    size_t off, far;        /* the object's pixels beyond a range, and far beyond */
     float lowest, highest;
 } tally;
 

@@ -1,5 +1,5 @@
-/* Whether maps that were read are what merlin estimate and merlin stereo write: anybody may have edited the file, and
- * what cannot be would be clamped without a word.
+/* An examination of maps that were read, whether they can be what merlin estimate and merlin stereo write: anybody may
+ * have edited the file, and what cannot be would be clamped without a word.
  *
  *     status s = maps_examine("cup.merlin/maps.exr", targets, count, &maps);
  *     if (s == OK) s = maps_check_crop("cup.merlin/maps.exr", true, &maps);

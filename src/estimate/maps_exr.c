@@ -212,7 +212,7 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
 
 /* ---- its pixels ---- */
 
-/* The crop, focal lengths and depths in pixels are of the size that was written. */
+/* Refuses a file of another size than was written: the crop, focal lengths and depths in pixels are of that one. */
 static status check_picture(const exr_file *f, const char *path)
 {
     const exr_frame seen = exr_display(f);

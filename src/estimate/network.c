@@ -21,8 +21,8 @@ typedef struct compiled {
 struct network {
     model_config config;
     nn_params *params;                                     /* NULL until they are asked for, */
-    char *weights;                                         /* of which the file is this */
-    pthread_mutex_t lock;                                  /* of the programs: a run uses their buffers */
+    char *weights;                                         /* their file */
+    pthread_mutex_t lock;                                  /* guards the programs, whose buffers a run uses */
     compiled lights, maps, normals, look, relit, indirect; /* lights, normals: alone; these of larger pictures */
     double compile_seconds;
 };

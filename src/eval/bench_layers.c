@@ -45,7 +45,7 @@ static status measure_once(const bench_layers_options *o, bench_layer_run *run, 
     return s;
 }
 
-/* The same layers, computed in the other ways. */
+/* Measures the same layers computed in the other ways. */
 static status measure_ways(const bench_layers_options *o, bench_layer_run *run)
 {
     for (int all = 0; all <= 1; all++) {

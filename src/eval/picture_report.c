@@ -12,7 +12,7 @@ typedef struct summary {
     int as_flash, lights; /* lights: how many were found */
 } summary;
 
-/* The median of what was found; NAN if memory ran out or nothing was. */
+/* Returns the median of the lights that were found; NAN if memory ran out or none was. */
 static double median_light(const picture_column *o, int *found)
 {
     double *all = malloc(((size_t)o->count + 1) * sizeof *all);

@@ -22,7 +22,7 @@ typedef struct run {
 
 /* ---- one picture ---- */
 
-/* Of a distant light, whose direction is the same from everywhere. */
+/* Returns how far a light stands aside, in degrees; NAN of a near one, whose direction differs from place to place. */
 static double aside_of(const pst_capture *c, int i)
 {
     if (c->lighting != PST_DISTANT) return (double)NAN;

@@ -1,4 +1,4 @@
-/* What an estimate from one picture is worth, for every picture of real captures: each is lit by a lamp from elsewhere.
+/* Errors of an estimate from one picture, for every picture of real captures: each is lit by a lamp from elsewhere.
  *
  *     picture_options options = {.folder = folders, .count = 2, .weights = "merlin-any.safetensors"};
  *     picture_table table;
@@ -18,10 +18,10 @@
 #include "base/status.h"
 
 typedef struct picture_score {
-    char name[64]; /* of the file */
+    char name[64]; /* the file's */
     double aside;  /* degrees from the line to the camera to the light; NAN: a near light's */
     double error;  /* mean angle of normals, degrees */
-    double light;  /* how far the lamp that was found is off, degrees; NAN where none was */
+    double light;  /* degrees by which the lamp that was found is off; NAN where none was */
     bool as_flash; /* another model saw it, for flashes alone */
 } picture_score;
 
@@ -52,7 +52,7 @@ typedef struct picture_options {
 status picture_table_run(const picture_options *options, picture_table *out);
 void picture_table_free(picture_table *t);
 
-/* An object a line: its frontal picture, the mean over all, the worst, and the median of its lights. */
+/* Prints an object a line: its frontal picture, the mean over all, the worst, and the median of its lights. */
 void picture_table_print(const picture_table *t, FILE *stream);
 /* Every picture; malloc'ed, NULL if memory ran out. */
 char *picture_table_json(const picture_table *t);

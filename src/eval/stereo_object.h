@@ -32,9 +32,9 @@ status stereo_object_list(const char *folder, char ***path, size_t *count);
 status stereo_object_read(const char *path, stereo_object *out);
 void stereo_object_free(stereo_object *o);
 
-/* The picture whose light is nearest to a flash. */
+/* Returns the picture whose light is nearest to a flash. */
 int stereo_object_frontal(const pst_capture *c);
-/* A picture of a capture as a photograph, its light as if it were white: 3 channels, linear in [0, 1]. */
+/* Makes a photograph of a capture's picture, its light as if it were white: 3 channels, linear in [0, 1]. */
 status stereo_object_photo(const pst_capture *c, int picture, img *photo);
 
 #endif

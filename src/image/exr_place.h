@@ -10,8 +10,8 @@
 #include "image/exr.h"
 #include "image/image.h"
 
-/* What of the values lies in the frame, and zero around it. The frame's sides must be those of an image; after a
- * failure the image is as it was. */
+/* Gives the image the frame's size: the values that lie in it, and zero around them. The frame's sides must be those of
+ * an image; after a failure the image is as it was. */
 status exr_place(const exr_frame *frame, img *image);
 
 #endif

@@ -105,7 +105,7 @@ static status check_frame(const exr_file *f, const char *path)
     return picture_check_sides(path, d.width, d.height);
 }
 
-/* Of some of R, G and B neither a grey nor a coloured picture can be made. */
+/* Says which channels are missing: some of R, G and B alone make neither a grey nor a coloured picture. */
 static status refuse_channels(const exr_file *f, const char *path)
 {
     for (int c = 0; c < 3; c++) {

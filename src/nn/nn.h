@@ -158,7 +158,7 @@ typedef enum nn_purpose {
     NN_INFER, /* batch norm by running statistics, folded into the convolution before it */
     NN_TRAIN, /* batch statistics; nn_backward works */
 } nn_purpose;
-/* Which 3×3 convolutions are computed by Winograd's filtering: those that are faster so by what was measured on a
+/* The 3×3 convolutions that are computed by Winograd's filtering: those that are faster so by what was measured on a
  * processor of this kind, or, to measure it, none or all that can be. */
 typedef enum nn_filtering { NN_FILTER_FASTER, NN_FILTER_NONE, NN_FILTER_ALL } nn_filtering;
 

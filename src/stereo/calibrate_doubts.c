@@ -1,16 +1,16 @@
-/* Whether what a calibration found fits the pictures: the shading a matte ball's, the mask a ball's. */
+/* Doubts that a calibration fits its pictures: the shading may be no matte ball's, the mask no ball's. */
 #include <math.h>
 
 #include "stereo/calibrate_parts.h"
 
-/* Of the light, root mean square: balls of paint leave 0.004 to 0.04; a third of a radius beside the ball, or a mirror
- * for a matte one, 0.07 to 0.2; sRGB's tones for linear ones 0.13. */
+/* The share of the light, root mean square, that shading leaves unexplained: of balls of paint 0.004 to 0.04; a third
+ * of a radius beside the ball, or of a mirror for a matte one, 0.07 to 0.2; of sRGB's tones for linear ones 0.13. */
 static const float UNLIKE = 0.055f;
-/* Of what the mask and the circle fitted to its edge cover: a square has 0.82. */
+/* The overlap of a mask and the circle fitted to its edge, below which it is no disc: a square has 0.82. */
 static const float ROUND = 0.9f;
 /* Shares of two circles along which the pictures have an edge. */
 static const float HARDLY = 0.2f, PLAINLY = 0.8f;
-/* Of a radius, by which circles differ. */
+/* The share of a radius from which on two circles are different ones. */
 static const float ELSEWHERE = 0.08f;
 
 static void doubt_shading(pst_calibration *c)
@@ -32,7 +32,7 @@ static bool is_within(const pst_circle *c, int x, int y)
     return hypotf((float)x + 0.5f - c->x, (float)y + 0.5f - c->y) < c->radius;
 }
 
-/* The share of both of all that either covers; of a mask that is white beside the ball, likewise. */
+/* Returns the share that both cover of all that either does. The mask may be white on the ball or beside it. */
 static double overlap(const img *mask, const pst_circle *c)
 {
     size_t both = 0, either = 0, other_both = 0, other_either = 0;
@@ -52,7 +52,7 @@ static bool is_elsewhere(const pst_circle *a, const pst_circle *b)
     return hypotf(a->x - b->x, a->y - b->y) + fabsf(a->radius - b->radius) > ELSEWHERE * a->radius;
 }
 
-/* A circle that is plainly seen where the mask's is not. */
+/* Doubts the mask's circle where another is plainly seen and it is not. */
 static status doubt_place(const img *outlines, pst_calibration *c)
 {
     pst_circle seen;

@@ -8,7 +8,7 @@
  * none. */
 status ball_find(const img *picture, const pst_circle *beside, pst_circle *circle, bool *found);
 
-/* The share of a circle along which the picture has an edge. */
+/* Measures the share of a circle along which the picture has an edge. */
 status ball_share_seen(const img *picture, const pst_circle *circle, float *share);
 
 /* A circle around one that was found, all along which the picture, of logarithms, steps sharply up or down

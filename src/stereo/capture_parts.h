@@ -26,8 +26,8 @@ status pst_find_ambient(const char *folder, const char *picture, char **path);
  * which may be NULL, nor beside them by its name. */
 status pst_list_skipped(const char *folder, const char *mask, const char *ambient, pst_capture *c);
 
-/* The folder's file of the first of these names, which end in NULL, that it has, in capitals or not; *path is NULL
- * without one. Free it. */
+/* Finds the folder's file of the first of these names, which end in NULL, that it has, in capitals or not; *path is
+ * NULL without one. Free it. */
 status pst_find_named(const char *folder, const char *const *usual, char **path);
 /* Finds light_intensities.txt or a file of a name like it, in the folder or beside the list of lights (NULL: there is
  * none), likewise. ERROR_INPUT where there are two. */

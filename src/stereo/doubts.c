@@ -147,7 +147,7 @@ static void doubt_exposure(const pst_capture *c, warnings *out)
             100 * (double)burnt / (double)seen);
 }
 
-/* The brightest that a pixel is in any picture, as a share of full scale. */
+/* Returns how bright a pixel is where it is brightest, as a share of full scale. */
 static float brightest_at(const pst_capture *c, size_t pixel)
 {
     size_t channels = (size_t)c->channels;

@@ -28,7 +28,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The median: outlines and cast shadows, which no model here knows, leave much in few pixels. */
+/* Finds the median: outlines and cast shadows, which no model here knows, leave much in few pixels. */
 static status typical_residual(const pst_capture *c, const pst_surface *s, double *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
@@ -42,7 +42,7 @@ static status typical_residual(const pst_capture *c, const pst_surface *s, doubl
     return OK;
 }
 
-/* What cannot be solved explains nothing. */
+/* Solves the pictures and measures what is left: everything where they cannot be solved, which explains nothing. */
 static status residual_of(const pst_capture *c, pst_method method, double *left)
 {
     pst_surface found;
@@ -138,8 +138,8 @@ static uint16_t other_tone(uint16_t code, bool linear)
     return (uint16_t)lrintf(65535 * (linear ? srgb_decode(value) : srgb_encode(value)));
 }
 
-/* What is left of the pictures as if 8 bits had meant the other of the two things that they usually mean; changes them.
- */
+/* Changes the pictures as if 8 bits had meant the other of the two things that they usually mean, and measures what is
+ * left. */
 static status with_other_tones(check *c, bool linear, double *left)
 {
     for (int k = 0; k < c->small.count; k++)

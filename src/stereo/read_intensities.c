@@ -157,7 +157,8 @@ static status read_intensities(const char *path, const char *folder, pst_capture
     return s;
 }
 
-/* The first of a folder's, unless *path is one already that says the same of the lights. */
+/* Finds a folder's file of intensities; refuses it where there is one already (*path): both say the same of the lights.
+ */
 static status find_in(const char *folder, char **path)
 {
     static const char *const bases[] = {"light_intensities", "light_intensity", "intensities"};

@@ -17,7 +17,7 @@ static const float FLOAT_DIM = 0.1f;
 /* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
 enum { READERS = 4 };
 
-/* A picture's values that are not dark, that are below the ambient picture's, and that are others than these. */
+/* Numbers of a picture's values that are not dark, that are below the ambient picture's, and that differ from these. */
 typedef struct ambient_sums {
     size_t lit, below, other;
 } ambient_sums;
@@ -196,7 +196,8 @@ static status read_ambient(reading *r, const char *asked, const pst_capture *c)
     return r->beside ? OK : fail(ERROR_MEMORY, "no memory for %d sums", c->count);
 }
 
-/* The first picture that has the ambient picture's values, NULL if none has; pictures of nothing are all alike. */
+/* Returns the first picture that has the ambient picture's values, NULL if none has; dark ones, which are all alike, do
+ * not count. */
 static const char *copied_as_ambient(const reading *r)
 {
     for (int i = 0; i < r->into->count; i++)
@@ -204,7 +205,8 @@ static const char *copied_as_ambient(const reading *r)
     return NULL;
 }
 
-/* What is left when a picture under a light, or another exposure, is subtracted is no picture. */
+/* Refuses or doubts an ambient picture that is one under a light, or of another exposure: less that, a picture shows
+ * nothing. */
 static status check_ambient(const reading *r, pst_capture *c)
 {
     static const double few = 0.05, all = 0.95;

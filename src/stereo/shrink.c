@@ -124,7 +124,7 @@ status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst
     return OK;
 }
 
-/* Those pictures and their lights come first, in arrays of the caller's. */
+/* Puts these pictures and their lights into the arrays of `some`, which are the caller's, and shrinks them. */
 static status shrink_some(const pst_capture *c, int pixels, const int picture[], pst_capture *some, pst_capture *out)
 {
     size_t inside = 0;

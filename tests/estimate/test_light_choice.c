@@ -1,4 +1,4 @@
-/* Of two models the one for the light of a photograph: by its photographer's word, its camera's, or what the first
+/* The choice of a model for the light of a photograph: by its photographer's word, its camera's, or what the first
  * sees. */
 #include <limits.h>
 #include <math.h>
@@ -52,7 +52,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* A model that sees this light in every photograph. */
+/* Makes the model of any light see this one in every photograph. */
 static void see(const fixture *f, const float code[MODEL_LIGHTS])
 {
     model_config config;
@@ -71,7 +71,7 @@ static void see(const fixture *f, const float code[MODEL_LIGHTS])
     nn_params_free(params);
 }
 
-/* The name of the model whose maps are given out. */
+/* Returns the name of the model whose maps are given out. */
 static const char *made_by(const fixture *f, const merlin_params *asked, char name[64])
 {
     merlin_params p = *asked;

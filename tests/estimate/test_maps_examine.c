@@ -9,7 +9,7 @@
 
 enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT, RADIUS = 15 };
 
-/* A ball of radius RADIUS pixels in the middle. */
+/* Makes maps of a ball of radius RADIUS pixels in the middle. */
 static merlin_maps ball(int width, int height)
 {
     merlin_maps m = {.size = 256, .gain = 1, .mask_confidence = 1, .model = "none"};
@@ -97,7 +97,7 @@ static void patch(const char *name, const char *type, const void *value, size_t 
     overwrite(name, strlen(name) + strlen(type) + 6, value, size);
 }
 
-/* To a name of the same length. */
+/* Gives an attribute another name of the same length. */
 static void rename_attribute(const char *name, const char *to)
 {
     overwrite(name, 0, to, strlen(to));

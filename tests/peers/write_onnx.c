@@ -1,9 +1,10 @@
-/* The network of a weights file as an ONNX model, with an input and what this project makes of it, and how long that
- * takes: to be held against another engine (tools/compare-onnxruntime).
+/* Writes the network of a weights file as an ONNX model, with an input and what this project makes of it, and how long
+ * that takes, to be held against another engine (tools/compare-onnxruntime).
  *
- *     write_onnx WEIGHTS SIDE FOLDER      network.onnx, NAME.in and NAME.out of all inputs and outputs (float32, as
- * ONNX has them: channels first), tensors.txt: "in|out NAME N C H W" a line write_onnx WEIGHTS SIDE milliseconds of the
- * best and the median of 20 runs in float32 */
+ *     write_onnx WEIGHTS SIDE FOLDER      network.onnx; tensors.txt, "in|out NAME N C H W" a line; and of all inputs
+ *                                         and outputs NAME.in and NAME.out, float32 with channels first, as ONNX has
+ *     write_onnx WEIGHTS SIDE             milliseconds of the best and the median of 20 runs in float32
+ */
 #include <stdio.h>
 
 #include "base/half.h"
@@ -120,7 +121,7 @@ static void add_constant(writer *w, pb *node, int type, const int64_t *shape, in
     pb_text(node, NODE_INPUT, name);
 }
 
-/* A parameter, in float32; rank 0: its own shape. */
+/* Adds a parameter, in float32; rank 0: its own shape. */
 static void add_parameter(writer *w, pb *node, const char *of, const char *part, int rank)
 {
     char name[160];

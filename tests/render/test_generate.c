@@ -125,7 +125,7 @@ static void write_mesh(const char *path, const char *apex)
     assert_int_equal(file_write(path, text, (size_t)length), OK);
 }
 
-/* By a folder's render.txt of a version that did not tell them, anything goes on. */
+/* Takes the contents out of a folder's render.txt, as a version wrote it that did not tell them. */
 static void forget_contents(const char *folder)
 {
     char *path = file_join(folder, "render.txt"), *text;

@@ -76,7 +76,7 @@ static void write_balls(float shade(vec3, vec3), img_encoding encoding)
     write_tinted_balls(shade, (const float[]){1}, 1, encoding);
 }
 
-/* A disc, or a square as wide. */
+/* Writes a mask of a disc, or of a square as wide. */
 static void write_mask_at(float x, float y, float radius, bool square)
 {
     img p;

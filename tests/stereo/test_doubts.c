@@ -316,7 +316,7 @@ static void tones_that_were_taken_for_others_are_told(void **state)
     capture_drop(&c);
 }
 
-/* A ball of radius 0.45 at distance 2 in a picture 30 degrees wide, and lamps about the camera. */
+/* Takes a ball of radius 0.45 at distance 2 in pictures 30 degrees wide, by lamps about the camera. */
 static void take_near(pst_capture *c)
 {
     const vec3 middle = {0.05f, -0.03f, -2};

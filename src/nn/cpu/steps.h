@@ -11,7 +11,7 @@ status conv_create(nn_step *step);
 status conv_backward_data(nn_step *step);
 status conv_backward_weights(nn_step *step);
 
-/* The same by Winograd's filtering, where it can be. */
+/* Convolution by Winograd's filtering, and whether it can be computed so. */
 bool winograd_suits(const nn_step *step);
 status winograd_create(nn_step *step);
 

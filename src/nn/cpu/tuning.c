@@ -41,12 +41,12 @@ nn_type tuning_fastest_type(void)
 
 /* ---- filtering ---- */
 
-/* What is filtered. Weights are then four times as many: with few tiles they cost more to make and to read than is
- * gained, and where nothing is trained more to hold. Passing over pictures of few channels costs more than their
- * products, the more so backwards. */
+/* Bounds of the layers that are filtered. Weights are then four times as many: with few tiles they cost more to make
+ * and to read than is gained, and where nothing is trained more to hold. Passing over pictures of few channels costs
+ * more than their products, the more so backwards. */
 typedef struct filtered {
     size_t least_tiles;
-    int least_channels;         /* of the result */
+    int least_channels;         /* the result's */
     size_t most_weights_a_tile; /* filtered ones */
 } filtered;
 

@@ -1,4 +1,4 @@
-/* What is faster on which processor, by what `merlin bench --layers` measured there: a table, so that the same machine
+/* The faster way on each processor, by what `merlin bench --layers` measured there: a table, so that the same machine
  * computes the same bits today and tomorrow. Internal to src/nn/cpu. */
 #ifndef MERLIN_NN_CPU_TUNING_H
 #define MERLIN_NN_CPU_TUNING_H
@@ -8,7 +8,7 @@
 /* wanted, or float32 where this processor cannot compute in it. */
 nn_type tuning_usable_type(nn_type wanted);
 nn_type tuning_fastest_type(void);
-/* Whether a convolution is to be computed by Winograd's filtering (winograd.h), which suits 3×3 ones without stride. */
+/* Tells whether to compute a convolution by Winograd's filtering (winograd.h), which suits 3×3 ones without stride. */
 bool tuning_filters(const nn_step *step);
 
 #endif
