@@ -37,6 +37,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin-config.cmake ${CMAKE_CURRENT_BI
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/merlin)
 install(DIRECTORY include/merlin TYPE INCLUDE)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/merlin.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/merlin)
 install(FILES man/merlin.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES completions/merlin.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME merlin)
