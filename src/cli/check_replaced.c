@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 #include "stereo/calibrate.h"
@@ -33,16 +34,28 @@ static const char *first_in(const char *folder, const char *const *names)
     return *names;
 }
 
+/* In capitals or not, as readers of captures have it. */
+static bool is_among(const char *const *names, const char *name)
+{
+    while (*names && strcasecmp(*names, name) != 0)
+        names++;
+    return *names != NULL;
+}
+
 /* Tells whether the folder has a file that says where the lights of the pictures beside it were. */
 static bool holds_capture(const char *folder)
 {
     static const char *const data_sets[] = {"light_directions.txt", "led_params.txt", NULL};
-    static const char *const endings[] = {".lp", NULL};
     char **names;
     size_t count = 0;
-    if (first_in(folder, pst_list_names) || first_in(folder, data_sets)) return true;
-    if (file_list(folder, endings, &names, &count) == OK) file_list_free(names, count);
-    return count > 0;
+    bool holds = false;
+    if (file_list(folder, NULL, &names, &count) != OK) return false;
+    for (size_t i = 0; i < count; i++) {
+        const char *name = file_name_of(names[i]);
+        holds |= is_among(pst_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
+    }
+    file_list_free(names, count);
+    return holds;
 }
 
 status check_replaced(const char *folder, bool meshes)

@@ -104,6 +104,8 @@ mkdir another
 cp dome/dome_00?.png dome/dome.lp another
 refuses 1 'cannot write into another: it holds a capture' stereo dome --method ls -o another
 refuses 1 'cannot write into another: it holds a capture' "$MERLIN" estimate disc.hdr --size 64 -o another
+mv another/dome.lp another/LIGHTS.TXT
+refuses 1 'cannot write into another: it holds a capture' stereo dome --method ls -o another
 cp disc.merlin/mask.png another
 refuses 1 'another: its mask.png is no earlier result' stereo dome --method ls -o another
 cmp -s disc.merlin/mask.png another/mask.png || complain "a mask was replaced"
