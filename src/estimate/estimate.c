@@ -310,6 +310,23 @@ static status lap_compile(const merlin_model *model, work *w, double *seconds)
     return s;
 }
 
+/* Makes the networks of maps and bounces ready, or where no photograph follows that of maps alone. */
+static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+{
+    const int views = w->params->views;
+    status s = views > 1 && !w->last ? network_prepare_bounces(n, maps->size) : OK;
+    if (s == OK) s = network_prepare(n, maps->size, views);
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
+}
+
+/* Makes the network of bounces ready; that of maps makes room if nothing wants it any more. */
+static status prepare_bounces(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+{
+    if (w->last) network_release_maps(n);
+    status s = w->params->views > 1 ? network_prepare_bounces(n, maps->size) : OK;
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
+}
+
 /* Makes the network of the finer normals ready; the one before makes room if nothing wants it any more. */
 static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
 {
@@ -334,9 +351,10 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     s = lap(w, &t->choose);
     if (s == OK) s = lap_compile(model, w, &t->compile);
     if (w->last) model_keep(model, n);
-    if (s == OK) s = network_prepare(n, maps->size, views);
-    if (s == OK) s = lap_compile(model, w, &t->compile);
+    if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
+    if (s == OK) s = lap(w, &t->network);
+    if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w, maps->has_environment);
     if (s == OK) s = judge_light(w, &maps->photo, maps->gain);

@@ -180,10 +180,16 @@ static status compile(network *n, model_part part, const char *const *outputs, i
 status network_prepare(network *n, int size, int views)
 {
     pthread_mutex_lock(&n->lock);
-    bool follows = views > 1 && n->config.global_illumination;
-    /* that of the bounces first: it needs more memory, and whatever is compiled later shares it */
-    status s = follows ? compile(n, MODEL_INDIRECT, NULL, size, &n->indirect) : OK;
-    if (s == OK) s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
+status network_prepare_bounces(network *n, int size)
+{
+    if (!n->config.global_illumination) return OK;
+    pthread_mutex_lock(&n->lock);
+    status s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
 }

@@ -38,9 +38,11 @@ status network_open_later(const char *weights, network **out);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
-/* Makes the programs for this size and so many views now, so that the time is seen apart; that of network_lights; that
- * of network_normals. Those of the last size are kept. */
+/* Makes a program now, so that the time is seen apart: that of so many views' maps at this size, those of
+ * network_indirect, network_lights and network_normals. Those of the last size are kept. That of bounces needs most
+ * memory, which all that are made later share. */
 status network_prepare(network *n, int size, int views);
+status network_prepare_bounces(network *n, int size);
 status network_prepare_lights(network *n, int size);
 status network_prepare_normals(network *n, int size);
 /* Frees the programs and what memory they hold, most of a network's, or those alone that see photographs; they are made
