@@ -32,6 +32,7 @@ typedef struct run {
     trn_order order;
     trn_state state;
     double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
+    bool chart_missed;                           /* one could not be drawn, which has been said */
 } run;
 
 static void close_run(run *r)
@@ -307,6 +308,16 @@ static status with_average(run *r, status (*act)(run *))
     return s;
 }
 
+/* Drawn of what the tables hold anyhow, so that a training is not ended for want of a chart or of libvips, which draws
+ * it. */
+static void draw_chart(run *r)
+{
+    status s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
+    if (s != OK && !r->chart_missed && !r->options->quiet)
+        fprintf(stderr, "\nmerlin train: no chart is drawn, training goes on: %s\n", status_message());
+    if (s != OK) r->chart_missed = true;
+}
+
 static status save(run *r)
 {
     r->saved_at = clock_seconds();
@@ -319,7 +330,7 @@ static status save(run *r)
     if (s == OK) s = trn_curve_keep(r->paths.validation);
     if (s == OK) s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
     if (s == OK) s = write_seconds(r);
-    if (s == OK) s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
+    if (s == OK) draw_chart(r);
     return s;
 }
 

@@ -352,6 +352,18 @@ static void charts_are_drawn_of_rows_with_fewer_losses(void **state)
     assert_true(file_exists(png));
 }
 
+static void a_chart_that_cannot_be_drawn_does_not_end_training(void **state)
+{
+    const fixture *f = *state;
+    char folder[300], weights[300];
+    snprintf(folder, sizeof folder, "%s/chartless/curves.png", f->root);
+    snprintf(weights, sizeof weights, "%s/chartless/weights.safetensors", f->root);
+    assert_int_equal(file_make_folder(folder), OK);
+    write_experiment(f, &(experiment){4, 4, 0, "both", no_jitter, 100});
+    if (train(f, "chartless", false, 0) != OK) fail_msg("%s", status_message());
+    assert_true(file_exists(weights));
+}
+
 static void a_curve_cut_within_its_header_begins_anew(void **state)
 {
     const fixture *f = *state;
@@ -572,6 +584,7 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(resumed_training_on_faulty_photographs_is_bit_identical, set_up, tear_down),
         cmocka_unit_test_setup_teardown(charts_are_drawn_of_rows_with_fewer_losses, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_chart_that_cannot_be_drawn_does_not_end_training, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_curve_cut_within_its_header_begins_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_run_goes_on_with_less_memory, set_up, tear_down),
