@@ -134,8 +134,9 @@ static vec3 mixed_at(const trn_view *v, const trn_mixture *m, size_t i)
 
 /* ---- the camera's choices -------------------------------------------------------------------------------------- */
 
-/* Radiance below which 95 of 100 of the object's pixels are. */
-static float bright_part(const trn_view *v, const trn_mixture *m)
+/* Radiance below which 95 of 100 of the object's pixels are, or the mean of all light where that is more: a lamp that
+ * reaches a rim alone leaves 95 of 100 black, and black is nothing to expose by. */
+static float bright_part(const trn_view *v, const trn_mixture *m, float mean)
 {
     enum { BINS = 512 };
     size_t bins[BINS] = {0}, count = 0, below = 0;
@@ -148,7 +149,7 @@ static float bright_part(const trn_view *v, const trn_mixture *m)
     int bin = 0;
     while (bin < BINS - 1 && (below += bins[bin]) <= count * 95 / 100)
         bin++;
-    return exp2f(((float)bin + 0.5f) / 8 - 30);
+    return fmaxf(exp2f(((float)bin + 0.5f) / 8 - 30), mean);
 }
 
 /* White balance goes most of the way to what would make the light white. */
@@ -186,7 +187,7 @@ void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *
     out->told_flash = told && out->kind == TRN_FLASH;
     if (out->kind == TRN_FLASH) return; /* exposed as rendered: that is what tells dark objects from bright ones */
     balance(color_of(v, &m, out), share, lens->gain);
-    float exposure = target * lens->white / bright_part(v, out);
+    float exposure = target * lens->white / bright_part(v, out, amount_of(v, &m, out));
     for (int c = 0; c < 3; c++)
         lens->gain[c] *= exposure;
 }

@@ -251,6 +251,35 @@ static void nobody_photographs_darkness(void **state)
     }
 }
 
+/* By so much that what is black would show, it once came out, and the lamp with a strength of 1e9. */
+static void a_camera_exposes_for_what_is_lit(void **state)
+{
+    fixture *f = *state;
+    trn_view *v = &f->view;
+    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    memset(v->lamps, 0, 16 * PIXELS * sizeof(float));
+    memset(v->env, 0, 3 * PIXELS * sizeof(float));
+    memset(v->sh, 0, 27 * sizeof(float));
+    size_t object = 0, lit = 0;
+    for (size_t i = 0; i < PIXELS; i++)
+        object += v->mask[i] > 0.5f;
+    for (size_t i = 0; i < PIXELS && lit < object / 50; i++)
+        if (v->mask[i] > 0.5f && ++lit)
+            for (size_t k = 0; k < 4; k++)
+                v->lamps[4 * (k * PIXELS + i)] = v->lamps[4 * (k * PIXELS + i) + 1] = 5;
+    int lamps = 0;
+    for (int i = 0; i < 200; i++) {
+        rng r = rng_at(12, (uint64_t)i, 0);
+        trn_camera lens = trn_camera_perfect();
+        trn_mixture m;
+        trn_mixture_draw(v, &r, &lens, &m);
+        lamps += m.strongest >= 0;
+        for (int c = 0; c < 3; c++)
+            assert_true(lens.gain[c] < 2000);
+    }
+    assert_true(lamps > 40);
+}
+
 static void samples_without_lamps_are_refused(void **state)
 {
     (void)state;
@@ -281,6 +310,7 @@ int main(void)
         cmocka_unit_test(kinds_come_as_often_as_they_should),
         cmocka_unit_test(exposure_leaves_neither_darkness_nor_white_alone),
         cmocka_unit_test(nobody_photographs_darkness),
+        cmocka_unit_test(a_camera_exposes_for_what_is_lit),
         cmocka_unit_test(samples_without_lamps_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
