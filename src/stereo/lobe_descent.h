@@ -8,7 +8,7 @@
 #ifndef MERLIN_STEREO_LOBE_DESCENT_H
 #define MERLIN_STEREO_LOBE_DESCENT_H
 
-#include "stereo/lobe_fit.h"
+#include "stereo/lobe.h"
 
 /* The scale that a descent from far begins at. */
 #define PST_WIDEST 0.16f

@@ -1,4 +1,4 @@
-/* The model of lobe_fit.h at one light, for loops over lights without a branch. Internal to the fit. */
+/* The model of lobe.h at one light, for loops over lights without a branch. Internal to the fit. */
 #ifndef MERLIN_STEREO_LOBE_MODEL_H
 #define MERLIN_STEREO_LOBE_MODEL_H
 
