@@ -1,10 +1,11 @@
+#include "stereo/poisson_factor.h"
+
 #include <cholmod.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/library.h"
 #include "base/memory.h"
-#include "stereo/poisson_level.h"
 
 /* Loaded when it is first needed. */
 static struct {

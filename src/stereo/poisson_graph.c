@@ -1,5 +1,6 @@
+#include "stereo/poisson_graph.h"
+
 #include "base/memory.h"
-#include "stereo/poisson_level.h"
 
 static status no_memory(const poisson_graph *g)
 {
@@ -44,7 +45,6 @@ static void link_to(poisson_graph *g, int node, float weight, int *at)
 status poisson_graph_of(const poisson_grid *grid, poisson_graph *out)
 {
     *out = (poisson_graph){.count = grid->count, .width = grid->width, .height = grid->height};
-    const poisson_level level = {.grid = grid};
     int at = 0;
     status s = poisson_graph_allocate(out);
     if (s == OK) s = poisson_graph_allocate_links(out, 4 * grid->count);
@@ -52,7 +52,7 @@ status poisson_graph_of(const poisson_grid *grid, poisson_graph *out)
         int left = grid->previous[0][i], above = grid->previous[1][i];
         out->block[i] = grid->pixel[i];
         out->pull[i] = (double)grid->pull[i];
-        out->diagonal[i] = poisson_diagonal(&level, i);
+        out->diagonal[i] = poisson_grid_diagonal(grid, i);
         link_to(out, above, above < 0 ? 0 : grid->weight[1][above], &at);
         link_to(out, left, left < 0 ? 0 : grid->weight[0][left], &at);
         link_to(out, grid->next[0][i], grid->weight[0][i], &at);

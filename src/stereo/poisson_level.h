@@ -1,32 +1,14 @@
-/* What the Poisson solver is made of: ever smaller graphs over a grid, and a factorization of the smallest. Internal.
- */
+/* The Poisson solver's levels: a grid, ever smaller graphs over it, and a factorization of the smallest. Internal. */
 #ifndef MERLIN_STEREO_POISSON_LEVEL_H
 #define MERLIN_STEREO_POISSON_LEVEL_H
 
 #include <stdbool.h>
 
-#include "stereo/poisson.h"
+#include "stereo/poisson_factor.h"
+#include "stereo/poisson_graph.h"
 
 /* Nodes are worked on in strips of whole rows, whichever thread has which: sums do not depend on their number. */
 enum { POISSON_STRIPS = 64 };
-
-/* A node stands for pixels of one block, of 2^k × 2^k of them; a block may have several. Links lead from a block to
- * those beside, above and below it; weak ones, at a jump, also from node to node of one block. */
-typedef struct poisson_graph {
-    int count, width, height; /* width, height: in blocks */
-    int *block;               /* count: y × width + x, row by row, in a row in any order */
-    int *start;               /* count + 1: where a node's links begin */
-    int *neighbour;           /* start[count] */
-    float *weight;            /* start[count]: of the link */
-    double *pull, *diagonal;  /* count */
-} poisson_graph;
-
-/* One node a pixel. */
-status poisson_graph_of(const poisson_grid *g, poisson_graph *out);
-void poisson_graph_free(poisson_graph *g);
-/* Arrays of count entries, zero; links are another matter. */
-status poisson_graph_allocate(poisson_graph *g);
-status poisson_graph_allocate_links(poisson_graph *g, int links);
 
 /* A grid, or a graph over it. */
 typedef struct poisson_level {
@@ -66,12 +48,7 @@ void poisson_level_free(poisson_level *l);
 /* The operator's diagonal at node i. */
 static inline double poisson_diagonal(const poisson_level *l, int i)
 {
-    const poisson_grid *g = l->grid;
-    if (!g) return l->graph.diagonal[i];
-    double d = (double)g->pull[i] + (double)g->weight[0][i] + (double)g->weight[1][i];
-    for (int k = 0; k < 2; k++)
-        if (g->previous[k][i] >= 0) d += (double)g->weight[k][g->previous[k][i]];
-    return d;
+    return l->grid ? poisson_grid_diagonal(l->grid, i) : l->graph.diagonal[i];
 }
 
 /* Σ weight × x over the neighbours of node i. */
@@ -110,13 +87,6 @@ static inline void poisson_join(int *towards, int i, int j)
     int one = poisson_root(towards, i), other = poisson_root(towards, j);
     towards[one > other ? one : other] = one < other ? one : other;
 }
-
-/* Sparse Cholesky of a graph's operator. */
-typedef struct poisson_factor poisson_factor;
-status poisson_factor_new(const poisson_graph *g, poisson_factor **out);
-void poisson_factor_free(poisson_factor *f);
-/* x = A⁻¹ b; may be the same array. */
-status poisson_factor_solve(poisson_factor *f, const double *b, double *x);
 
 enum { POISSON_LEVELS = 20 };
 
