@@ -6,7 +6,7 @@
 #ifndef MERLIN_STEREO_INTEGRATE_STEPS_H
 #define MERLIN_STEREO_INTEGRATE_STEPS_H
 
-#include "stereo/integrate.h"
+#include "stereo/capture.h"
 #include "stereo/poisson.h"
 
 typedef struct integration_steps {
