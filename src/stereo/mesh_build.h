@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "stereo/mesh_write.h"
+#include "stereo/mesh_source.h"
 
 typedef struct surface_mesh {
     size_t vertices, triangles;
@@ -23,11 +23,6 @@ status surface_mesh_check_size(const pst_mesh_source *from, const img *map);
 
 /* The vertex's normal: the map's where there is one, else the triangles'. */
 vec3 surface_mesh_normal(const surface_mesh *m, const pst_mesh_source *from, size_t vertex);
-
-/* One file a format. */
-status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from);
-status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from);
-status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from);
 
 /* Albedo as 3 channels in [0, 1]: a single channel is repeated. */
 status mesh_albedo(const img *albedo, img *out);

@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 #include "image/write.h"
-#include "stereo/mesh_build.h"
+#include "stereo/mesh_formats.h"
 
 enum { FLOAT = 5126, UNSIGNED_INT = 5125, ARRAY_BUFFER = 34962, ELEMENT_ARRAY_BUFFER = 34963, TRIANGLES = 4 };
 enum { HEADER = 12, CHUNK_HEADER = 8, MOST_PARTS = 8 };

@@ -6,7 +6,7 @@
 #include "base/decimal.h"
 #include "base/file.h"
 #include "image/write.h"
-#include "stereo/mesh_build.h"
+#include "stereo/mesh_formats.h"
 
 /* path with another ending of four characters, malloc'ed. */
 static char *with_ending(const char *path, const char *ending)

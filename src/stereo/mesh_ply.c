@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "image/color.h"
-#include "stereo/mesh_build.h"
+#include "stereo/mesh_formats.h"
 
 typedef struct __attribute__((packed)) ply_vertex {
     float position[3], normal[3];

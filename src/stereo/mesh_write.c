@@ -1,7 +1,7 @@
 #include "stereo/mesh_write.h"
 
 #include "base/file.h"
-#include "stereo/mesh_build.h"
+#include "stereo/mesh_formats.h"
 
 typedef struct format {
     const char *ending;
