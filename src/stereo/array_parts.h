@@ -34,4 +34,9 @@ status array_fill(number_array *a, const unsigned char *bytes, size_t available,
 /* Inflates until wanted bytes are there; window_bits as zlib's. false: damaged, or too short. */
 bool array_inflate(const unsigned char *from, size_t size, int window_bits, unsigned char *out, size_t wanted);
 
+/* A parser of array_file.h: of so many bytes, by the name of the array in them. */
+typedef status array_parser(const char *bytes, size_t size, const char *where, const char *name, number_array *out);
+/* The array of that name in a file, by its parser. */
+status array_read(array_parser *parse, const char *path, const char *name, number_array *out);
+
 #endif

@@ -142,3 +142,8 @@ status mat_parse(const char *bytes, size_t size, const char *where, const char *
     if (s != OK) array_free(out);
     return s;
 }
+
+status mat_read(const char *path, const char *variable, number_array *out)
+{
+    return array_read(mat_parse, path, variable, out);
+}

@@ -159,3 +159,8 @@ status npz_parse(const char *bytes, size_t size, const char *where, const char *
     if (s != OK) array_free(out);
     return s;
 }
+
+status npz_read(const char *path, const char *name, number_array *out)
+{
+    return array_read(npz_parse, path, name, out);
+}

@@ -1,4 +1,4 @@
-#include "stereo/array_file.h"
+#include "stereo/array_parts.h"
 
 #include <limits.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 
 #include "base/file.h"
 #include "base/half.h"
-#include "stereo/array_parts.h"
 
 void array_free(number_array *a)
 {
@@ -79,9 +78,7 @@ bool array_inflate(const unsigned char *from, size_t size, int window_bits, unsi
     return whole;
 }
 
-typedef status array_parser(const char *, size_t, const char *, const char *, number_array *);
-
-static status read_with(array_parser *parse, const char *path, const char *name, number_array *out)
+status array_read(array_parser *parse, const char *path, const char *name, number_array *out)
 {
     *out = (number_array){0};
     char *bytes;
@@ -91,14 +88,4 @@ static status read_with(array_parser *parse, const char *path, const char *name,
     s = parse(bytes, size, path, name, out);
     free(bytes);
     return s;
-}
-
-status mat_read(const char *path, const char *variable, number_array *out)
-{
-    return read_with(mat_parse, path, variable, out);
-}
-
-status npz_read(const char *path, const char *member, number_array *out)
-{
-    return read_with(npz_parse, path, member, out);
 }
