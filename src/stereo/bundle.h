@@ -15,7 +15,7 @@
 #ifndef MERLIN_STEREO_BUNDLE_H
 #define MERLIN_STEREO_BUNDLE_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 typedef struct bundle_cell {
     int corner[4]; /* left above, right above, left below, right below */

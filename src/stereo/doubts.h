@@ -6,7 +6,7 @@
 #define MERLIN_STEREO_DOUBTS_H
 
 #include "base/warnings.h"
-#include "stereo/solve.h"
+#include "stereo/surface.h"
 
 /* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
  * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,

@@ -7,6 +7,7 @@
 #include "base/inline.h"
 #include "base/parallel.h"
 #include "stereo/field_neighbours.h"
+#include "stereo/matrix3.h"
 #include "stereo/near_lights.h"
 #include "stereo/pixel_fit.h"
 

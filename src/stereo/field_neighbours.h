@@ -9,7 +9,7 @@
 #ifndef MERLIN_STEREO_FIELD_NEIGHBOURS_H
 #define MERLIN_STEREO_FIELD_NEIGHBOURS_H
 
-#include "stereo/field_fit.h"
+#include "stereo/field.h"
 
 typedef struct pst_around {
     const pst_field *field;

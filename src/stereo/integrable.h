@@ -8,7 +8,7 @@
 #ifndef MERLIN_STEREO_INTEGRABLE_H
 #define MERLIN_STEREO_INTEGRABLE_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 /* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
  * twentieth do, by noise; where they were not, half. */

@@ -11,6 +11,7 @@
 
 #include "stereo/dense.h"
 #include "stereo/lobe_fit.h"
+#include "stereo/matrix3.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 

@@ -5,7 +5,7 @@
 #ifndef MERLIN_STEREO_INTENSITIES_H
 #define MERLIN_STEREO_INTENSITIES_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 /* e: one a light, their mean 1, from a sample of so many pixels. The problem's own intensities are divided out of the
  * pictures first. *told: how many times worse the next best explain the pictures; near 1 on a flat surface, where

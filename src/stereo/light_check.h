@@ -7,7 +7,7 @@
 #define MERLIN_STEREO_LIGHT_CHECK_H
 
 #include "base/warnings.h"
-#include "stereo/solve.h"
+#include "stereo/surface.h"
 
 /* Checks a solved capture whose lights are known. */
 status pst_check_lights(const pst_capture *c, const pst_surface *s, warnings *out);

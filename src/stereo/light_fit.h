@@ -7,7 +7,7 @@
 #ifndef MERLIN_STEREO_LIGHT_FIT_H
 #define MERLIN_STEREO_LIGHT_FIT_H
 
-#include "stereo/solve.h"
+#include "stereo/surface.h"
 
 enum { PST_CHECKED_PICTURES = 96 };
 

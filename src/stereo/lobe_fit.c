@@ -3,10 +3,11 @@
 #include "stereo/lobe_fit.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "stereo/lobe_descent.h"
 #include "stereo/lobe_model.h"
-#include "stereo/solve_parts.h"
+#include "stereo/matrix3.h"
 
 /* Parts that the observations are held out in. */
 enum { PARTS = 4 };

@@ -11,6 +11,8 @@
 #include "base/parallel.h"
 #include "stereo/ls_lanes.h"
 #include "stereo/ls_sums.h"
+#include "stereo/matrix3.h"
+#include "stereo/solve_parts.h"
 
 /* Pixels looked at to choose what counts as dark. */
 enum { SAMPLE = 1024 };

@@ -12,7 +12,7 @@
 #ifndef MERLIN_STEREO_LS_SUMS_H
 #define MERLIN_STEREO_LS_SUMS_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 /* Pixels a block: the 11 sums of a pixel that every picture changes (11 KiB) and the values of now and next (6 KiB)
  * stay in a first-level cache of 32 KiB. */

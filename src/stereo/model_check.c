@@ -6,6 +6,7 @@
 #include "image/write.h"
 #include "optics/camera.h"
 #include "stereo/shrink.h"
+#include "stereo/solve.h"
 
 /* Pixels that are solved again, up to four times as many; pictures; and so few explain everything. */
 enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };

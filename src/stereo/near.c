@@ -19,7 +19,9 @@
 #include "stereo/field_fit.h"
 #include "stereo/integrate.h"
 #include "stereo/lobe_choice.h"
+#include "stereo/matrix3.h"
 #include "stereo/shrink.h"
+#include "stereo/solve_parts.h"
 
 /* SMALL: pixels that the depth is searched on, up to four times as many; ANEW: rounds whose fits start from nothing,
  * since the depth was far off; ADMISSIONS: rounds until it is good enough to judge a lobe by; STEPPED: rounds at the

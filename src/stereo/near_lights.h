@@ -7,7 +7,7 @@
 #define MERLIN_STEREO_NEAR_LIGHTS_H
 
 #include "stereo/pixel_fit.h"
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 /* Unit directions and what arrives; pst_padded(lights), the padding 0. */
 typedef struct pst_near_lights {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/solve_parts.h"
+#include "stereo/matrix3.h"
 
 enum { STEPS = 6, POLISH = 4 };
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "stereo/lobe_choice.h"
+#include "stereo/solve_parts.h"
 
 enum { SAMPLE = 128, SWEEPS = 2 };
 

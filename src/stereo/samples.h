@@ -9,7 +9,7 @@
 #ifndef MERLIN_STEREO_SAMPLES_H
 #define MERLIN_STEREO_SAMPLES_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 typedef struct pst_samples {
     int lights;

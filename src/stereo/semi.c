@@ -11,6 +11,7 @@
 
 #include "stereo/intensities.h"
 #include "stereo/lobe_choice.h"
+#include "stereo/solve_parts.h"
 
 enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
 

@@ -5,48 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "stereo/dense.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/solve_parts.h"
 #include "stereo/unlit.h"
-
-static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
-enum { METHOD_COUNT = sizeof method_names / sizeof *method_names };
-
-/* A light list flatter than this (its smallest singular value against its largest) leaves the normal's component out of
- * its plane to the noise. */
-static const float flattest_lights = 0.01f;
-
-int pst_method_from_name(const char *name)
-{
-    for (int i = 0; i < METHOD_COUNT; i++)
-        if (!strcmp(name, method_names[i])) return i;
-    return -1;
-}
-
-const char *pst_method_name(pst_method m)
-{
-    return (int)m >= 0 && (int)m < (int)METHOD_COUNT ? method_names[m] : "unknown";
-}
-
-static void add_square(vec3 v, const double about[3], double m[9])
-{
-    double d[3] = {v.x - about[0], v.y - about[1], v.z - about[2]};
-    for (int j = 0; j < 9; j++)
-        m[j] += d[j / 3] * d[j % 3];
-}
-
-status pst_check_directions(const pst_light *light, int count)
-{
-    if (count < 3) return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
-    double m[9] = {0}, eigenvalue[6];
-    for (int i = 0; i < count; i++)
-        add_square(light[i].direction, (const double[3]){0}, m);
-    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
-    if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
-        return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
-    return OK;
-}
 
 /* Listed with z away from the camera, lights would be taken as they are, for a surface that hardly faces any. */
 static status check_known_directions(const pst_light *light, int count)
@@ -61,23 +22,6 @@ static status check_known_directions(const pst_light *light, int count)
                     "toward the camera",
                     count);
     return pst_check_directions(light, count);
-}
-
-/* From any point, lights on a line have their directions in a plane, too. */
-static status check_positions(const pst_light *light, int count)
-{
-    double m[9] = {0}, eigenvalue[6], mean[3] = {0};
-    for (int i = 0; i < count; i++) {
-        mean[0] += (double)light[i].position.x / count;
-        mean[1] += (double)light[i].position.y / count;
-        mean[2] += (double)light[i].position.z / count;
-    }
-    for (int i = 0; i < count; i++)
-        add_square(light[i].position, mean, m);
-    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light positions are not numbers");
-    if (!(eigenvalue[1] > flattest_lights * flattest_lights * eigenvalue[2]))
-        return fail(ERROR_INPUT, "the %d light positions lie on one line; light the object from a third side", count);
-    return OK;
 }
 
 static pst_method choose(const pst_capture *c)
@@ -104,7 +48,7 @@ static status check_method(const pst_capture *c, pst_method m)
     if (c->count > PST_MAX_LIGHTS && m != PST_LS)
         return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
                     pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
-    if (m == PST_NEAR_LIGHTS) return check_positions(c->light, c->count);
+    if (m == PST_NEAR_LIGHTS) return pst_check_positions(c->light, c->count);
     return distant ? check_known_directions(c->light, c->count) : OK;
 }
 
@@ -162,32 +106,6 @@ static status check_lit(const pst_problem *p)
             return fail(ERROR_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out", k + 1,
                         c->name ? ", " : "", c->name ? c->name[k] : "");
     return OK;
-}
-
-status pst_list_pixels(const pst_capture *c, pst_problem *p)
-{
-    size_t size = (size_t)c->width * (size_t)c->height, n = 0;
-    p->pixel = malloc(size * sizeof *p->pixel);
-    if (!p->pixel) return fail(ERROR_MEMORY, "no memory for a list of %zu pixels", size);
-    for (size_t i = 0; i < size; i++)
-        if (c->mask.data[i] > 0.5f) p->pixel[n++] = (uint32_t)i;
-    p->pixel_count = n;
-    return OK;
-}
-
-pst_bounds pst_bounds_of(const pst_problem *p)
-{
-    const size_t width = (size_t)p->capture->width;
-    pst_bounds r = {.left = p->capture->width,
-                    .right = 0,
-                    .top = (int)(p->pixel[0] / width),
-                    .bottom = (int)(p->pixel[p->pixel_count - 1] / width)};
-    for (size_t i = 0; i < p->pixel_count; i++) {
-        int x = (int)(p->pixel[i] % width);
-        r.left = x < r.left ? x : r.left;
-        r.right = x > r.right ? x : r.right;
-    }
-    return r;
 }
 
 /* Beyond these, squares of albedos would leave the range of floats, or vanish beside what keeps a division from 0. */
@@ -248,14 +166,6 @@ static status run(const pst_problem *p, pst_surface *out)
     }
 }
 
-void pst_effort_add(pst_effort *e, size_t fits)
-{
-    size_t done = atomic_fetch_add_explicit(&e->done, fits, memory_order_relaxed) + fits;
-    if (!pthread_equal(e->owner, pthread_self())) return;
-    double share = (double)done / (double)e->expected;
-    watch_tell(e->watch, "solving", share < 1 ? share : 1);
-}
-
 /* A fit from nothing counts as four. Each method's own are so many times the pixels, near's first ones are on small
  * pictures. */
 static size_t expected_effort(const pst_problem *p, pst_method method)
@@ -294,14 +204,4 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
     free(light);
     if (s != OK) pst_surface_free(out);
     return s;
-}
-
-void pst_surface_free(pst_surface *s)
-{
-    img_free(&s->normal);
-    img_free(&s->albedo);
-    img_free(&s->depth);
-    img_free(&s->residual);
-    free(s->light);
-    *s = (pst_surface){0};
 }

@@ -12,6 +12,7 @@
 #include "stereo/integrate.h"
 #include "stereo/lobe_choice.h"
 #include "stereo/samples.h"
+#include "stereo/solve_parts.h"
 #include "stereo/uncalibrated_parts.h"
 
 enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };

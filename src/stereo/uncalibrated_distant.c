@@ -12,6 +12,7 @@
 
 #include "stereo/field_fit.h"
 #include "stereo/integrable.h"
+#include "stereo/matrix3.h"
 #include "stereo/pixel_fit.h"
 #include "stereo/samples.h"
 #include "stereo/uncalibrated_parts.h"

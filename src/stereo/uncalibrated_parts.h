@@ -3,7 +3,7 @@
 #define MERLIN_STEREO_UNCALIBRATED_PARTS_H
 
 #include "stereo/integrable.h"
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
 
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's.
  * balloon: unit normals of one of the object's outline (inflate.h). rotation: the last step to them, and its doubts. */

@@ -5,7 +5,8 @@
 #ifndef MERLIN_STEREO_UNLIT_H
 #define MERLIN_STEREO_UNLIT_H
 
-#include "stereo/solve_parts.h"
+#include "stereo/problem.h"
+#include "stereo/surface.h"
 
 /* Makes the normals of pixels that are dark in every picture the smoothest that join those around them (harmonic,
  * component by component); what has no lit pixel around it faces the camera. */
