@@ -4,8 +4,8 @@
 #include "estimate/input.h"
 #include "image/resize.h"
 
-/* Pixels of the larger picture to one of those by which coarse and fine are told apart. Mean squared error of normals
- * at 512 (docs/evaluation.md): 2.96 with 4, 2.91 with 8, 2.90 with 16, 2.95 with 32; 3.03 without the larger one. */
+/* Pixels of the larger picture to one of those by which coarse and fine are told apart. Normals are best with as many
+ * (docs/notes/larger_pictures.md has their errors with 4 to 32). */
 enum { COARSE = 16 };
 
 int detail_side(int size, int crop_side)

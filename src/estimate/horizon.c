@@ -9,7 +9,7 @@
 /* Points a side at most: light from all around varies slowly. */
 enum { MOST_SIDE = 256, BITS = 32, QUARTER = HORIZON_AZIMUTHS / 4 };
 /* How far behind the map is behind it, in pixels; the steps of a march, in shares of the way, one pixel at least; and
- * how surely an angle is known. Tried as those of shadow.c (docs/evaluation.md). */
+ * how surely an angle is known. Tried as those of shadow.c (docs/notes/environments.md). */
 static const float MARGIN = 1, STRIDE = 0.06f, BORDER = 0.06f;
 /* Depth of what is not there. */
 static const float NOTHING = 1e4f;

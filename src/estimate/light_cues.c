@@ -306,7 +306,7 @@ status light_cues_find(const surface *maps, const img *photo, const light_frame 
 
 /* ---- the answer ---- */
 
-/* Logistic regression: see docs/evaluation.md. */
+/* Logistic regression: see docs/notes/doubts.md. */
 static const struct {
     float fall, tilt, rest, black, outward, inward, rise, constant;
 } WEIGHTS = {1.076f, 1.528f, 1.814f, 32.421f, 3.966f, 8.634f, -4.942f, -3.329f};

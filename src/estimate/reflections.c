@@ -19,7 +19,7 @@ enum { KNOTS = 48 };
 enum { HORIZONS = 4 };
 /* How far apart the corners' mirror directions may be, and how far a pixel's normal from what its place would have it,
  * in widths of the lobe; and the error in the middle, in parts of what is there and of the mean reflection. Tried
- * (docs/evaluation.md). */
+ * (docs/notes/environments.md). */
 static const float SPREAD = 0.25f, RELIEF = 0.03f, ERROR = 0.02f, DARKEST = 0.1f;
 
 typedef struct job {

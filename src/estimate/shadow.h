@@ -23,7 +23,7 @@
 #include "optics/light.h"
 
 /* Of what is seen, in scene units, of which an object is about one wide. Found by trying on samples with path-traced
- * shadows (docs/evaluation.md). */
+ * shadows (docs/notes/cast_shadows.md). */
 #define SHADOW_THICKNESS 0.15f
 
 typedef struct shadow_caster {

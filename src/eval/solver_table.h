@@ -8,7 +8,7 @@
  *
  * Each object is rendered four times: under 50 distant lights, as Lambert's law has it without cast shadows, and glossy
  * with them; and under 50 LEDs one to two of its sizes away with cast shadows, matte and glossy. What the columns are
- * is in docs/evaluation.md. */
+ * is in docs/notes/solvers.md. */
 #ifndef MERLIN_EVAL_SOLVER_TABLE_H
 #define MERLIN_EVAL_SOLVER_TABLE_H
 

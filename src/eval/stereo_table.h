@@ -7,8 +7,8 @@
  *     if (s == OK) stereo_table_print(&table, stdout);
  *     stereo_table_free(&table);
  *
- * What each row means is in docs/evaluation.md. Equal data, weights and number type of the processor give equal
- * figures. */
+ * What each row means is in docs/notes/one_photograph.md. Equal data, weights and number type of the processor give
+ * equal figures. */
 #ifndef MERLIN_EVAL_STEREO_TABLE_H
 #define MERLIN_EVAL_STEREO_TABLE_H
 

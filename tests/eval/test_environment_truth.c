@@ -146,7 +146,7 @@ static void shadows_bring_true_maps_nearer_to_the_path_tracer(void **state)
     for (int i = 0; i < 4; i++)
         judge_folded(indices[i], &without, &with);
     print_message("1 - similarity: without shadows %.4f, with %.4f\n", without / 4, with / 4);
-    /* 0.53 of it at 128 pixels and 100 paths (docs/evaluation.md has the mean over all samples, folded or not) */
+    /* 0.53 of it at 128 pixels and 100 paths (docs/notes/environments.md has the mean over all samples) */
     assert_true(with < 0.75 * without);
 }
 
