@@ -4,7 +4,7 @@
 #include "eval/bench.h"
 #include "eval/bench_network.h"
 
-/* What docs/evaluation.md asks for. */
+/* What docs/performance.md asks for. */
 static const double least_inference_share = 0.55, least_training_share = 0.55, most_estimate_seconds = 0.25;
 static const double most_estimate_megabytes = 150;
 
