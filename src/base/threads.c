@@ -60,9 +60,9 @@ bool threads_are_left(int count)
 
 /* libgomp's threads spin for milliseconds before they sleep, 300,000 turns, unless there are more of them than
  * processors: then 1000, some tens of microseconds, which costs an idle machine nothing. Beside other work the long
- * wait is for a thread that has no processor, and takes another's meanwhile: five estimates one after the other take
- * 1.9 s, and two such rows at once 7.9 s on two cores, or 3.4 with short waits. The environment can say so as well, but
- * is read before main. So there are more of them: a team that never has anything to do, and sleeps. */
+ * wait is for a thread that has no processor, and takes another's meanwhile (docs/notes/waiting_threads.md). The
+ * environment can say so as well, but is read before main. So there are more of them: a team that never has anything to
+ * do, and sleeps. */
 static void *sleep_for_good(void *team)
 {
 #pragma omp parallel num_threads(*(int *)team)

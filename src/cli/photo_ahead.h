@@ -1,4 +1,5 @@
-/* A photograph read, and its object found, by a thread of its own while something else is done.
+/* A photograph read, and its object found, by a thread of its own while something else is done
+ * (docs/notes/estimate_time.md).
  *
  *     photo_ahead first;
  *     photo_begin(&first, &job);

@@ -90,7 +90,7 @@ status stage_new(network *n, const merlin_maps *maps, int side, merlin_relightin
 void stage_free(stage *s);
 /* Another side for what follows. After a failure the stage is good for nothing but stage_free. */
 status stage_resize(stage *s, const merlin_maps *maps, int side);
-/* Takes the gloss away, but for what the relighting decoder paints. */
+/* Takes the gloss away, but for what the relighting decoder paints (docs/notes/rti_domes.md says what for). */
 status stage_make_matte(stage *s);
 /* Measures the white, a radiance, that leaves all but a thousandth of the object's values under these lamps below 1,
  * and a white matte surface that faces one of them at the object's centre. Shadows and bounces are not looked at, so

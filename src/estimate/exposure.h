@@ -12,7 +12,7 @@
 
 #include "image/image.h"
 
-/* The middle of the training data's whites, e^0.45. */
+/* The middle of the training data's whites, e^0.45 (docs/notes/white.md). */
 #define EXPOSURE_WHITE 1.568f
 
 /* Radiance per value. color: 3 channels, linear; mask: 1 channel, the object from 0.5 on. Within EXPOSURE_MOST_EV stops

@@ -19,8 +19,8 @@
  * coarse shape badly (detail.h). */
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_SIZE = 256, NETWORK_LARGEST_SIZE = 512 };
 
-/* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 37 ms on top of an
- * estimate's 177, and leave five to ten per cent less error. */
+/* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 55 ms on top of an
+ * estimate's 145, and leave five to ten per cent less error (docs/notes/several_views.md). */
 enum { NETWORK_VIEWS = 4 };
 
 /* Of the picture that is seen for all but fine shape, where `size` is asked for. */
@@ -46,7 +46,7 @@ status network_prepare_bounces(network *n, int size);
 status network_prepare_lights(network *n, int size);
 status network_prepare_normals(network *n, int size);
 /* Frees the programs and what memory they hold, most of a network's, or those alone that see photographs; they are made
- * anew when they are asked for. */
+ * anew when they are asked for (docs/notes/memory.md). */
 void network_release(network *n);
 void network_release_maps(network *n);
 /* Seconds spent on making programs since the last call. */

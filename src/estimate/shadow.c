@@ -9,7 +9,7 @@
 #include "estimate/fuse.h"
 #include "optics/camera.h"
 
-/* Over what range it ends. */
+/* Over what range it ends. This and what follows was tried (docs/notes/cast_shadows.md). */
 static const float THICKNESS_BORDER = 0.04f;
 /* How far behind the map is behind it, and over what range it becomes so: in pixels, and in shares of the way. */
 static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;

@@ -19,7 +19,7 @@ typedef struct eval_maps {
     img depth;     /* 1, scene units */
 } eval_maps;
 
-/* Sets of them. */
+/* Sets of them. What each is worth to relighting is in docs/notes/relighting_limits.md. */
 enum { EVAL_GIVEN_ALBEDO = 1, EVAL_GIVEN_NORMAL = 2, EVAL_GIVEN_ROUGHNESS = 4, EVAL_GIVEN_DEPTH = 8 };
 
 /* Copies those of the set, which must be of the same size. */

@@ -18,7 +18,7 @@ typedef struct eval_verdict {
     bool holds;    /* false where there is no figure */
 } eval_verdict;
 
-/* The goals of docs/evaluation.md held against the scores. */
+/* The goals of docs/evaluation.md held against the scores; what is short is in docs/notes/not_reached.md. */
 eval_verdict eval_judge(const eval_scores *scores, eval_row row);
 
 /* EVAL_GIVEN_* of "albedo", "normal", "roughness" or "depth"; 0 for anything else. */

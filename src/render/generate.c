@@ -29,6 +29,7 @@ typedef struct run {
     char message[512];
 } run;
 
+/* What eight paths cost is in docs/notes/paths.md. */
 render_options render_options_default(void)
 {
     return (render_options){.image = {.size = 128, .fov = 60, .strata = 4, .paths = 8}, .environment = true};

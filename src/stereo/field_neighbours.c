@@ -1,7 +1,7 @@
 #include "stereo/field_neighbours.h"
 
 /* Of a majority's member and of what it is against, beside the member's. Across a crease half of the neighbours are
- * strange to each other, and nobody is right. */
+ * strange to each other, and nobody is right. What the vote is worth is in docs/notes/real_captures.md. */
 static const float most_strange = 0.4f, much_stranger = 0.2f;
 
 /* 1 - cos 20 degrees */

@@ -5,7 +5,8 @@
 
 #include "stereo/ls_lanes.h"
 
-/* Pictures added at once; pictures whose bits fill a word; pixels side by side. */
+/* Pictures added at once; pictures whose bits fill a word; pixels side by side. docs/notes/least_squares.md has what
+ * was tried. */
 enum { TOGETHER = 2, WORD = 32, PRODUCTS = 8, CACHE_LINE = 64 };
 
 /* What one picture's light contributes. */

@@ -41,7 +41,7 @@ static const float most_offset = 0.1f, most_trust = 1e4f, least_trust = 1e-2f;
 
 /* The distance is told where this factor on it costs this much more, and a pixel this much, which noise does, too.
  * Rings of four lights have 1 to 1.2 and 0.04, three lights nothing; five about a ball 4 and 0.5, fifty about objects
- * of all kinds 1.6 at least and 8. */
+ * of all kinds 1.6 at least and 8 (docs/notes/solvers.md has what a ring leaves). */
 static const float elsewhere = 1.25f;
 static const double well_told = 1.3, least_told = 0.1;
 

@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "stereo/poisson_level.h"
 
-/* A link below this share of the strongest of both its ends joins nothing. */
+/* A link below this share of the strongest of both its ends joins nothing (docs/notes/depth_from_normals.md). */
 static const float STRONG = 0.1f;
 /* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
  * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of

@@ -24,7 +24,7 @@ static const float likely_terminator = 0.1f;
 /* How far highlights, shadows and the terminator may have taken Lambert's intensities, as a ratio. */
 static const double most_bent = 1.25;
 /* Of pst_intensities_find. Flat reliefs under unequal lights are told to 1 to 11 and come out 3 to 14 degrees off; ones
- * half a degree off, rendered objects and real ones are told to 24 and more. */
+ * half a degree off, rendered objects and real ones are told to 24 and more (docs/notes/unknown_lights.md). */
 static const double well_told = 12;
 /* Pixels of less of a channel say little of it. */
 static const float least_colour = 0.1f;

@@ -26,7 +26,8 @@ static const double absurd = 1e3;
 static const float far_away = 30;
 /* Of near lights, in the object's radii: from the second on they are distant ones, whose distances stand for their
  * strengths; from the first on they are not believed against the outline. Measured: 2.2 to 4.1 where they were truly
- * near (bowls under them, too), 8 and more where they were distant. */
+ * near (bowls under them, too), 8 and more where they were distant. What comes of it is in
+ * docs/notes/unknown_lights.md. */
 static const double doubtful = 5, farthest = 10;
 /* How much less like the balloon a surface may be than under distant lights, as a mean cosine. */
 static const double less_like = 0.3;

@@ -1,5 +1,5 @@
 /* Pixels that no light reaches: they show noise, and a fit to it is a normal at random, a spike in the mesh. They go on
- * from their neighbours instead.
+ * from their neighbours instead (docs/notes/real_captures.md).
  *
  *     status s = pst_unlit_fill(problem, &surface); */
 #ifndef MERLIN_STEREO_UNLIT_H

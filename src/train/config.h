@@ -30,7 +30,7 @@ typedef struct train_config {
     double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF beside the network's; 0: none, as the
                                    paper */
     double ssim_weight;   /* of structural dissimilarity of the relit images, by network and by BRDF; 0: none, as the
-                             paper */
+                             paper (docs/notes/similarity_in_training.md) */
     double dark_target;   /* setting B: share of the targets without an environment */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last */
     double memory_gib;    /* samples beyond this are read from disk each time */

@@ -32,7 +32,8 @@ static bool is_amd(void)
 #endif
 
 /* AMX computes in bfloat16 many times as fast, and AMD's cores do a bfloat16 product of pairs as often as a float32
- * one. Intel's cores do it a quarter as often: where AMX is missing or hidden, float32 is twice as fast. */
+ * one. Intel's cores do it a quarter as often: where AMX is missing or hidden, float32 is twice as fast
+ * (docs/notes/number_type.md). */
 nn_type tuning_fastest_type(void)
 {
     if (has_isa(dnnl_cpu_isa_avx512_core_amx)) return NN_BFLOAT16;
@@ -52,11 +53,8 @@ typedef struct filtered {
 
 enum { NEVER = INT_MAX };
 
-/* Measured on Zen 4 (two cores, 256×256 pictures, milliseconds filtered and summed): in float32 layers of 32×32 pixels
- * 4.3 and 11.0, of 64×64 7.9 and 19.5, of 128×128 7.1 and 14.6, and about as much in training; in bfloat16 4.2 and 5.9,
- * 7.8 and 9.9, and in training, forward and backward together, 32 channels of 128×128 106 and 94, of 64×64 the same.
- * Where nothing is trained, layers of 64 tiles are filtered in float32 up to 160 channels, and not those of 256 that
- * 512×512 pictures have: these would hold 40 MB more. */
+/* Measured on Zen 4 (docs/notes/filtered_layers.md). Where nothing is trained, layers of 64 tiles are filtered in
+ * float32 up to 160 channels, and not those of 256 that 512×512 pictures have: these would hold 40 MB more. */
 static filtered filtered_in(nn_type type, bool trained)
 {
 #if defined(__AVX2__) && defined(__FMA__)
