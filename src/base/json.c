@@ -5,14 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_KEYS = 64, WHERE = 256 };
-
-struct json_object {
-    cJSON *root;
-    char where[WHERE];
-    const cJSON *asked[MAX_KEYS];
-    int asked_count;
-};
+#include "base/json_parts.h"
 
 static bool only_space(const char *text, const char *end)
 {
@@ -26,7 +19,7 @@ status json_parse(const char *text, size_t size, const char *where, json_object 
     *out = NULL;
     json_object *o = calloc(1, sizeof *o);
     if (!o) return fail(ERROR_MEMORY, "%s: out of memory", where);
-    strncpy(o->where, where, WHERE - 1);
+    strncpy(o->where, where, JSON_WHERE - 1);
     const char *end = NULL;
     o->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
     status s = OK;
@@ -53,6 +46,11 @@ void json_free(json_object *o)
     free(o);
 }
 
+const char *json_where(const json_object *o)
+{
+    return o->where;
+}
+
 static status find(json_object *o, const char *key, const cJSON **out)
 {
     *out = NULL;
@@ -64,7 +62,7 @@ static status find(json_object *o, const char *key, const cJSON **out)
         *out = item;
     }
     if (!*out) return fail(ERROR_INPUT, "%s: \"%s\" is missing", o->where, key);
-    if (o->asked_count < MAX_KEYS) o->asked[o->asked_count++] = *out;
+    if (o->asked_count < JSON_KEYS) o->asked[o->asked_count++] = *out;
     return OK;
 }
 
@@ -102,7 +100,7 @@ status json_number(json_object *o, const char *key, double low, double high, dou
     return s == OK ? read_number(o, item, key, low, high, out) : s;
 }
 
-static bool has(const json_object *o, const char *key)
+bool json_has(const json_object *o, const char *key)
 {
     const cJSON *item;
     cJSON_ArrayForEach(item, o->root)
@@ -114,7 +112,7 @@ static bool has(const json_object *o, const char *key)
 
 status json_number_or(json_object *o, const char *key, double low, double high, double fallback, double *out)
 {
-    if (has(o, key)) return json_number(o, key, low, high, out);
+    if (json_has(o, key)) return json_number(o, key, low, high, out);
     *out = fallback;
     return OK;
 }
@@ -176,7 +174,7 @@ status json_ints(json_object *o, const char *key, int low, int high, int count, 
 
 status json_ints_or(json_object *o, const char *key, int low, int high, int count, int fallback, int *out)
 {
-    if (has(o, key)) return json_ints(o, key, low, high, count, out);
+    if (json_has(o, key)) return json_ints(o, key, low, high, count, out);
     for (int i = 0; i < count; i++)
         out[i] = fallback;
     return OK;

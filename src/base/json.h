@@ -21,6 +21,10 @@ typedef struct json_object json_object;
 /* The text must be one JSON object and nothing behind it. `where` is put in front of messages. */
 status json_parse(const char *text, size_t size, const char *where, json_object **out);
 void json_free(json_object *o);
+/* What is put in front of messages, for those about what was read. */
+const char *json_where(const json_object *o);
+
+bool json_has(const json_object *o, const char *key);
 
 /* Each fails if the key is missing, given twice, of another type or outside the range (inclusive). */
 status json_int(json_object *o, const char *key, int low, int high, int *out);

@@ -1,0 +1,18 @@
+/* What a json_object is, for those who put one together. */
+#ifndef MERLIN_BASE_JSON_PARTS_H
+#define MERLIN_BASE_JSON_PARTS_H
+
+#include <cjson/cJSON.h>
+
+#include "base/json.h"
+
+enum { JSON_KEYS = 64, JSON_WHERE = 256 };
+
+struct json_object {
+    cJSON *root;
+    char where[JSON_WHERE];
+    const cJSON *asked[JSON_KEYS];
+    int asked_count;
+};
+
+#endif
