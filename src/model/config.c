@@ -3,12 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
-#include "base/json.h"
+#include "base/json_file.h"
 #include "model/model.h"
 
 /* Three times a width is the most that a layer takes in: what it shares, what comes up and what was there before. */
-enum { MAX_WIDTH = 640, MAX_BLOCKS = 9, MAX_CONFIG_BYTES = 1 << 20 };
+enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };
 
 static const char *const relight_words[] = {"network", "brdf"};
 static const char *const lighting_words[] = {"point", "both", "any"};
@@ -69,16 +68,19 @@ status model_config_parse(const char *json, size_t size, const char *where, mode
 
 status model_config_read(const char *path, model_config *out)
 {
-    char *text = NULL, *inner = NULL;
-    size_t size = 0;
-    json_object *o = NULL;
-    status s = file_read(path, MAX_CONFIG_BYTES, &text, &size);
-    if (s == OK) s = json_parse(text, size, path, &o);
-    if (s == OK) s = json_inner(o, "model", &inner);
-    if (s == OK) s = model_config_parse(inner, strlen(inner), path, out);
+    memset(out, 0, sizeof *out);
+    char *inner = NULL;
+    json_object *o;
+    status s = json_file_read(path, "model", &o);
+    if (s != OK) return s;
+    if (json_has(o, "name")) {
+        s = read_keys(o, json_where(o), out);
+    } else {
+        s = json_inner(o, "model", &inner);
+        if (s == OK) s = model_config_parse(inner, strlen(inner), json_where(o), out);
+    }
     json_free(o);
     free(inner);
-    free(text);
     return s;
 }
 

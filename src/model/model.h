@@ -1,7 +1,7 @@
 /* MERLiN and its ablations as graphs.
  *
- * A model is its configuration (JSON: configs/NAME.json, and inside every weights file) plus parameters. The graph's
- * inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
+ * A model is its configuration (JSON: configs/models/NAME.json, and inside every weights file) plus parameters. The
+ * graph's inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
  *
  *   inputs   "image"  3, model_encode_image of the linear image, multiplied by the mask      "mask"   1
  *            "light"  vector 3 or 30: the target's lighting code: a place, and with "lighting": "both" an environment's
@@ -79,7 +79,8 @@ typedef struct model_config {
 /* From JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
-/* The "model" object of a file like configs/NAME.json. */
+/* A file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files that it
+ * names (base/json_file.h). */
 status model_config_read(const char *path, model_config *out);
 /* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
 char *model_config_write(const model_config *config);

@@ -6,10 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
-#include "base/json.h"
-
-enum { MAX_CONFIG_BYTES = 1 << 20 };
+#include "base/json_file.h"
 
 static const char *const type_words[] = {"f32", "bf16", "auto"};
 
@@ -116,35 +113,47 @@ static status parse_training(const char *json, const char *where, train_config *
     return s;
 }
 
-status train_config_parse(const char *json, size_t size, const char *where, model_config *model, train_config *training)
+static status parse_parts(json_object *o, model_config *model, train_config *training)
 {
-    memset(model, 0, sizeof *model);
-    memset(training, 0, sizeof *training);
+    const char *where = json_where(o);
     char *model_json = NULL, *training_json = NULL;
-    json_object *o;
-    status s = json_parse(json, size, where, &o);
-    if (s != OK) return s;
-    s = json_inner(o, "model", &model_json);
+    if (json_has(o, "name") && !json_has(o, "model"))
+        return fail(ERROR_INPUT, "%s describes a network; what is trained is a file that has it as its \"model\"",
+                    where);
+    status s = json_inner(o, "model", &model_json);
     if (s == OK) s = json_inner(o, "training", &training_json);
     if (s == OK) s = json_finish(o);
     if (s == OK) s = model_config_parse(model_json, strlen(model_json), where, model);
     if (s == OK) s = parse_training(training_json, where, training);
     if (s == OK && training->relight_brdf_weight > 0 && model->relight != MODEL_RELIGHT_NETWORK)
         s = fail(ERROR_INPUT, "%s: \"relight_brdf_weight\" needs \"relight\": \"network\"", where);
-    json_free(o);
     free(model_json);
     free(training_json);
     return s;
 }
 
+/* Takes what a reader has come to, and o. */
+static status parse_read(status s, json_object *o, model_config *model, train_config *training)
+{
+    memset(model, 0, sizeof *model);
+    memset(training, 0, sizeof *training);
+    if (s == OK) s = parse_parts(o, model, training);
+    json_free(o);
+    return s;
+}
+
+status train_config_parse(const char *json, size_t size, const char *where, model_config *model, train_config *training)
+{
+    json_object *o;
+    status s = json_parse(json, size, where, &o);
+    return parse_read(s, o, model, training);
+}
+
 status train_config_read(const char *path, model_config *model, train_config *training)
 {
-    char *text = NULL;
-    size_t size = 0;
-    status s = file_read(path, MAX_CONFIG_BYTES, &text, &size);
-    if (s == OK) s = train_config_parse(text, size, path, model, training);
-    free(text);
-    return s;
+    json_object *o;
+    status s = json_file_read(path, "model", &o);
+    return parse_read(s, o, model, training);
 }
 
 char *train_config_write(const train_config *c)

@@ -1,4 +1,4 @@
-/* What `merlin train` is told: {"model": {...}, "training": {...}}, one file per experiment in configs/. */
+/* What `merlin train` is told: {"model": {...}, "training": {...}}, one file per stage in configs/runs. */
 #ifndef MERLIN_TRAIN_CONFIG_H
 #define MERLIN_TRAIN_CONFIG_H
 
@@ -43,6 +43,7 @@ typedef struct train_config {
 /* Every key is required but those said to be optional, unknown ones are refused; messages name the key. */
 status train_config_parse(const char *json, size_t size, const char *where, model_config *model,
                           train_config *training);
+/* The same from a file, with those that it names (base/json_file.h); "model" may be a path. */
 status train_config_read(const char *path, model_config *model, train_config *training);
 /* The "training" object as JSON, malloc'ed: equal text means equal training; optional keys are in it unless they are as
  * if left out. NULL if memory ran out. */

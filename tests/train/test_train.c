@@ -465,6 +465,37 @@ static void a_run_goes_on_with_less_memory(void **state)
     if (train(f, "a", true, 0) != OK) fail_msg("%s", status_message());
 }
 
+/* The one configuration as three files: its model, another training, and what makes that this one. */
+static void write_in_parts(const fixture *f)
+{
+    size_t size;
+    char *text, *model = file_join(f->root, "model.json"), *base = file_join(f->root, "base.json");
+    assert_int_equal(file_read(f->config, 1 << 20, &text, &size), OK);
+    char *begin = strstr(text, "{\"name\""), *end = strstr(text, ", \"training\""), *seed = strstr(text, "\"seed\": 1");
+    assert_true(begin && end && seed);
+    seed[strlen("\"seed\": ")] = '7';
+    assert_int_equal(file_write(model, begin, (size_t)(end - begin)), OK);
+    end[1] = '{';
+    assert_int_equal(file_write(base, end + 1, size - (size_t)(end + 1 - text)), OK);
+    static const char parts[] = "{\"base\": \"base.json\", \"model\": \"model.json\", \"training\": {\"seed\": 1}}";
+    assert_int_equal(file_write(f->config, parts, strlen(parts)), OK);
+    free(model);
+    free(base);
+    free(text);
+}
+
+/* What a checkpoint belongs to is what was trained, wherever that was written. */
+static void a_run_goes_on_by_a_configuration_in_parts(void **state)
+{
+    const fixture *f = *state;
+    write_config(f, 12, 2, 2, jitter);
+    if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
+    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    write_in_parts(f);
+    if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
+    same_run(f, "a", "b");
+}
+
 static void weights_without_a_checkpoint_are_kept(void **state)
 {
     const fixture *f = *state;
@@ -588,6 +619,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_curve_cut_within_its_header_begins_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(run_is_not_overwritten_without_resume, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_run_goes_on_with_less_memory, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_goes_on_by_a_configuration_in_parts, set_up, tear_down),
         cmocka_unit_test_setup_teardown(weights_without_a_checkpoint_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_another_configuration_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(checkpoint_of_impossible_counts_is_refused, set_up, tear_down),
