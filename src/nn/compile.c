@@ -58,7 +58,7 @@ static status fill_step(compilation *c, int index)
     for (int k = 0; k < step->inputs; k++) {
         const value *x = input_of(c, index, k);
         step->in[k] = step->in_gradient[k] = x->tensor;
-        step->wants[k] = x->differentiable && lower_passes_gradient(head->node, k);
+        step->wants[k] = x->differentiable && op_passes_gradient(head->node->op, k);
     }
     step->backs = train && (op_is_loss(step->op) ? step->wants[0] : result->differentiable);
     status s = params_of_node(c->program->params, head->node, &step->params);

@@ -31,37 +31,6 @@ status graph_check(const nn_graph *g)
     return g->error == OK ? OK : fail(g->error, "%s", g->message);
 }
 
-const char *op_name(nn_op op)
-{
-    static const char *const names[] = {"input",
-                                        "compute",
-                                        "float",
-                                        "conv2d",
-                                        "linear",
-                                        "batch_norm",
-                                        "relu",
-                                        "tanh",
-                                        "sigmoid",
-                                        "concat",
-                                        "slice",
-                                        "add",
-                                        "gate",
-                                        "scale_shift",
-                                        "upsample_bilinear",
-                                        "tile",
-                                        "space_to_depth",
-                                        "depth_to_space",
-                                        "spatial_mean",
-                                        "normalize",
-                                        "reciprocal",
-                                        "render",
-                                        "environment",
-                                        "masked_l2",
-                                        "masked_gradient_l2",
-                                        "masked_dssim"};
-    return names[op];
-}
-
 __attribute__((format(printf, 2, 3))) static nn_node *reject(nn_graph *g, const char *format, ...)
 {
     if (g->error == OK) {

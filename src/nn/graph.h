@@ -4,35 +4,7 @@
 #define MERLIN_NN_GRAPH_H
 
 #include "nn/nn.h"
-
-typedef enum nn_op {
-    OP_INPUT,
-    OP_COMPUTE,
-    OP_FLOAT,
-    OP_CONV,
-    OP_LINEAR,
-    OP_NORM,
-    OP_RELU,
-    OP_TANH,
-    OP_SIGMOID,
-    OP_CONCAT,
-    OP_SLICE,
-    OP_ADD,
-    OP_GATE,
-    OP_SCALE_SHIFT,
-    OP_UPSAMPLE_BILINEAR,
-    OP_TILE,
-    OP_SPACE_TO_DEPTH,
-    OP_DEPTH_TO_SPACE,
-    OP_SPATIAL_MEAN,
-    OP_NORMALIZE,
-    OP_RECIPROCAL,
-    OP_RENDER,
-    OP_ENVIRONMENT,
-    OP_MASKED_L2,
-    OP_MASKED_GRADIENT_L2,
-    OP_MASKED_DSSIM,
-} nn_op;
+#include "nn/op.h"
 
 enum { NN_MAX_INPUTS = 8 };
 
@@ -73,18 +45,5 @@ struct nn_graph {
 
 /* Repeats the graph's first error, or OK. */
 status graph_check(const nn_graph *g);
-/* "conv2d", for messages and profiles. */
-const char *op_name(nn_op op);
-
-static inline bool op_is_loss(nn_op op)
-{
-    return op == OP_MASKED_L2 || op == OP_MASKED_GRADIENT_L2 || op == OP_MASKED_DSSIM;
-}
-
-/* Convolution and fully connected: a weight and maybe a bias. */
-static inline bool op_is_conv(nn_op op)
-{
-    return op == OP_CONV || op == OP_LINEAR;
-}
 
 #endif

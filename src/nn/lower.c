@@ -36,14 +36,6 @@ static status infer_shape(const nn_options *o, value *v)
     return OK;
 }
 
-/* Which inputs a gradient flows to. */
-bool lower_passes_gradient(const nn_node *node, int input)
-{
-    if (op_is_loss(node->op)) return input == 0;
-    if (node->op == OP_ENVIRONMENT) return input < 3;
-    return node->op != OP_RENDER || input < 4;
-}
-
 bool lower_wants_output(const nn_options *o, const char *name)
 {
     if (!o->outputs) return true;
@@ -78,15 +70,15 @@ static void find_differentiable(lowering *l)
     int count = l->graph->count;
     for (int i = 0; i < count; i++) { /* depends on a parameter */
         value *v = &l->values[i];
-        v->differentiable = op_is_conv(v->node->op) || v->node->op == OP_NORM;
+        v->differentiable = op_has_params(v->node->op);
         for (int k = 0; k < v->node->inputs; k++)
-            if (lower_passes_gradient(v->node, k) && l->values[v->in[k]].differentiable) v->differentiable = true;
+            if (op_passes_gradient(v->node->op, k) && l->values[v->in[k]].differentiable) v->differentiable = true;
     }
     for (int i = count; i-- > 0;) { /* and a loss depends on it */
         value *v = &l->values[i];
         if (op_is_loss(v->node->op)) v->reaches_loss = true;
         for (int k = 0; v->reaches_loss && k < v->node->inputs; k++)
-            if (lower_passes_gradient(v->node, k)) l->values[v->in[k]].reaches_loss = true;
+            if (op_passes_gradient(v->node->op, k)) l->values[v->in[k]].reaches_loss = true;
         v->differentiable = v->differentiable && v->reaches_loss;
     }
 }

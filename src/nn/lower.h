@@ -43,7 +43,5 @@ void lowering_free(lowering *l);
 bool lower_wants_output(const nn_options *options, const char *name);
 /* The index of the node that stands for x: conversions between equal types are skipped. */
 int lower_resolve(nn_type compute, const nn_node *x);
-/* Whether a gradient flows from a node to its k-th input. */
-bool lower_passes_gradient(const nn_node *node, int k);
 
 #endif
