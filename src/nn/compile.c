@@ -112,19 +112,6 @@ static void use_buffer(compilation *c, int *buffer, size_t bytes, int time)
     if (time > b->last) b->last = time;
 }
 
-static bool backward_needs_input(nn_op op)
-{
-    return op_is_conv(op) || op_is_loss(op) || op == OP_NORM || op == OP_GATE || op == OP_NORMALIZE ||
-           op == OP_RENDER || op == OP_ENVIRONMENT;
-}
-
-static bool backward_needs_output(const nn_step *step)
-{
-    nn_op op = step->op;
-    return op == OP_RELU || op == OP_TANH || op == OP_SIGMOID || op == OP_RECIPROCAL || op == OP_NORMALIZE ||
-           (op_is_conv(op) && step->relu);
-}
-
 static void use_values(compilation *c, int i)
 {
     const nn_step *step = &c->program->steps[i];
@@ -135,12 +122,12 @@ static void use_values(compilation *c, int i)
         value *x = input_of(c, i, k);
         use_buffer(c, &x->buffer, tensor_bytes(&x->tensor), i);
         if (!step->backs) continue;
-        if (backward_needs_input(step->op)) use_buffer(c, &x->buffer, 0, back);
+        if (step->reads_in) use_buffer(c, &x->buffer, 0, back);
         if (step->wants[k]) use_buffer(c, &x->gradient_buffer, tensor_bytes(&x->tensor), back);
     }
     if (op_is_loss(step->op)) return;
     use_buffer(c, &result->buffer, tensor_bytes(&result->tensor), i);
-    if (step->backs && backward_needs_output(step)) use_buffer(c, &result->buffer, 0, back);
+    if (step->backs && step->reads_out) use_buffer(c, &result->buffer, 0, back);
     if (step->backs) use_buffer(c, &result->gradient_buffer, tensor_bytes(&result->tensor), back);
 }
 

@@ -43,6 +43,7 @@ struct nn_step {
     /* the device's answers from create */
     const step_functions *run;
     void *state;
+    bool reads_in, reads_out;                 /* whether backward reads in and out, which are kept for it */
     size_t forward_scratch, backward_scratch; /* for the time of one call */
     size_t own_bytes;                         /* held by state: converted weights and the like */
     double forward_flops, backward_flops;

@@ -9,11 +9,12 @@
 #include <setjmp.h>
 
 #include "base/rng.h"
-#include "nn/nn.h"
+#include "nn/lower.h"
+#include "nn/program.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */
 
-/* Smooth everywhere but in ReLU and in the rendering layer's clipping, and every value used in several ways. */
+/* Smooth everywhere but in one ReLU and in the rendering layer's clipping, and every value used in several ways. */
 static nn_graph *build_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -24,7 +25,8 @@ static nn_graph *build_net(void)
     nn_node *coarse = nn_sigmoid(g, nn_conv2d(g, fine, "coarse", 10, 3, 2, NN_BIAS));
     nn_node *code = nn_tanh(g, nn_linear(g, nn_compute(g, light), "light1", 6));
     code = nn_tile(g, nn_linear(g, code, "light2", 5), coarse);
-    nn_node *deep = nn_concat(g, (nn_node *[]){coarse, code, nn_slice(g, coarse, 3, 4)}, 3);
+    nn_node *folded = nn_space_to_depth(g, nn_slice(g, fine, 2, 2), 2);
+    nn_node *deep = nn_concat(g, (nn_node *[]){coarse, code, nn_slice(g, coarse, 3, 4), folded}, 4);
     nn_node *up = nn_upsample_bilinear(g, nn_conv2d(g, deep, "up", 12, 1, 1, NN_BIAS));
     nn_node *gate = nn_sigmoid(g, nn_conv2d(g, nn_upsample_bilinear(g, deep), "gate", 1, 1, 1, NN_BIAS));
     nn_node *joined = nn_add(g, up, nn_gate(g, fine, gate));
@@ -33,16 +35,15 @@ static nn_graph *build_net(void)
     nn_node *head = nn_float(g, nn_conv2d(g, joined, "head", 32, 3, 1, NN_BIAS));
     head = nn_depth_to_space(g, head, 2);
     nn_node *albedo = nn_tanh(g, nn_slice(g, head, 0, 3));
-    nn_node *tilt = nn_concat(g,
-                              (nn_node *[]){nn_tanh(g, nn_slice(g, head, 3, 2)),
-                                            nn_scale_shift(g, nn_tanh(g, nn_slice(g, head, 5, 1)), 0.2f, 2)},
-                              2);
-    nn_node *normal = nn_normalize(g, tilt);
+    nn_node *slope = nn_tanh(g, nn_slice(g, head, 3, 2));
+    nn_node *toward = nn_relu(g, nn_scale_shift(g, nn_tanh(g, nn_slice(g, head, 5, 1)), 0.2f, 2));
+    nn_node *normal = nn_normalize(g, nn_concat(g, (nn_node *[]){slope, toward}, 2));
     nn_node *roughness = nn_tanh(g, nn_slice(g, head, 6, 1));
     nn_node *depth = nn_reciprocal(g, nn_tanh(g, nn_slice(g, head, 7, 1)), 0.4f, 0.65f);
     nn_node *radiance =
         nn_render(g, &(nn_render_inputs){albedo, normal, roughness, depth, mask, light, NULL}, 60, 5.95f);
-    nn_node *mean = nn_tanh(g, nn_linear(g, nn_spatial_mean(g, coarse), "mean", 27));
+    nn_node *mean = nn_compute(g, nn_spatial_mean(g, nn_float(g, coarse)));
+    mean = nn_tanh(g, nn_linear(g, mean, "mean", 27));
     nn_node *ambient = nn_environment(g, albedo, normal, mask, nn_float(g, mean));
     radiance = nn_add(g, radiance, ambient);
     nn_output(g, radiance, "radiance");
@@ -137,6 +138,68 @@ static void gradients_match_finite_differences(void **state)
     }
     nn_program_free(p);
     nn_params_free(params);
+}
+
+/* With a gradient through it, and as a step of its own. */
+static void the_net_has_every_operation(void **state)
+{
+    (void)state;
+    nn_graph *g = build_net();
+    const nn_options options = {.batch = 2, .height = 8, .width = 8, .type = NN_BFLOAT16, .purpose = NN_TRAIN};
+    lowering low;
+    assert_int_equal(lower_graph(g, &options, &low), OK);
+    bool seen[OP_COUNT] = {[OP_INPUT] = true};
+    for (int i = 0; i < low.step_count; i++) {
+        const nn_op op = low.values[low.steps[i].head].node->op;
+        if (op_is_loss(op) || low.values[low.steps[i].result].differentiable) seen[op] = true;
+    }
+    for (nn_op op = 0; op < OP_COUNT; op++)
+        if (!seen[op]) fail_msg("%s is missing", op_name(op));
+    lowering_free(&low);
+    nn_graph_free(g);
+}
+
+/* Runs a step's backward with NaN in place of what it says that it does not read. */
+static void backward_without(nn_step *step, void *nan)
+{
+    void *in[NN_MAX_INPUTS], *out = step->out.data;
+    for (int k = 0; k < step->inputs; k++) {
+        in[k] = step->in[k].data;
+        if (!step->reads_in) step->in[k].data = nan;
+    }
+    if (!step->reads_out) step->out.data = nan;
+    assert_int_equal(step->run->backward(step), OK);
+    for (int k = 0; k < step->inputs; k++)
+        step->in[k].data = in[k];
+    step->out.data = out;
+}
+
+/* What is not kept for it others may have overwritten, though in this net they may not. */
+static void backward_reads_only_what_is_kept_for_it(void **state)
+{
+    (void)state;
+    for (nn_type type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {
+        nn_params *params = NULL;
+        const nn_options options = {.batch = 2, .height = 8, .width = 8, .type = type, .purpose = NN_TRAIN};
+        nn_program *p = compile_net(&params, &options);
+        size_t bytes = params->gradient_count * sizeof(float);
+        float *expected = malloc(bytes);
+        void *nan = malloc(p->arena_bytes);
+        memset(nan, 0xff, p->arena_bytes);
+        assert_int_equal(nn_forward(p), OK);
+        assert_int_equal(nn_backward(p), OK);
+        memcpy(expected, params->gradients, bytes);
+        assert_int_equal(nn_forward(p), OK);
+        p->device->begin(p->context);
+        for (int i = p->step_count; i-- > 0;)
+            if (p->steps[i].backs) backward_without(&p->steps[i], nan);
+        p->device->end(p->context);
+        assert_memory_equal(params->gradients, expected, bytes);
+        free(expected);
+        free(nan);
+        nn_program_free(p);
+        nn_params_free(params);
+    }
 }
 
 static void training_steps(nn_type type, int steps, nn_params **params)
@@ -251,6 +314,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gradients_match_finite_differences),
+        cmocka_unit_test(the_net_has_every_operation),
+        cmocka_unit_test(backward_reads_only_what_is_kept_for_it),
         cmocka_unit_test(training_is_reproducible_to_the_bit),
         cmocka_unit_test(programs_of_several_sizes_and_types_share_parameters),
         cmocka_unit_test(inference_needs_less_memory_than_training),

@@ -9,13 +9,6 @@
 #include "nn/cpu/steps.h"
 #include "nn/cpu/tuning.h"
 
-static status create(nn_step *step)
-{
-    if (op_is_conv(step->op)) return tuning_filters(step) ? winograd_create(step) : conv_create(step);
-    if (step->op == OP_NORM) return norm_create(step);
-    return kernel_create(step);
-}
-
 /* Denormal numbers cost a hundred times their worth: every compute thread takes them for zero during a run. */
 static void begin(void *p)
 {
@@ -53,7 +46,7 @@ const nn_device *cpu_device(void)
         .fastest_type = tuning_fastest_type,
         .open = dnn_open,
         .close = dnn_close,
-        .create = create,
+        .create = step_create,
         .allocate = memory_new,
         .release = memory_free,
         .begin = begin,

@@ -292,6 +292,8 @@ status conv_create(nn_step *step)
     if (!state) return fail(ERROR_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = state;
+    step->reads_in = true;
+    step->reads_out = step->relu;
     state->has_bias = step->at.bias || step->folded.weight;
     state->plain = weights_shape(step, NN_FLOAT32, dnnl_oihw);
     conv_count_flops(step);

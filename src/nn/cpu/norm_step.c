@@ -79,6 +79,7 @@ status norm_create(nn_step *step)
     if (!state) return fail(ERROR_MEMORY, "no memory for batch norm");
     step->run = &functions;
     step->state = state;
+    step->reads_in = true;
     size_t c = (size_t)step->out.c, count = 5 * c + norm_partial_floats(step->out.c);
     state->mean = calloc(count, sizeof(float));
     state->sums = calloc(2 * c, sizeof(double));

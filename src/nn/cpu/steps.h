@@ -16,8 +16,9 @@ bool winograd_suits(const nn_step *step);
 status winograd_create(nn_step *step);
 
 status norm_create(nn_step *step);
-/* All that nn/cpu/kernels.h computes. */
-status kernel_create(nn_step *step);
+
+/* Any of these, or what nn/cpu/kernels.h computes, by the step's operation. */
+status step_create(nn_step *step);
 
 status cpu_measure_peak(void *context, nn_type type, nn_peak *out);
 

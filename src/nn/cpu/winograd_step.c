@@ -119,6 +119,8 @@ status winograd_create(nn_step *step)
     if (!own) return fail(ERROR_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = own;
+    step->reads_in = true;
+    step->reads_out = step->relu;
     own->shape = shape_of(step);
     conv_count_flops(step);
     plan_scratch(step, own);
