@@ -1,13 +1,14 @@
 /* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013). */
-#include "nn/nn.h"
+#include "nn/adam.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "nn/cpu/kernels.h"
+#include "nn/device.h"
 
 struct nn_adam {
+    const nn_device *device;
     nn_params *params;
     nn_adam_options options;
     int64_t steps, skipped;
@@ -27,7 +28,7 @@ status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **
         free(moments);
         return fail(ERROR_MEMORY, "no memory for the optimizer's moments of %zu values", nn_params_values(params));
     }
-    *adam = (nn_adam){.params = params, .options = *options, .moments = moments};
+    *adam = (nn_adam){.device = cpu_device(), .params = params, .options = *options, .moments = moments};
     *out = adam;
     return OK;
 }
@@ -39,12 +40,13 @@ void nn_adam_free(nn_adam *adam)
     free(adam);
 }
 
-static double gradient_norm(nn_params *params)
+static double gradient_norm(const nn_adam *adam)
 {
+    nn_params *params = adam->params;
     double sum = 0;
     for (size_t i = 0; i < nn_params_count(params); i++) {
         const nn_param *p = nn_params_at(params, i);
-        if (p->gradient) sum += cpu_sum_squares(p->gradient, p->count);
+        if (p->gradient) sum += adam->device->sum_squares(p->gradient, p->count);
     }
     return sqrt(sum);
 }
@@ -56,24 +58,25 @@ status nn_adam_step(nn_adam *adam, float learning_rate)
 {
     if (!(learning_rate >= 0) || isinf(learning_rate))
         return fail(ERROR_USAGE, "the learning rate must be a number of at least 0");
-    double norm = gradient_norm(adam->params), clip = (double)adam->options.clip_norm;
+    double norm = gradient_norm(adam), clip = (double)adam->options.clip_norm;
     double scale = clip > 0 && norm > clip ? clip / norm : 1;
     if (!(norm * scale <= LARGEST_NORM)) {
         adam->skipped++;
         return OK;
     }
     adam->steps++;
-    cpu_adam_step step = {.beta1 = adam->options.beta1,
-                          .beta2 = adam->options.beta2,
-                          .epsilon = adam->options.epsilon,
-                          .correction1 = (float)(1 - pow((double)adam->options.beta1, (double)adam->steps)),
-                          .correction2 = (float)(1 - pow((double)adam->options.beta2, (double)adam->steps)),
-                          .gradient_scale = (float)scale};
+    adam_step step = {.beta1 = adam->options.beta1,
+                      .beta2 = adam->options.beta2,
+                      .epsilon = adam->options.epsilon,
+                      .correction1 = (float)(1 - pow((double)adam->options.beta1, (double)adam->steps)),
+                      .correction2 = (float)(1 - pow((double)adam->options.beta2, (double)adam->steps)),
+                      .gradient_scale = (float)scale};
     for (size_t i = 0; i < nn_params_count(adam->params); i++) {
         nn_param *p = nn_params_at(adam->params, i);
         if (!p->gradient) continue;
         step.learning_rate = learning_rate * p->learning_rate_scale;
-        cpu_adam(&step, p->count, p->value, p->gradient, nn_adam_moment(adam, i, 1), nn_adam_moment(adam, i, 2));
+        adam->device->adam(&step, p->count, p->value, p->gradient, nn_adam_moment(adam, i, 1),
+                           nn_adam_moment(adam, i, 2));
     }
     nn_params_touch(adam->params);
     return OK;

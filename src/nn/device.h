@@ -6,6 +6,7 @@
 #ifndef MERLIN_NN_DEVICE_H
 #define MERLIN_NN_DEVICE_H
 
+#include "nn/adam.h"
 #include "nn/graph.h"
 #include "nn/params.h"
 #include "nn/tensor.h"
@@ -68,6 +69,10 @@ typedef struct nn_device {
     void (*begin)(void *context); /* before and after the steps of a run */
     void (*end)(void *context);
     void (*convert)(const nn_tensor *from, nn_tensor *to); /* an output to float32 */
+    /* the optimizer's, on the floats of one parameter */
+    void (*adam)(const adam_step *step, size_t count, float *value, const float *gradient, float *moment1,
+                 float *moment2);
+    double (*sum_squares)(const float *x, size_t count); /* NaN or infinity if any element is */
     status (*measure_peak)(void *context, nn_type type, nn_peak *out);
 } nn_device;
 

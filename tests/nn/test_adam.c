@@ -226,7 +226,7 @@ static void kernels_do_not_depend_on_the_number_of_threads(void **state)
     (void)state;
     enum { COUNT = 40001 };
     cpu_tensor g = tensor_random(NN_FLOAT32, 1, 1, 1, COUNT, 1);
-    cpu_adam_step step = {1e-3f, 0.9f, 0.999f, 1e-8f, 0.1f, 1e-3f, 0.5f};
+    adam_step step = {1e-3f, 0.9f, 0.999f, 1e-8f, 0.1f, 1e-3f, 0.5f};
     cpu_tensor v[2], m1[2], m2[2];
     double sum[2];
     int before = parallel_threads();

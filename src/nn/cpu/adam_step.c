@@ -5,8 +5,7 @@
 
 #include "nn/cpu/chunk.h"
 
-void cpu_adam(const cpu_adam_step *step, size_t count, float *value, const float *gradient, float *moment1,
-              float *moment2)
+void cpu_adam(const adam_step *step, size_t count, float *value, const float *gradient, float *moment1, float *moment2)
 {
     float b1 = step->beta1, b2 = step->beta2, rate = step->learning_rate / step->correction1;
     float second = 1 / step->correction2, scale = step->gradient_scale, epsilon = step->epsilon;

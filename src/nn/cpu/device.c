@@ -52,6 +52,8 @@ const nn_device *cpu_device(void)
         .begin = begin,
         .end = end,
         .convert = convert,
+        .adam = cpu_adam,
+        .sum_squares = cpu_sum_squares,
         .measure_peak = cpu_measure_peak,
     };
     return &device;

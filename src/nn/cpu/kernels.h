@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "nn/adam.h"
 #include "nn/tensor.h"
 
 enum { CPU_MAX_CHANNELS = 2048 }; /* the widest tensor these loops take: their buffers live on the stack */
@@ -105,13 +106,7 @@ status cpu_masked_dssim(const cpu_tensor *prediction, const cpu_tensor *target, 
 status cpu_masked_dssim_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                                  double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
 
-typedef struct cpu_adam_step {
-    float learning_rate, beta1, beta2, epsilon;
-    float correction1, correction2; /* 1 - beta^t */
-    float gradient_scale;           /* from clipping */
-} cpu_adam_step;
-void cpu_adam(const cpu_adam_step *step, size_t count, float *value, const float *gradient, float *moment1,
-              float *moment2);
+void cpu_adam(const adam_step *step, size_t count, float *value, const float *gradient, float *moment1, float *moment2);
 /* Σ g² in double, fixed order; NaN or infinity if any element is. */
 double cpu_sum_squares(const float *x, size_t count);
 

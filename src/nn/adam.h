@@ -1,0 +1,11 @@
+/* Adam's step as a device is asked for it, one parameter at a time. Internal to src/nn. */
+#ifndef MERLIN_NN_ADAM_H
+#define MERLIN_NN_ADAM_H
+
+typedef struct adam_step {
+    float learning_rate, beta1, beta2, epsilon;
+    float correction1, correction2; /* 1 - beta^t */
+    float gradient_scale;           /* from clipping */
+} adam_step;
+
+#endif
