@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install test test-debian asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -13,7 +13,7 @@ setup-build setup-test setup-check: setup-%:
 build: setup-build
 	@test -f build/release/build.ninja || cmake --preset release -DBUILD_TESTING=OFF >build-release.log 2>&1 || { cat build-release.log; exit 1; }
 	@rm -f build-release.log
-	@cmake --build --preset release --target merlin
+	@cmake --build --preset release --target merlin merlin-lab
 
 # One photograph taken apart and lit again.
 demo: build
@@ -24,7 +24,7 @@ demo: build
 	@echo "the light going round:           $(OUT)/orbit/orbit.webp"
 	@echo "overview:                        $(OUT)/overview.png"
 
-# The command, libmerlin.so, its headers, the weights and the manual, under PREFIX. In /usr/local the loader finds a new
+# The commands, libmerlin.so, its headers, the weights and the manual, under PREFIX. In /usr/local the loader finds a new
 # library by its cache alone.
 PREFIX = /usr/local
 install: build
@@ -42,6 +42,13 @@ SUITE = trixie
 FOLDER = /var/tmp/merlin-$(SUITE)
 test-debian:
 	@tools/test-in-debian $(SUITE) "$(FOLDER)"
+
+# merlin and libmerlin without merlin-lab, which want neither Embree nor assimp, and the tests that are theirs (PRODUCT_TESTS).
+PRODUCT_TESTS = .
+product: setup-test
+	cmake --preset product
+	cmake --build --preset product
+	ctest --preset product -R '$(PRODUCT_TESTS)'
 
 debug: setup-test
 	cmake --preset debug

@@ -1,10 +1,11 @@
-# One static library a folder of src/, and one program from src/cli/.
+# One static library a folder of src/, and one program a folder of commands.
 
-# merlin_module(NAME LINK targets...): src/NAME/**.c becomes merlin_NAME; a folder of headers alone becomes an
-# interface library.
-function(merlin_module name)
+# merlin_module(FOLDER LINK targets...): src/FOLDER/**.c becomes merlin_NAME, NAME the folder's own name; a folder of
+# headers alone becomes an interface library.
+function(merlin_module folder)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.c)
+  get_filename_component(name ${folder} NAME)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
   if(sources)
     add_library(merlin_${name} STATIC ${sources})
     target_include_directories(merlin_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
@@ -29,12 +30,10 @@ function(merlin_loads name macro library)
   target_include_directories(merlin_${name} SYSTEM PRIVATE ${ARGN})
 endfunction()
 
-function(merlin_program name)
+# merlin_program(NAME FOLDER LINK targets...): src/FOLDER/*.c becomes the program NAME.
+function(merlin_program name folder)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/cli/*.c)
-  if(sources)
-    add_executable(${name} ${sources})
-    target_link_libraries(${name} PRIVATE ${ARG_LINK})
-    target_compile_definitions(${name} PRIVATE MERLIN_LEAVES_AT_ONCE=$<IF:$<BOOL:${MERLIN_SANITIZE}>,0,1>)
-  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
+  add_executable(${name} ${sources})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK})
 endfunction()

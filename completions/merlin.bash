@@ -1,9 +1,9 @@
-# Bash completion for merlin: source it, or install it as share/bash-completion/completions/merlin. Commands and options
-# are what merlin --help says.
+# Bash completion for merlin and merlin-lab: source it, or install it as share/bash-completion/completions/merlin and
+# merlin-lab. Commands and options are what --help says.
 
 _merlin() {
     local merlin=${COMP_WORDS[0]} current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local words=("${COMP_WORDS[1]}") commands verbs more=()
+    local words=("${COMP_WORDS[1]}") name=${merlin##*/} commands verbs more=()
     commands=$("$merlin" --help 2>/dev/null | sed -n 's/^  \([a-z]*\)  *.*/\1/p')
     if [[ $current == = ]]; then # --by=, in words of its own
         current=
@@ -18,7 +18,7 @@ _merlin() {
         ((COMP_CWORD == 2)) && mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current") && return
         words=("${COMP_WORDS[2]}")
     fi
-    verbs=$("$merlin" "${words[0]}" --help 2>/dev/null | sed -n "s/^  *merlin ${words[0]} \([a-z][a-z]*\) .*/\1/p")
+    verbs=$("$merlin" "${words[0]}" --help 2>/dev/null | sed -n "s/^  *$name ${words[0]} \([a-z][a-z]*\) .*/\1/p")
     if [[ ${COMP_WORDS[1]} == help ]]; then
         ((COMP_CWORD > 3)) || mapfile -t COMPREPLY < <(compgen -W "$verbs" -- "$current")
         return
@@ -49,4 +49,4 @@ _merlin() {
         ;;
     esac
 }
-complete -o filenames -F _merlin merlin
+complete -o filenames -F _merlin merlin merlin-lab

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "fuzz_file.h"
+#include "lab/train/checkpoint.h"
 #include "nn/safetensors.h"
-#include "train/checkpoint.h"
 
 enum { WORDS = 4 };
 static const char model[] = "{}", training[] = "{\"batch\":2,\"memory_gib\":1}";

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "train/config.h"
+#include "lab/train/config.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,5 +1,5 @@
 /* glTF and GLB files from arbitrary bytes. */
-#include "scene/mesh_gltf.h"
+#include "lab/scene/mesh_gltf.h"
 
 #include "fuzz_mesh.h"
 

@@ -1,5 +1,5 @@
 /* OBJ files from arbitrary bytes. */
-#include "scene/mesh_obj.h"
+#include "lab/scene/mesh_obj.h"
 
 #include "fuzz_mesh.h"
 

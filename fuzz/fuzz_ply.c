@@ -1,5 +1,5 @@
 /* PLY files from arbitrary bytes. */
-#include "scene/mesh_ply.h"
+#include "lab/scene/mesh_ply.h"
 
 #include "fuzz_mesh.h"
 

@@ -9,5 +9,5 @@
 #SBATCH --time=01:00:00
 #SBATCH --requeue
 set -euo pipefail
-merlin render --first $((SLURM_ARRAY_TASK_ID * 1000)) --count 1000 --seed 1 --size 128 --no-env -q -o "$1" \
+merlin-lab render --first $((SLURM_ARRAY_TASK_ID * 1000)) --count 1000 --seed 1 --size 128 --no-env -q -o "$1" \
     --threads "$SLURM_CPUS_PER_TASK"

@@ -14,7 +14,7 @@
 set -uo pipefail
 resume=()
 [[ ! -e $3/checkpoint.safetensors ]] || resume=(--resume)
-srun --mpi=pmix merlin train "$1" --data "$2" -o "$3" --mpi --threads "$SLURM_CPUS_PER_TASK" -q "${resume[@]}" &
+srun --mpi=pmix merlin-lab train "$1" --data "$2" -o "$3" --mpi --threads "$SLURM_CPUS_PER_TASK" -q "${resume[@]}" &
 steps=$!
 trap 'stopped=1; scancel --signal=TERM "$SLURM_JOB_ID.0"' TERM
 wait "$steps"

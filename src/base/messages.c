@@ -21,6 +21,7 @@ enum { SANITIZED = 0 };
 enum { BEYOND_STANDARD = 3 };
 
 static FILE *own;
+static const char *program = "merlin";
 static int nowhere = -1;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static int inside; /* threads in decoders */
@@ -44,6 +45,16 @@ void messages_keep(void)
 FILE *messages(void)
 {
     return own ? own : stderr;
+}
+
+void messages_set_program(const char *name)
+{
+    program = name;
+}
+
+const char *messages_program(void)
+{
+    return program;
 }
 
 void messages_hush(void)

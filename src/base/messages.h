@@ -15,6 +15,9 @@
  * MERLIN_LIBRARY_MESSAGES. */
 void messages_keep(void);
 FILE *messages(void);
+/* Whose lines they are: each begins with the program's name, "merlin" if none was set. A literal. */
+void messages_set_program(const char *name);
+const char *messages_program(void);
 
 /* Any thread, in pairs. */
 void messages_hush(void);

@@ -49,7 +49,7 @@ void warnings_print(const warnings *list, const char *command, const char *subje
 {
     size_t shown = list->count < most ? list->count : most, more = list->count - shown + list->more;
     if (list->count == 0) return;
-    fprintf(messages(), "merlin %s: %s: ", command, subject);
+    fprintf(messages(), "%s %s: %s: ", messages_program(), command, subject);
     for (size_t i = 0; i < shown; i++)
         fprintf(messages(), "%s%s", i ? "; " : "", list->at[i].message);
     if (more) fprintf(messages(), "%sand %zu more, which --json names", shown ? "; " : "", more);

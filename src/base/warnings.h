@@ -33,7 +33,7 @@ void warnings_add(warnings *list, const char *code, const char *format, ...) __a
 const warning *warnings_find(const warnings *list, const char *code);
 /* Returns an array of objects with code and message; NULL if memory ran out. */
 cJSON *warnings_json(const warnings *list);
-/* Prints "merlin COMMAND: SUBJECT: message; message" on one line to standard error, the first `most` of them and how
+/* Prints "PROGRAM COMMAND: SUBJECT: message; message" on one line to standard error, the first `most` of them and how
  * many more there are; nothing without any. */
 void warnings_print(const warnings *list, const char *command, const char *subject, size_t most);
 

@@ -3,10 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/cli.h"
-#include "cli/json_line.h"
-#include "cli/options.h"
-#include "cli/photos.h"
+#include "cli/commands.h"
+#include "command/cli.h"
+#include "command/json_line.h"
+#include "command/options.h"
+#include "command/photos.h"
 #include "estimate/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
@@ -30,7 +31,7 @@ typedef struct weights_info {
     st_file *file;
 } weights_info;
 
-/* What merlin train writes beside the configuration. */
+/* What merlin-lab train writes beside the configuration. */
 static const char *const provenance[] = {"presentations",   "samples", "size",    "generator_version",
                                          "validation_loss", "note",    "training"};
 enum { PROVENANCE = sizeof provenance / sizeof provenance[0] };

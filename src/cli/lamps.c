@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/light_list.h"
-#include "cli/cli.h"
+#include "command/cli.h"
 #include "image/write.h"
 #include "optics/blackbody.h"
 

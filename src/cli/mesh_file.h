@@ -28,7 +28,7 @@ typedef struct mesh_names {
     int count;
 } mesh_names;
 
-/* Takes the value of --mesh, for a row of cli/options.h; into is a mesh_names. */
+/* Takes the value of --mesh, for a row of command/options.h; into is a mesh_names. */
 status mesh_take_name(const char *path, void *into);
 /* Tells whether a word behind a bare --mesh is a mesh's name, of a format that is written or not. */
 bool mesh_is_name(const char *word);

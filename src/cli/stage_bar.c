@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "cli/cli.h"
+#include "command/cli.h"
 
 /* Seconds. What is done in less than LONG has no bar, nor what is all but done after it; work of which nothing was
  * heard gets it a little earlier, so that a terminal is not silent for long. The first moments tell little. */

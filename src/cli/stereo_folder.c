@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "base/progress.h"
-#include "cli/json_line.h"
-#include "eval/surface_error.h"
+#include "command/json_line.h"
 #include "stereo/doubts.h"
 #include "stereo/place_lights.h"
+#include "stereo/surface_error.h"
 
 static const float RESIDUAL_WHITE = 0.25f;
 

@@ -4,12 +4,12 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "cli/photo_ahead.h"
+#include "command/photo_ahead.h"
 #include "estimate/doubts.h"
-#include "eval/draws.h"
-#include "eval/relit.h"
-#include "eval/surface_error.h"
+#include "photo_stereo/draws.h"
+#include "photo_stereo/relit.h"
 #include "stereo/integrate.h"
+#include "stereo/surface_error.h"
 
 enum { LARGEST_SIDE = 512 };
 static const float SPREAD_WHITE = 20;

@@ -71,3 +71,15 @@ void img_add(const img *part, img *sum)
     for (size_t i = 0, n = (size_t)sum->width * (size_t)sum->height * (size_t)sum->channels; i < n; i++)
         if (part->data[i] != 0) sum->data[i] += part->data[i];
 }
+
+double img_mean_within(const img *a, const img *mask)
+{
+    size_t count = 0;
+    double sum = 0;
+    for (size_t i = 0, pixels = (size_t)a->width * (size_t)a->height; i < pixels; i++) {
+        if (!(mask->data[i] > 0.5f)) continue;
+        sum += (double)a->data[i];
+        count++;
+    }
+    return count ? sum / (double)count : 0;
+}

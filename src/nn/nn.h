@@ -110,8 +110,8 @@ void nn_masked_gradient_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn
                            float weight);
 
 /* (1/ΣM) Σ (1 - SSIM) / channels over the windows around all pixels, of prediction and target times the mask:
- * structural similarity (Wang et al. 2004) as merlin eval measures it, but that windows reach beyond the frame, into
- * black. */
+ * structural similarity (Wang et al. 2004) as merlin-lab eval measures it, but that windows reach beyond the frame,
+ * into black. */
 void nn_masked_dssim(nn_graph *g, nn_node *prediction, nn_node *target, nn_node *mask, const char *name, float weight);
 
 /* ---- parameters ---- */

@@ -69,7 +69,7 @@ shows_bar '\(reading\|solving\|integrating\)' ./halted "${near[@]}"
 shows_none ./halted "${near[@]}" -q
 TERM=dumb shows_none ./halted "${near[@]}"
 ./halted "${near[@]}" >stdout 2>stderr || complain "stereo exited with $?: $(<stderr)"
-[ -s stderr ] && complain "beside a terminal stereo says: $(<stderr)"
+grep -v ": the pictures fit these lights " stderr >more && complain "beside a terminal stereo says: $(<more)" # an untrained model's maps are odd
 cp out/maps.exr alone.exr
 on_terminal ./halted "${near[@]}"
 cmp -s alone.exr out/maps.exr || complain "a bar changes the surface"

@@ -5,33 +5,36 @@ source "$(dirname "$0")/support/check.bash"
 completions=$MERLIN_SOURCE_DIR/completions
 mkdir "$scratch/bin"
 ln -s "$(realpath "$MERLIN")" "$scratch/bin/merlin"
+[[ -z ${MERLIN_LAB:-} ]] || ln -s "$(realpath "$MERLIN_LAB")" "$scratch/bin/merlin-lab"
 PATH=$scratch/bin:$PATH
 cd "$scratch" || exit 1
-manual=$(sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/merlin.1")
-commands=(estimate relight stereo "stereo calibrate" render train eval "eval stereo" "eval solvers" "eval detail"
-    "eval doubts" "eval masks" "eval lights" "eval pictures" "eval photos" bench info)
+# PROGRAM COMMAND
+commands=("merlin estimate" "merlin relight" "merlin stereo" "merlin stereo calibrate" "merlin info")
+[[ -z ${MERLIN_LAB:-} ]] || for command in render train eval "eval stereo" "eval solvers" "eval detail" "eval doubts" \
+    "eval masks" "eval lights" "eval pictures" "eval photos" bench; do commands+=("merlin-lab $command"); done
 
-in_source() { # COMMAND: the names in its table, and those of the table that all have
-    grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$MERLIN_SOURCE_DIR/src/cli/cmd_${1// /_}.c" \
-        "$MERLIN_SOURCE_DIR/src/cli/options.c" | sed 's/{"\([a-z-]*\)".*/--\1/' | sort -u
+manual() { sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/$1.1"; } # PROGRAM
+in_source() { # PROGRAM COMMAND: the names in its table, and those of the table that all have
+    local folder=cli
+    [[ $1 == merlin ]] || folder=lab/cli
+    grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$MERLIN_SOURCE_DIR/src/$folder/cmd_${2// /_}.c" \
+        "$MERLIN_SOURCE_DIR/src/command/options.c" | sed 's/{"\([a-z-]*\)".*/--\1/' | sort -u
 }
-in_help() { # COMMAND
-    local words
-    read -ra words <<<"$1"
-    merlin "${words[@]}" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(( [A-Z,]+)?, --[a-z-]+)*' | grep -oE -e '--[a-z-]+' | sort -u
+in_help() { # WORD...
+    "$@" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(( [A-Z,]+)?, --[a-z-]+)*' | grep -oE -e '--[a-z-]+' | sort -u
 }
 # shellcheck source=completions/merlin.bash
 source "$completions/merlin.bash"
 by_bash() { # WORD...: the words of a command line, the last one to be completed
-    COMP_WORDS=(merlin "$@") COMP_CWORD=$# COMPREPLY=()
+    COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()
     _merlin
     printf '%s\n' "${COMPREPLY[@]}"
 }
-by_fish() { fish --no-config -c 'source $argv[1]; complete -C "$argv[2]"' "$completions/merlin.fish" "merlin $*" | cut -f 1; }
+by_fish() { fish --no-config -c 'source $argv[1]; complete -C "$argv[2]"' "$completions/merlin.fish" "$*" | cut -f 1; }
 # What zsh's function of that name would offer: descriptions are cut off by compadd's callers, hence by _describe's double.
 by_zsh() {
     zsh -f -c '_describe() { print -rl -- ${${(P)2}%%:*} }; _values() { shift; print -rl -- "$@" }; _files() { : }
-        completion=$1; shift; words=(merlin "$@") CURRENT=${#words} PREFIX=${words[-1]}; source $completion' zsh \
+        completion=$1; shift; words=("$@") CURRENT=${#words} PREFIX=${words[-1]}; source $completion' zsh \
         "$completions/_merlin" "$@"
 }
 same() { # WHAT EXPECTED GOT
@@ -49,26 +52,26 @@ for shell in zsh fish; do
 done
 for command in "${commands[@]}"; do
     read -ra words <<<"$command"
-    expected=$(in_source "$command")
+    expected=$(in_source "${words[0]}" "${command#* }")
     [[ $(wc -l <<<"$expected") -ge 4 ]] || complain "no table of options was found for $command"
-    same "$command --help beside its table" "$expected" "$(in_help "$command")"
+    same "$command --help beside its table" "$expected" "$(in_help "${words[@]}")"
     for option in $expected; do
-        [[ $manual == *"$option"* ]] || complain "the manual does not know $option of $command"
+        [[ $(manual "${words[0]}") == *"$option"* ]] || complain "the manual does not know $option of $command"
     done
     for shell in "${shells[@]}"; do
         same "$shell for $command" "$expected" "$("by_$shell" "${words[@]}" -- | grep -e -- | sort -u)"
     done
 done
 for shell in "${shells[@]}"; do
-    completes "$shell" relight rel
-    completes "$shell" photos eval ph
-    completes "$shell" calibrate stereo c
-    completes "$shell" merlin-env relight photo.png --model merlin-e
-    completes "$shell" network relight photo.png --by n
-    completes "$shell" stereo help st
+    completes "$shell" relight merlin rel
+    completes "$shell" photos merlin-lab eval ph
+    completes "$shell" calibrate merlin stereo c
+    completes "$shell" merlin-env merlin relight photo.png --model merlin-e
+    completes "$shell" network merlin relight photo.png --by n
+    completes "$shell" stereo merlin help st
 done
-completes bash network relight photo.png --by = # as the shell parts --by=
-completes bash network relight photo.png --by = n
-completes bash merlin-env relight photo.png --model = merlin-e
-completes bash photos help eval ph
+completes bash network merlin relight photo.png --by = # as the shell parts --by=
+completes bash network merlin relight photo.png --by = n
+completes bash merlin-env merlin relight photo.png --model = merlin-e
+completes bash photos merlin-lab help eval ph
 finish

@@ -4,6 +4,11 @@
 source "$(dirname "$0")/support/check.bash"
 # shellcheck source=tests/cli/support/pictures.bash
 source "$(dirname "$0")/support/pictures.bash"
+# reads_mesh FILE: merlin-lab, where there is one, renders it.
+reads_mesh() {
+    [[ -z ${MERLIN_LAB:-} ]] || "$MERLIN_LAB" render --mesh "$1" --count 1 --size 64 --no-env -o "$scratch/rendered-${1##*/}" --quiet ||
+        complain "$1 cannot be read"
+}
 make_tiny_model
 make_bad_weights
 export OMP_WAIT_POLICY=passive MERLIN_MODEL=$scratch/weights.safetensors # other tests may run beside this one
@@ -54,7 +59,7 @@ echo "--mesh adds the front as a mesh"
 succeeds disc.merlin/overview.png estimate disc.hdr --size 64 --mesh
 succeeds '"disc.merlin/mesh.glb"' estimate disc.hdr --size 64 --mesh --json
 [ "$(head -c 4 disc.merlin/mesh.glb)" = glTF ] || complain "mesh.glb is none"
-"$MERLIN" render --mesh disc.merlin/mesh.glb --count 1 --size 64 --no-env -o meshes --quiet || complain "mesh.glb cannot be read"
+reads_mesh disc.merlin/mesh.glb
 
 echo "masks are used, and must fit"
 succeeds '"mask":"given"' estimate disc.hdr --mask disc.merlin/mask.png "${small[@]}" --json
@@ -96,7 +101,7 @@ refuses 1 'missing.png' estimate missing.png "${small[@]}"
 refuses 1 'nothing.png' estimate nothing.png "${small[@]}"
 head -c 3000 disc.hdr >cut.hdr
 refuses 1 'cut.hdr' estimate cut.hdr "${small[@]}"
-head -c 2000 disc.merlin/albedo.png >cut.png
+head -c 1000 disc.merlin/normal.png >cut.png
 refuses 1 'cut.png' estimate cut.png "${small[@]}"
 echo "not a picture" >text.png
 refuses 1 'text.png' estimate text.png "${small[@]}"
@@ -230,11 +235,11 @@ cd meshes-named || exit 1
 succeeds '"files":\["./a.glb","./a.mtl","./a.obj","./a.ply","./a.png","out.merlin/albedo.png"' estimate --mesh a.obj --mesh a.ply disc.hdr --mesh=a.glb --json "${small[@]}"
 present a.obj a.mtl a.png a.ply a.glb out.merlin/maps.exr
 absent out.merlin/mesh.glb
-"$MERLIN" render --mesh a.obj --count 1 --size 64 --no-env -o rendered --quiet || complain "a.obj cannot be read"
-"$MERLIN" render --mesh a.ply --count 1 --size 64 --no-env -o rendered-ply --quiet || complain "a.ply cannot be read"
+reads_mesh a.obj
+reads_mesh a.ply
 succeeds 'disc.hdr' estimate --mesh disc.hdr "${small[@]}"
 present out.merlin/mesh.glb
-rm -rf out.merlin rendered*
+rm -rf out.merlin
 succeeds 'disc.hdr' estimate . "${small[@]}"
 grep -q "5 files skipped: a.glb, a.mtl, a.obj, a.ply (no picture), a.png (a mesh's texture)" "$scratch/stderr" || complain "a mesh's texture: $(head -1 "$scratch/stderr")"
 rm -r out.merlin a.*
@@ -325,7 +330,7 @@ kill -INT $pid
 wait $pid
 code=$?
 [ $code -eq 1 ] || complain "exit code $code after an interrupt"
-[ "$(grep -vc '^merlin estimate: many/1[0-9]*.hdr: it does not look lit' err)" -eq 1 ] || complain "after an interrupt: $(cat err)"
+[ "$(grep -vc '^merlin estimate: many/1[0-9]*.hdr: ' err)" -eq 1 ] || complain "after an interrupt: $(cat err)"
 grep -q interrupted err || complain "after an interrupt: $(cat err)"
 for folder in interrupted/*; do
     [ "$(ls -A "$folder" | sort | tr '\n' ' ')" = "$names " ] || complain "$folder has $(ls -A "$folder")"

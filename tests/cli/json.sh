@@ -30,7 +30,9 @@ listed "estimate's report.json" disc.merlin/report.json
 listed "stereo's report.json" dome/stereo/report.json
 "$MERLIN" info weights.safetensors --json | tr -d '\n\t' | sed 's/"\(config\|training\)":{[^}]*}/"\1":0/g' >report
 listed info report
-"$MERLIN" render --count 1 --size 64 --no-env -o one --json --quiet >report
-listed render report
+if [[ -n ${MERLIN_LAB:-} ]]; then
+    "$MERLIN_LAB" render --count 1 --size 64 --no-env -o one --json --quiet >report
+    listed render report
+fi
 
 finish

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The commands that README.md prints do what it says, in the order in which it prints them, and its programs build and run.
+# The commands that README.md and the pages behind it print do what they say, and the programs of docs/library.md build and run.
 # What a reader brings along (photo.jpg, room.hdr, pictures of a ball and of an object) is made here.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"
@@ -8,7 +8,7 @@ source "$(dirname "$0")/support/pictures.bash"
 export OMP_WAIT_POLICY=passive # other tests may run beside this one
 unset MERLIN_MODEL
 build=$(dirname "$MERLIN")
-readme=$MERLIN_SOURCE_DIR/README.md
+docs=$MERLIN_SOURCE_DIR/docs
 if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$build/CMakeCache.txt"; then
     echo "skipped: under a sanitizer they take minutes; each has a test of its own"
     exit 77
@@ -16,6 +16,7 @@ fi
 cd "$scratch" || exit 1
 mkdir -p build/release
 ln -s "$(realpath "$MERLIN")" build/release/merlin
+[[ -z ${MERLIN_LAB:-} ]] || ln -s "$(realpath "$MERLIN_LAB")" build/release/merlin-lab
 for name in configs examples models; do ln -s "$MERLIN_SOURCE_DIR/$name" .; done
 
 # ---- what a reader brings along ----
@@ -44,10 +45,8 @@ take_pictures() {
 
 # ---- what it prints ----
 
-# blocks HEADING: the code under it, without remarks.
-blocks() {
-    awk -v heading="## $1" '/^## / { on = $0 == heading } on && sub(/^    /, "") { sub(/  +# .*/, ""); print }' "$readme"
-}
+# blocks PAGE: its code, without remarks.
+blocks() { awk 'sub(/^    /, "") { sub(/  +# .*/, ""); print }' "$1"; }
 
 try() { bash -c "$1" >stdout 2>stderr </dev/null || complain "$1 exited with $?: $(cat stderr)"; }
 
@@ -56,17 +55,17 @@ run() {
     case $1 in
     sudo\ apt-get*) ;;
     "make demo") try "make -C '$MERLIN_SOURCE_DIR' -o build demo MERLIN='$PWD/build/release/merlin' OUT='$PWD/out/demo'" ;;
-    build/release/merlin\ render*) try "$(sed -E 's/--count [0-9]+/--count 2/; s/--size [0-9]+/--size 64/' <<<"$1")" ;;
-    build/release/merlin\ train*)
+    build/release/merlin-lab\ render*) try "$(sed -E 's/--count [0-9]+/--count 2/; s/--size [0-9]+/--size 64/' <<<"$1")" ;;
+    build/release/merlin-lab\ train*)
         [ -e "$(cut -d ' ' -f 3 <<<"$1")" ] || complain "there are no settings for $1"
         try "$1 --help" # what is wrong with the options is told before the help
         ;;
-    build/release/merlin\ * | cat\ *) try "$1" ;;
+    build/release/merlin\ * | build/release/merlin-lab\ * | cat\ *) try "$1" ;;
     *) complain "it prints a command that is not tried here: $1" ;;
     esac
 }
 
-# run_all HEADING PATTERN: those of its commands that have it; there must be some.
+# run_all PAGE PATTERN: those of its commands that have it; there must be some.
 run_all() {
     local commands
     mapfile -t commands < <(blocks "$1" | grep -E "$2")
@@ -75,32 +74,36 @@ run_all() {
 }
 
 echo "the demonstration"
-run_all Start '^(sudo|make)'
+run_all "$MERLIN_SOURCE_DIR/README.md" '^(sudo|make)'
 present out/demo/{overview.png,orbit/orbit.webp,mesh.glb}
 
 echo "a picture of one's own"
 cp examples/demo.png photo.jpg
 radiance room.hdr 32 6 64
-run_all Start 'merlin (estimate|relight (photo.merlin|window) --(light|orbit|env|direction|found-light))'
-present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg window/relit/relit.png
-mapfile -t files < <(awk '/^## / { on = $0 == "## What you get" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$readme")
+run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (estimate|relight (photo.merlin|window))'
+run_all "$docs/photographs.md" .
+present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg window/relit/relit.png dome/dome_049.png dome/dome.lp
+mapfile -t files < <(awk '/^## / { on = $0 == "## What is written" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$docs/photographs.md")
 ((${#files[@]} > 8)) || complain "the table of files has only ${files[*]}"
 present "${files[@]/#/photo.merlin/}"
 
 echo "many lights"
 take_pictures
-run_all Start 'merlin (stereo|relight surface|relight.*--dome)'
+run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (stereo|relight surface)'
+run_all "$docs/captures.md" .
 present lights/lights.txt surface/{mesh.glb,mesh.ply,mesh.obj,overview.png,error.png} surface/relit/relit.png
-present photo.merlin/stereo/mesh.glb dome/dome_049.png dome/dome.lp
+present photo.merlin/stereo/mesh.glb
 paste -d ' ' <(tail -n +2 dome.lp) <(grep -v '^#' lights/lights.txt) |
     awk '{ if ($2 * $5 + $3 * $6 + $4 * $7 < 0.9986) exit 1; n++ } END { if (n != 20) exit 1 }' ||
     complain "the ball's lights are not within three degrees: $(cat lights/lights.txt)"
 
-echo "training"
-mkdir -p runs/256
-ln -s "$MERLIN_SOURCE_DIR/models/merlin-point.safetensors" runs/256/weights.safetensors
-run_all "Train it yourself" .
-present data/{train,train256,heldout}/000000.exr
+if [[ -n ${MERLIN_LAB:-} ]]; then
+    echo "training"
+    mkdir -p runs/256
+    ln -s "$MERLIN_SOURCE_DIR/models/merlin-point.safetensors" runs/256/weights.safetensors
+    run_all "$docs/training.md" .
+    present data/{train,train256,heldout}/000000.exr
+fi
 
 echo "the library"
 cmake --install "$build" --prefix "$scratch/prefix" >install.log || complain "it does not install: $(cat install.log)"
@@ -108,7 +111,7 @@ description=(prefix/lib*/pkgconfig)
 export PKG_CONFIG_PATH=$PWD/${description[0]} LD_LIBRARY_PATH=$PWD/${description[0]%/*}
 mv dome owl
 # Every program begins with the headers; where a call goes wrong it says so.
-blocks "The library" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
+blocks "$docs/library.md" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
     { print > (("program" number) (head ? ".h" : ".body")) }'
 for number in 1 2; do
     {

@@ -7,11 +7,15 @@ command -v python3 >/dev/null || {
     echo "skipped: python3, which makes the files, is not here"
     exit 77
 }
+[[ -n ${MERLIN_LAB:-} ]] || {
+    echo "skipped: merlin-lab, which reads meshes, is not built"
+    exit 77
+}
 python3 make_gltf.py
 mkfifo pipe
 printf 'mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n' >library.obj
 
-render=("$MERLIN" render --count 1 --no-env --quiet)
+render=("$MERLIN_LAB" render --count 1 --no-env --quiet)
 for name in deep_nodes.gltf many_attributes.gltf library.obj; do
     bounded "${render[@]}" --mesh "$name" -o "out-$name" 2>stderr || complain "$name: $? $(cat stderr)"
     [[ -s out-$name/000000.exr ]] || complain "$name: no sample"

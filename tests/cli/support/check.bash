@@ -2,7 +2,7 @@
 #
 #     source "$(dirname "$0")/check.bash"
 #     succeeds "a line of its output" "$MERLIN" info weights.safetensors
-#     refuses 1 "no samples" "$MERLIN" eval --data empty --model w
+#     refuses 1 "no samples" "$MERLIN_LAB" eval --data empty --model w
 #     finish
 
 set -u
@@ -51,8 +51,17 @@ lists_its_files() {
         complain "no output $folder with files $* of $bytes bytes in: $(cat "$scratch/stdout")"
 }
 
-# Four tiny samples in $scratch/samples and weights of a tiny model in $scratch/weights.safetensors.
+# Weights of a tiny model in $scratch/weights.safetensors.
 make_tiny_model() {
+    "$TINY_MODEL" "$scratch/weights.safetensors" || {
+        echo "FAILED: no tiny model could be made" >&2
+        exit 1
+    }
+}
+
+# A tiny model that was trained ($scratch/tiny.json, $scratch/run, $scratch/weights.safetensors) on the four samples of
+# $scratch/samples.
+train_tiny_model() {
     cat >"$scratch/tiny.json" <<'JSON'
 {"model": {"name": "tiny", "input_global": true, "material_decoders": 1, "feature_sharing": true,
            "gated_attention": true, "relight": "network", "global_illumination": true, "lighting": "point",
@@ -62,8 +71,8 @@ make_tiny_model() {
               "type": "f32", "seed": 1, "exposure_jitter": 0.1, "colour_jitter": 0.05, "memory_gib": 1,
               "validation_count": 2, "validation_steps": 0, "curve_steps": 1, "checkpoint_minutes": 5}}
 JSON
-    "$MERLIN" render --count 4 --size 64 --spp 1 --paths 1 --no-env --quiet -o "$scratch/samples" >/dev/null &&
-        "$MERLIN" train "$scratch/tiny.json" --data "$scratch/samples" -o "$scratch/run" --quiet >/dev/null &&
+    "$MERLIN_LAB" render --count 4 --size 64 --spp 1 --paths 1 --no-env --quiet -o "$scratch/samples" >/dev/null &&
+        "$MERLIN_LAB" train "$scratch/tiny.json" --data "$scratch/samples" -o "$scratch/run" --quiet >/dev/null &&
         mv "$scratch/run/weights.safetensors" "$scratch" || {
         echo "FAILED: no tiny model could be made" >&2
         exit 1

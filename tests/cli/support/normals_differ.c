@@ -2,8 +2,8 @@
  * degrees over the pixels that both masks hold, in two decimals. Normals are 16-bit, (n + 1)/2. */
 #include <stdio.h>
 
-#include "eval/surface_error.h"
 #include "image/read.h"
+#include "stereo/surface_error.h"
 
 typedef struct result {
     img normal, mask;

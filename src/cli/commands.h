@@ -1,0 +1,10 @@
+/* The commands of merlin: each takes what follows its name and returns the exit status (command/cli.h). */
+#ifndef MERLIN_CLI_COMMANDS_H
+#define MERLIN_CLI_COMMANDS_H
+
+int cmd_estimate(int argc, char **argv);
+int cmd_relight(int argc, char **argv);
+int cmd_stereo(int argc, char **argv);
+int cmd_info(int argc, char **argv);
+
+#endif

@@ -1,0 +1,130 @@
+#include "command/program.h"
+
+#include <malloc.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/messages.h"
+#include "command/last_words.h"
+#include "command/suggest.h"
+#include "image/start.h"
+#include "merlin/merlin.h"
+
+static const cli_command *find_command(const program *p, const char *name)
+{
+    for (size_t i = 0; i < p->count; i++)
+        if (strcmp(name, p->commands[i].name) == 0) return &p->commands[i];
+    return NULL;
+}
+
+static void print_help(const program *p, FILE *stream)
+{
+    fprintf(stream, "usage: %s COMMAND [options]\n\n%s\n\ncommands:\n", p->name, p->about);
+    for (size_t i = 0; i < p->count; i++)
+        fprintf(stream, "  %-10s %s\n", p->commands[i].name, p->commands[i].summary);
+    fprintf(stream, "\n%s COMMAND --help explains a command; %s --version (or -V) prints the version.\n", p->name,
+            p->name);
+}
+
+static bool is_elsewhere(const program *p, const char *name)
+{
+    for (const char *const *at = p->elsewhere; at && *at; at++)
+        if (strcmp(name, *at) == 0) return true;
+    return false;
+}
+
+/* NULL if nothing is near. */
+static const char *suggested(const program *p, const char *name)
+{
+    enum { MOST = 16 };
+    const char *names[MOST + 2] = {"--help", "--version"};
+    size_t count = 2;
+    for (size_t i = 0; i < p->count && count < MOST + 2; i++)
+        names[count++] = p->commands[i].name;
+    return suggest(name, strlen(name), names, count);
+}
+
+/* Says it on one line, whatever is in the name. */
+static int refuse_command(const program *p, const char *name)
+{
+    const char *meant = suggested(p, name), *kind = name[0] == '-' ? "option" : "command";
+    if (is_elsewhere(p, name))
+        (void)fail(ERROR_USAGE, "%s is a command of another program: %s %s", name, p->other, name);
+    else if (meant)
+        (void)fail(ERROR_USAGE, "no %s \"%s\": did you mean %s?", kind, name, meant);
+    else if (file_exists(name))
+        (void)fail(ERROR_USAGE, "no command \"%s\": for a photograph, merlin estimate %s", name, name);
+    else
+        (void)fail(ERROR_USAGE, "no %s \"%s\"", kind, name);
+    fprintf(messages(), "%s: %s (try %s --help)\n", p->name, status_message(), p->name);
+    return 2;
+}
+
+/* Output that went to a full disk or a closed pipe is a failure even if the command did not notice. */
+static int finish(int code)
+{
+    bool written = fflush(stdout) == 0 && !ferror(stdout);
+    if (!written) fprintf(messages(), "%s: cannot write to standard output\n", messages_program());
+    if (!written && code == 0) code = 1;
+    /* all files are closed, and what libraries would tidy up the system takes back anyway; but leaks are looked for
+     * behind a proper end */
+    if (MERLIN_LEAVES_AT_ONCE) _exit(code);
+    return code;
+}
+
+/* Images up to some megapixels come from memory that was used before, by whatever thread: a fresh page costs more than
+ * most of what is done with it. The first of that memory comes in large pages. Larger images go back to the system when
+ * they are freed. */
+static void reuse_memory(void)
+{
+    enum { FIRST = 64 << 20 };
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_TOP_PAD, 4 << 20);
+    mallopt(M_TRIM_THRESHOLD, 2 * FIRST);
+    mallopt(M_MMAP_THRESHOLD, 2 * FIRST);
+    void *first = malloc(FIRST);
+    memory_prefer_large_pages(first, FIRST);
+    free(first);
+    mallopt(M_MMAP_THRESHOLD, 8 << 20);
+}
+
+/* Its matrices are too small for several threads to gain from, and the other work has them all. It asks when it is
+ * loaded. */
+static void one_thread_for_blas(void)
+{
+    setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
+
+int program_run(const program *p, int argc, char **argv)
+{
+    messages_keep();
+    messages_set_program(p->name);
+    vips_without_modules();
+    one_thread_for_blas();
+    if (argc < 2) {
+        print_help(p, messages());
+        return 2;
+    }
+    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help eval photos is merlin-lab eval photos --help */
+        memmove(argv + 1, argv + 2, (size_t)(argc - 2) * sizeof *argv);
+        argv[argc - 1] = "--help";
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(p, stdout);
+        return finish(0);
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        printf("%s %s\n", p->name, merlin_version());
+        return finish(0);
+    }
+    const cli_command *command = find_command(p, argv[1]);
+    if (!command) return refuse_command(p, argv[1]);
+    last_words_prepare(command->name);
+    reuse_memory();
+    return finish(command->run(argc - 1, argv + 1));
+}

@@ -1,0 +1,82 @@
+/* merlin-lab eval stereo: the paper's Table 3. */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "command/cli.h"
+#include "command/json_line.h"
+#include "command/options.h"
+#include "command/photos.h"
+#include "lab/cli/eval_commands.h"
+#include "lab/eval/stereo_table.h"
+
+static const char help[] =
+    "usage: merlin-lab eval stereo --data DIR [options]\n\n"
+    "How far normals are off, as in the paper's Table 3: the network's own from a single photograph, those of\n"
+    "photometric stereo from that photograph relit, and from real pictures; with the lights known and not. 32 of 50\n"
+    "relit pictures and 32 of the real ones are drawn five times.\n\n"
+    "  --data DIR         samples with many targets (merlin-lab render --targets 52), an object's folder in the LUCES "
+    "or\n"
+    "                     DiLiGenT layout, or a folder of such folders\n"
+    "  --model W          weights to measure (default: $MERLIN_MODEL, else merlin-point)\n"
+    "  --count N          only the first N objects\n"
+    "  --figure F.png     a picture of the normals and where they are off\n"
+    "      --json         report on standard output as JSON\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no progress\n"
+    "  -h, --help         this text\n\n"
+    "The rendered near-field set of docs/evaluation.md is made by\n"
+    "  merlin-lab render --count 14 --seed 52 --size 256 --targets 52 --paths 16 --no-env -o near-field\n";
+
+typedef struct request {
+    stereo_options options;
+    const char *model;
+    bool json, help;
+} request;
+
+static status parse(int *argc, char ***argv, request *r)
+{
+    const cli_option options[] = {
+        {"data", .text = &r->options.data},
+        {"model", .text = &r->model},
+        {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"figure", .picture = &r->options.figure},
+        {"json", .flag = &r->json},
+        {"quiet", 'q', .flag = &r->options.quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", (*argv)[0]);
+    return r->options.data ? OK : fail(ERROR_USAGE, "--data DIR is missing");
+}
+
+static status announce(const request *r, const stereo_table *t)
+{
+    if (r->json) return json_report_print(stereo_table_json(t));
+    stereo_table_print(t, stdout);
+    return OK;
+}
+
+int eval_stereo(int argc, char **argv)
+{
+    request r = {.options = {.stopped = cli_interrupted}};
+    if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
+    if (r.help) return fputs(help, stdout) < 0;
+    char *weights, *flash;
+    status s = photo_find_models(r.model, &weights, &flash);
+    if (s != OK) return cli_fail("eval stereo", s);
+    r.options.weights = weights;
+    r.options.flash = flash;
+    cli_catch_interrupts();
+    stereo_table table;
+    s = stereo_table_run(&r.options, &table);
+    free(weights);
+    free(flash);
+    if (s == OK) {
+        s = announce(&r, &table);
+        stereo_table_free(&table);
+    }
+    return s == OK ? 0 : cli_fail("eval stereo", s);
+}

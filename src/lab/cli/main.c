@@ -1,0 +1,24 @@
+/* merlin-lab: how the models of merlin are made and measured. */
+#include "command/program.h"
+#include "lab/cli/commands.h"
+
+static const cli_command commands[] = {
+    {"render", "make training data", cmd_render},
+    {"train", "train a model", cmd_train},
+    {"eval", "measure a model on held-out data, beside trivial answers", cmd_eval},
+    {"bench", "measure what the model and the renderer cost on this machine", cmd_bench},
+};
+
+int main(int argc, char **argv)
+{
+    static const char *const of_merlin[] = {"estimate", "relight", "stereo", "info", NULL};
+    static const program lab = {
+        .name = "merlin-lab",
+        .about = "Training data, training and evaluation of the models that merlin takes photographs apart with.",
+        .commands = commands,
+        .count = sizeof commands / sizeof *commands,
+        .other = "merlin",
+        .elsewhere = of_merlin,
+    };
+    return program_run(&lab, argc, argv);
+}

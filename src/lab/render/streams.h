@@ -1,0 +1,18 @@
+/* The renderer's random streams (base/rng.h): one a purpose, so that no layer's draws move another's. The numbers are
+ * part of the data set's identity; new ones are added at the end. */
+#ifndef MERLIN_LAB_RENDER_STREAMS_H
+#define MERLIN_LAB_RENDER_STREAMS_H
+
+enum {
+    STREAM_JITTER = 1000, /* far from the numbers that src/lab/scene uses */
+    STREAM_INDIRECT,
+    STREAM_TARGET,
+    STREAM_SURROUNDINGS,
+    STREAM_LIGHTS,
+    STREAM_ENVIRONMENT,
+    STREAM_LAMPS,
+    STREAM_LAMP_PLACES,
+    STREAM_LENS,
+};
+
+#endif

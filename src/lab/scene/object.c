@@ -1,0 +1,142 @@
+/* Objects put together: shape, pose, material. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "lab/scene/material.h"
+#include "lab/scene/mesh_deform.h"
+#include "lab/scene/mesh_file.h"
+#include "lab/scene/pose.h"
+#include "lab/scene/scene.h"
+
+/* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
+enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, STREAM_DEFORM };
+
+static status check_fov(float fov)
+{
+    if (fov >= 5 && fov <= 150) return OK;
+    return fail(ERROR_USAGE, "a field of view of %g degrees; give 5 to 150", (double)fov);
+}
+
+/* Poses the mesh, finishes it and gives it a material; the object takes over the mesh's arrays. */
+static status complete(scn_mesh *mesh, const shape_traits *traits, uint64_t seed, uint64_t index, float fov,
+                       scn_object *out)
+{
+    if (!mesh->failed) mesh_normalize(mesh);
+    rng pose = rng_at(seed, index, STREAM_POSE), material = rng_at(seed, index, STREAM_MATERIAL);
+    if (!mesh->failed) pose_object(&pose, mesh, traits, fov);
+    status s = mesh_finish(mesh, traits->crease_cosine);
+    if (s != OK) return s;
+    *out = (scn_object){.vertex_count = mesh->vertex_count,
+                        .triangle_count = mesh->triangle_count,
+                        .material = material_random(&material, mesh, traits),
+                        .shape = traits->name};
+    if (!out->material) return fail(ERROR_MEMORY, "no memory for a material");
+    out->position = mesh->position;
+    out->normal = mesh->normal;
+    out->reference = mesh->reference;
+    out->triangle = mesh->triangle;
+    out->part = mesh->part;
+    *mesh = (scn_mesh){0};
+    return OK;
+}
+
+status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out)
+{
+    *out = (scn_object){0};
+    status s = check_fov(fov);
+    if (s != OK) return s;
+    rng r = rng_at(seed, index, STREAM_SHAPE);
+    scn_mesh mesh = {0};
+    shape_traits traits = {0};
+    float kind = rng_uniform(&r);
+    if (kind < 0.32f)
+        shape_union(&r, &mesh, &traits);
+    else if (kind < 0.60f)
+        shape_blend(&r, &mesh, &traits);
+    else if (kind < 0.75f)
+        shape_revolution(&r, &mesh, &traits);
+    else if (kind < 0.88f)
+        shape_superquadric(&r, &mesh, &traits);
+    else
+        shape_relief(&r, &mesh, &traits);
+    s = complete(&mesh, &traits, seed, index, fov, out);
+    mesh_free(&mesh);
+    return s;
+}
+
+struct scn_model {
+    scn_mesh mesh;
+    int parts;
+    char *path;
+};
+
+status scn_model_read(const char *path, scn_model **out)
+{
+    scn_model *m = calloc(1, sizeof *m);
+    *out = NULL;
+    if (!m || !(m->path = strdup(path))) {
+        free(m);
+        return fail(ERROR_MEMORY, "no memory for the mesh %s", path);
+    }
+    status s = mesh_read(path, &m->mesh, &m->parts);
+    if (s != OK) {
+        scn_model_free(m);
+        return fail_in(s, "%s", path);
+    }
+    *out = m;
+    return OK;
+}
+
+void scn_model_free(scn_model *model)
+{
+    if (!model) return;
+    mesh_free(&model->mesh);
+    free(model->path);
+    free(model);
+}
+
+status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
+{
+    *out = (scn_object){0};
+    status s = check_fov(fov);
+    if (s != OK) return s;
+    scn_mesh mesh;
+    const shape_traits traits = {.name = "mesh", .upright = true, .crease_cosine = 0.6f, .parts = model->parts};
+    mesh_copy(&model->mesh, &mesh);
+    s = complete(&mesh, &traits, seed, index, fov, out);
+    mesh_free(&mesh);
+    return s == OK ? OK : fail_in(s, "%s", model->path);
+}
+
+status scn_object_from_deformed(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
+{
+    *out = (scn_object){0};
+    status s = check_fov(fov);
+    if (s != OK) return s;
+    rng r = rng_at(seed, index, STREAM_DEFORM);
+    scn_mesh mesh;
+    shape_traits traits = {.name = "mesh", .upright = true, .parts = model->parts};
+    traits.crease_cosine = rng_range(&r, 0.3f, 0.85f);
+    mesh_copy(&model->mesh, &mesh);
+    if (!mesh.failed) mesh_deform(&r, &mesh);
+    s = complete(&mesh, &traits, seed, index, fov, out);
+    mesh_free(&mesh);
+    return s == OK ? OK : fail_in(s, "%s", model->path);
+}
+
+void scn_object_wear(scn_object *object, const scn_textures *textures, uint64_t seed, uint64_t index)
+{
+    rng r = rng_at(seed, index, STREAM_TEXTURE);
+    material_wear(object->material, textures, &r);
+}
+
+void scn_object_free(scn_object *object)
+{
+    free(object->position);
+    free(object->normal);
+    free(object->reference);
+    free(object->triangle);
+    free(object->part);
+    free(object->material);
+    *object = (scn_object){0};
+}

@@ -1,0 +1,289 @@
+#include "lab/train/mixture.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/color.h"
+#include "optics/blackbody.h"
+#include "optics/light.h"
+#include "optics/sh.h"
+
+/* The share of the light from which on a lamp is wholly there. */
+static const float LAMP_SHARE = 1.0f / 6;
+static const float COLDEST = 10000, WARMEST = 2500; /* lamps, kelvin */
+/* What automatic exposure makes of the object's bright parts (their 95th percentile), in shares of the sensor's white,
+ * logarithms; a camera exposes for the whole frame, of which nothing is known. */
+static const float DARKEST = -1.5f, BRIGHTEST = 0.15f;
+
+static vec3 scaled(vec3 color, float by)
+{
+    return vec3_scale(color, by);
+}
+
+static const float *lamp_pixel(const trn_view *v, int which, size_t i)
+{
+    const size_t pixels = (size_t)v->size * (size_t)v->size;
+    return v->lamps + TRN_LAMP_VALUES * ((size_t)which * pixels + i);
+}
+
+/* ---- the light ------------------------------------------------------------------------------------------------- */
+
+/* Mean luminance over the object of the flash, the surroundings and every lamp. */
+typedef struct means {
+    float flash, room, lamp[TRN_LAMPS];
+} means;
+
+static means measure(const trn_view *v)
+{
+    double flash = 0, room = 0, lit[TRN_LAMPS] = {0}, count = 1e-6;
+    for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++) {
+        if (v->mask[i] <= 0.5f) continue;
+        count++;
+        flash += (double)(color_luminance(v->direct + 3 * i) + color_luminance(v->indirect + 3 * i));
+        room += (double)color_luminance(v->env + 3 * i);
+        for (int k = 0; k < v->lamp_count; k++)
+            lit[k] += (double)color_luminance(lamp_pixel(v, k, i));
+    }
+    means m = {(float)(flash / count), (float)(room / count), {0}};
+    for (int k = 0; k < v->lamp_count; k++)
+        m.lamp[k] = (float)(lit[k] / count);
+    return m;
+}
+
+static vec3 draw_color(rng *r)
+{
+    float kelvin = WARMEST * powf(COLDEST / WARMEST, rng_uniform(r));
+    vec3 color = blackbody_color(kelvin);
+    return vec3_scale(color, 1 / (0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z));
+}
+
+/* Evenly in the logarithm, from hardly visible to all there is. */
+static float draw_weight(rng *r)
+{
+    return expf(rng_range(r, -2.7f, 0));
+}
+
+/* What is lit, of all that could be: at least something. */
+static void draw_shares(const trn_view *v, rng *r, float *flash, float *room, float shares[TRN_LAMPS])
+{
+    float how_many = rng_uniform(r), with_flash = rng_uniform(r), with_room = rng_uniform(r);
+    int lamps = how_many < 0.12f ? 0 : how_many < 0.75f ? 1 : 2, first = rng_below(r, v->lamp_count);
+    *flash = with_flash < 0.35f || (lamps == 0 && with_flash < 0.7f) ? draw_weight(r) : 0;
+    *room = with_room < 0.7f || lamps == 0 ? draw_weight(r) : 0;
+    for (int k = 0; k < lamps && k < v->lamp_count; k++)
+        shares[(first + k) % v->lamp_count] = draw_weight(r);
+}
+
+static void draw_mixed(const trn_view *v, const means *m, rng *r, trn_mixture *out)
+{
+    float flash = 0, room = 0, shares[TRN_LAMPS] = {0};
+    draw_shares(v, r, &flash, &room, shares);
+    /* a lamp that hardly reaches what the camera sees is not made to by more power than the others have together */
+    const float least = 0.1f * m->flash + 1e-6f;
+    out->flash = scaled(vec3_make(1, 1, 1), flash / fmaxf(m->flash, least));
+    out->room = scaled(vec3_make(1, 1, 1), room / fmaxf(m->room, least));
+    for (int k = 0; k < v->lamp_count; k++)
+        out->lamp[k] = scaled(draw_color(r), shares[k] / fmaxf(m->lamp[k], least));
+}
+
+static float luminance_of(vec3 v)
+{
+    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
+}
+
+/* The luminance of all light together, by what it does to the picture. */
+static float amount_of(const trn_view *v, const means *m, const trn_mixture *of)
+{
+    float all = luminance_of(of->flash) * m->flash + luminance_of(of->room) * m->room;
+    for (int k = 0; k < v->lamp_count; k++)
+        all += luminance_of(of->lamp[k]) * m->lamp[k];
+    return all;
+}
+
+/* Of lamps behind an object alone the camera sees nothing: nobody keeps such a photograph. */
+static void ensure_light(const trn_view *v, const means *m, trn_mixture *out)
+{
+    if (amount_of(v, m, out) < 1e-3f * m->flash + 1e-6f) *out = (trn_mixture){.kind = TRN_FLASH, .flash = {1, 1, 1}};
+}
+
+/* Which lamp gives most light, and how sure anybody can be that it is there. */
+static void find_strongest(const trn_view *v, const means *m, trn_mixture *out)
+{
+    const float all = amount_of(v, m, out);
+    float most = 0;
+    out->strongest = -1;
+    for (int k = 0; k < v->lamp_count; k++) {
+        float light = luminance_of(out->lamp[k]) * m->lamp[k];
+        if (light > most) {
+            most = light;
+            out->strongest = k;
+        }
+    }
+    out->presence = all > 0 ? fminf(most / (all * LAMP_SHARE), 1) : 0;
+    if (out->presence <= 0) out->strongest = -1;
+}
+
+static vec3 mixed_at(const trn_view *v, const trn_mixture *m, size_t i)
+{
+    vec3 flash = vec3_add(vec3_of(v->direct + 3 * i), vec3_of(v->indirect + 3 * i));
+    vec3 sum = vec3_add(vec3_mul(m->flash, flash), vec3_mul(m->room, vec3_of(v->env + 3 * i)));
+    for (int k = 0; k < v->lamp_count; k++)
+        sum = vec3_add(sum, vec3_mul(m->lamp[k], vec3_of(lamp_pixel(v, k, i))));
+    return sum;
+}
+
+/* ---- the camera's choices -------------------------------------------------------------------------------------- */
+
+/* Radiance below which 95 of 100 of the object's pixels are, or the mean of all light where that is more: a lamp that
+ * reaches a rim alone leaves 95 of 100 black, and black is nothing to expose by. */
+static float bright_part(const trn_view *v, const trn_mixture *m, float mean)
+{
+    enum { BINS = 512 };
+    size_t bins[BINS] = {0}, count = 0, below = 0;
+    for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++) {
+        if (v->mask[i] <= 0.5f) continue;
+        float place = (log2f(fmaxf(luminance_of(mixed_at(v, m, i)), 1e-9f)) + 30) * 8;
+        bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        count++;
+    }
+    int bin = 0;
+    while (bin < BINS - 1 && (below += bins[bin]) <= count * 95 / 100)
+        bin++;
+    return fmaxf(exp2f(((float)bin + 0.5f) / 8 - 30), mean);
+}
+
+/* White balance goes most of the way to what would make the light white. */
+static void balance(vec3 light, float share, float gain[3])
+{
+    float mean = luminance_of(light);
+    const float channel[3] = {light.x, light.y, light.z};
+    for (int c = 0; c < 3; c++)
+        gain[c] *= powf(mean / fmaxf(channel[c], 1e-3f * mean), share);
+}
+
+/* The colour of all light together, weighed by what it does to the picture. */
+static vec3 color_of(const trn_view *v, const means *m, const trn_mixture *mix)
+{
+    vec3 room = vec3_make(v->sh[0], v->sh[1], v->sh[2]), sum = vec3_scale(mix->flash, m->flash);
+    float bright = fmaxf(luminance_of(room), 1e-6f);
+    sum = vec3_add(sum, vec3_scale(vec3_mul(mix->room, room), m->room / bright));
+    for (int k = 0; k < v->lamp_count; k++)
+        sum = vec3_add(sum, vec3_scale(mix->lamp[k], m->lamp[k]));
+    return sum;
+}
+
+void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *out)
+{
+    const means m = measure(v);
+    float which = rng_uniform(r), target = expf(rng_range(r, DARKEST, BRIGHTEST)), share = rng_range(r, 0.5f, 1);
+    bool known = rng_uniform(r) < 0.75f, told = rng_uniform(r) < 0.5f;
+    *out = (trn_mixture){.kind = which < 1.0f / 3 ? TRN_FLASH : which < 0.5f ? TRN_ROOM : TRN_MIXED};
+    if (out->kind == TRN_FLASH) out->flash = vec3_make(1, 1, 1);
+    if (out->kind == TRN_ROOM) out->room = vec3_make(1, 1, 1);
+    if (out->kind == TRN_MIXED) draw_mixed(v, &m, r, out);
+    ensure_light(v, &m, out);
+    find_strongest(v, &m, out);
+    out->lens_known = known;
+    out->told_flash = told && out->kind == TRN_FLASH;
+    if (out->kind == TRN_FLASH) return; /* exposed as rendered: that is what tells dark objects from bright ones */
+    balance(color_of(v, &m, out), share, lens->gain);
+    float exposure = target * lens->white / bright_part(v, out, amount_of(v, &m, out));
+    for (int c = 0; c < 3; c++)
+        lens->gain[c] *= exposure;
+}
+
+/* ---- what the network is to say of it -------------------------------------------------------------------------- */
+
+static vec3 way_to(const trn_lamp *l)
+{
+    return l->distant ? l->at : vec3_sub(l->at, vec3_make(0, 0, -1));
+}
+
+/* A lamp as what surrounds the object sends it: parallel light. */
+static void add_lamp(const trn_lamp *l, vec3 strength, float sh[9][3])
+{
+    sh_accumulate(sh, vec3_normalize(way_to(l)), vec3_scale(strength, LIGHT_POWER));
+}
+
+static void put_rest(const trn_view *v, const trn_mixture *m, vec3 gain)
+{
+    float sh[9][3], all = 0;
+    const vec3 room = vec3_mul(m->room, gain);
+    for (int i = 0; i < 9; i++) {
+        sh[i][0] = v->sh[3 * i] * room.x;
+        sh[i][1] = v->sh[3 * i + 1] * room.y;
+        sh[i][2] = v->sh[3 * i + 2] * room.z;
+    }
+    for (int k = 0; k < v->lamp_count; k++)
+        add_lamp(&v->lamp[k], vec3_scale(vec3_mul(m->lamp[k], gain), k == m->strongest ? 1 - m->presence : 1), sh);
+    float *code = v->lights + MODEL_LIGHTS_REST;
+    model_encode_sh((const float(*)[3])sh, code);
+    for (int i = 0; i < MODEL_SH; i++)
+        all += code[i] * code[i];
+    v->rest_weight[0] = 1 / (1 + all); /* light on a dark object is strong, and its error the larger */
+}
+
+static void put_lights(const trn_view *v, const trn_mixture *m, const trn_camera *lens)
+{
+    const vec3 gain = vec3_of(lens->gain), flash = vec3_mul(m->flash, gain);
+    memset(v->lights, 0, MODEL_LIGHTS * sizeof *v->lights);
+    v->lights[MODEL_LIGHTS_FLASH] = model_encode_strength(luminance_of(flash));
+    v->lamp_weight[0] = m->presence;
+    put_rest(v, m, gain);
+    if (m->strongest < 0) return;
+    const vec3 way = way_to(&v->lamp[m->strongest]), strength = vec3_mul(m->lamp[m->strongest], gain);
+    const float distance = vec3_length(way);
+    vec3_put(vec3_scale(way, m->presence / distance), v->lights + MODEL_LIGHTS_LAMP);
+    v->lights[MODEL_LIGHTS_DISTANCE] = v->lamp[m->strongest].distant ? 0 : 1 / distance;
+    const float channel[3] = {strength.x, strength.y, strength.z};
+    for (int c = 0; c < 3; c++)
+        v->lights[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength(m->presence * channel[c]);
+}
+
+/* The strongest lamp's visibility counts where it would be seen, and where it matters. Maps are as unpacked. */
+static void put_visibility(const trn_view *v, const trn_mixture *m)
+{
+    size_t pixels = (size_t)v->size * (size_t)v->size;
+    memset(v->visibility, 0, pixels * sizeof *v->visibility);
+    memset(v->visibility_weight, 0, pixels * sizeof *v->visibility_weight);
+    if (m->strongest < 0 || m->presence < 0.5f) return;
+    const trn_lamp *l = &v->lamp[m->strongest];
+    for (size_t i = 0; i < pixels; i++) {
+        if (v->mask[i] < 0.999f) continue;
+        int x = (int)(i % (size_t)v->size), y = (int)(i / (size_t)v->size);
+        vec3 p = camera_point(&v->lens, (float)x + 0.5f, (float)y + 0.5f, v->depth[i]);
+        vec3 toward = vec3_normalize(l->distant ? l->at : vec3_sub(l->at, p));
+        v->visibility[i] = lamp_pixel(v, m->strongest, i)[3];
+        v->visibility_weight[i] = vec3_dot(toward, vec3_of(v->normal + 3 * i)) > 0.02f ? m->presence : 0;
+    }
+}
+
+static void put_sight(const trn_view *v, const trn_mixture *m)
+{
+    model_sight(m->lens_known ? &v->lens : NULL, m->told_flash, v->size, v->sight);
+    v->lens_values[0] = camera_tangent(v->lens.fov);
+    v->lens_values[1] = v->lens.slant.right;
+    v->lens_values[2] = v->lens.slant.up;
+}
+
+/* Relief as nn_render counts it, of distance. */
+static void put_relief(const trn_view *v)
+{
+    float scale = camera_tangent(MODEL_FOV) / camera_tangent(v->lens.fov);
+    for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++)
+        if (v->mask[i] > 0) v->depth[i] = 1 + (v->depth[i] - 1) * scale;
+}
+
+status trn_prepare_any(const trn_view *v, const trn_mixture *m, const trn_camera *lens, vec3 target, rng *noise)
+{
+    for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++)
+        vec3_put(mixed_at(v, m, i), v->photo + 3 * i);
+    status s = trn_photograph(v, true, lens, noise);
+    if (s != OK) return s;
+    put_lights(v, m, lens);
+    put_visibility(v, m);
+    put_sight(v, m);
+    trn_finish(v, target);
+    put_relief(v);
+    return OK;
+}

@@ -1,0 +1,169 @@
+#include "lab/train/prepare.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "optics/ambient.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+vec3 trn_draw_light(rng *r)
+{
+    float u1 = rng_uniform(r), u2 = rng_uniform(r);
+    return frontal_light(u1, u2);
+}
+
+float trn_draw_strength(rng *r)
+{
+    return expf(rng_range(r, logf(0.1f), 0));
+}
+
+float trn_draw_target_strength(float dark_share, rng *r)
+{
+    float strength = trn_draw_strength(r);
+    return rng_uniform(r) < dark_share ? 0 : strength;
+}
+
+void trn_render(const trn_view *maps, vec3 light, float *out)
+{
+    int size = maps->size;
+    const camera c = maps->lens.width ? maps->lens : (camera){.width = size, .height = size, .fov = MODEL_FOV};
+    memset(out, 0, 3 * (size_t)size * (size_t)size * sizeof(float));
+    for (int y = 0; y < size; y++) {
+        for (int x = 0; x < size; x++) {
+            size_t i = (size_t)y * (size_t)size + (size_t)x;
+            if (maps->mask[i] <= 0.5f) continue;
+            shade_input in = {.albedo = vec3_of(maps->albedo + 3 * i),
+                              .roughness = maps->roughness[i],
+                              .normal = vec3_of(maps->normal + 3 * i),
+                              .depth = maps->depth[i],
+                              .ray = camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1),
+                              .light = light,
+                              .power = MODEL_LIGHT_POWER};
+            vec3 radiance = shade_point(&in);
+            out[3 * i] = fminf(radiance.x, 1.0f);
+            out[3 * i + 1] = fminf(radiance.y, 1.0f);
+            out[3 * i + 2] = fminf(radiance.z, 1.0f);
+        }
+    }
+}
+
+static void add3(float *to, size_t i, vec3 v)
+{
+    to[3 * i] += v.x;
+    to[3 * i + 1] += v.y;
+    to[3 * i + 2] += v.z;
+}
+
+void trn_add_environment(const trn_view *maps, const float sh[9][3], float *image)
+{
+    size_t pixels = (size_t)maps->size * (size_t)maps->size;
+    for (size_t i = 0; i < pixels; i++) {
+        if (maps->mask[i] <= 0) continue;
+        vec3 white = vec3_scale(sh_irradiance(sh, vec3_of(maps->normal + 3 * i)), maps->mask[i] / BRDF_PI);
+        add3(image, i, vec3_mul(white, vec3_of(maps->albedo + 3 * i)));
+    }
+}
+
+/* image -= what the specular lobe reflects of the environment, times coverage. */
+static void subtract_highlights(const trn_view *maps, const float sh[9][3], float *image)
+{
+    int size = maps->size;
+    camera c = {.width = size, .height = size, .fov = MODEL_FOV};
+    for (int y = 0; y < size; y++) {
+        for (int x = 0; x < size; x++) {
+            size_t i = (size_t)y * (size_t)size + (size_t)x;
+            if (maps->mask[i] <= 0) continue;
+            vec3 view = vec3_scale(camera_ray(&c, (float)x + 0.5f, (float)y + 0.5f), -1);
+            vec3 reflected = ambient_specular(sh, maps->roughness[i], vec3_of(maps->normal + 3 * i), view);
+            add3(image, i, vec3_scale(reflected, -maps->mask[i]));
+        }
+    }
+}
+
+/* Environment image and coefficients at the strength of this presentation. */
+static void scale_environment(const trn_view *v, float strength)
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    for (size_t i = 0; i < values; i++)
+        v->env[i] *= strength;
+    for (int i = 0; i < MODEL_SH; i++)
+        v->sh[i] *= strength;
+}
+
+/* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Shadows do not
+ * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is
+ * not as the coefficients say. */
+static void add_environment(const trn_view *v, const float sh[9][3])
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    float *rest = v->env, *shaded = v->reconstruction; /* which is filled later */
+    memset(shaded, 0, values * sizeof *shaded);
+    trn_add_environment(v, sh, shaded);
+    subtract_highlights(v, sh, rest);
+    for (size_t i = 0; i < values; i++) {
+        v->direct[i] += shaded[i];
+        v->indirect[i] += fminf(fmaxf(rest[i], 0) - shaded[i], fmaxf(shaded[i], 0));
+    }
+}
+
+/* The target under both lights, clipped as the rendering layer clips. */
+static void add_target_environment(const trn_view *v, const float sh[9][3])
+{
+    size_t values = 3 * (size_t)v->size * (size_t)v->size;
+    trn_add_environment(v, sh, v->relit);
+    for (size_t i = 0; i < values; i++)
+        v->relit[i] = v->mask[i / 3] > 0.5f ? fminf(fmaxf(v->relit[i], 0.0f), 1.0f) : 0.0f;
+    model_encode_sh(sh, v->target_sh);
+}
+
+static void clip_direct(const trn_view *v)
+{
+    for (size_t i = 0; i < 3 * (size_t)v->size * (size_t)v->size; i++)
+        v->direct[i] = fminf(v->direct[i], 1.0f);
+}
+
+/* Masks become binary, maps go to the network's ranges. */
+static void convert(const trn_view *v)
+{
+    size_t pixels = (size_t)v->size * (size_t)v->size;
+    for (size_t i = 0; i < pixels; i++) {
+        float seen = v->loss_mask[i];
+        v->loss_mask[i] = v->mask[i] >= 0.999f ? seen : 0.0f; /* coverage was rounded to half */
+        v->mask[i] = seen;
+        v->roughness[i] = 2 * v->roughness[i] - 1;
+    }
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        v->reconstruction[i] = v->direct[i] + v->indirect[i];
+        v->albedo[i] = 2 * v->albedo[i] - 1;
+    }
+}
+
+void trn_finish(const trn_view *v, vec3 target)
+{
+    trn_render(v, target, v->relit);
+    clip_direct(v);
+    convert(v);
+    vec3_put(target, v->light);
+}
+
+status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise)
+{
+    vec3 light = lighting->target;
+    if (v->env) scale_environment(v, lighting->strength);
+    status s = trn_photograph(v, global, lens, noise);
+    if (s != OK) return s;
+    trn_render(v, light, v->relit);
+    clip_direct(v);
+    if (v->env) {
+        float sh[9][3];
+        memcpy(sh, v->sh, sizeof sh);
+        add_environment(v, (const float(*)[3])sh);
+        model_encode_sh((const float(*)[3])sh, v->sh);
+        add_target_environment(v, lighting->target_sh);
+    }
+    convert(v);
+    vec3_put(light, v->light);
+    return OK;
+}

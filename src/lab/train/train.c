@@ -1,0 +1,478 @@
+#include "lab/train/train.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/messages.h"
+#include "base/progress.h"
+#include "lab/train/checkpoint.h"
+#include "lab/train/feed.h"
+
+typedef struct paths {
+    char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
+} paths;
+
+typedef struct run {
+    const trn_options *options;
+    model_config model;
+    train_config training;
+    char *model_json, *training_json;
+    paths paths;
+    trn_dataset *data;
+    size_t training_count;
+    int batch; /* of this rank: its share of the configuration's */
+    nn_graph *graph;
+    nn_params *params;
+    nn_adam *adam;
+    trn_average *average;        /* NULL: the last weights are the run's result */
+    nn_program *program, *judge; /* judge: the same losses by running statistics, for validation */
+    trn_feed *feed, *judge_feed;
+    trn_order order;
+    trn_state state;
+    double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
+    bool chart_missed;                           /* one could not be drawn, which has been said */
+} run;
+
+static void close_run(run *r)
+{
+    trn_order_free(&r->order);
+    trn_feed_free(r->feed);
+    trn_feed_free(r->judge_feed);
+    nn_program_free(r->program);
+    nn_program_free(r->judge);
+    trn_average_free(r->average);
+    nn_adam_free(r->adam);
+    nn_params_free(r->params);
+    nn_graph_free(r->graph);
+    trn_dataset_close(r->data);
+    free(r->paths.checkpoint);
+    free(r->paths.curves);
+    free(r->paths.validation);
+    free(r->paths.chart);
+    free(r->paths.weights);
+    free(r->paths.seconds);
+    free(r->model_json);
+    free(r->training_json);
+}
+
+static bool is_first(const run *r)
+{
+    return ranks_index(r->options->together) == 0;
+}
+
+static status read_configuration(run *r)
+{
+    const int sharing = ranks_count(r->options->together);
+    status s = train_config_read(r->options->config, &r->model, &r->training);
+    if (s != OK) return s;
+    r->batch = r->training.batch / sharing;
+    if (r->training.batch % sharing)
+        return fail(ERROR_USAGE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
+    r->model_json = model_config_write(&r->model);
+    return r->model_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+/* The type of rank 0, where each would take what is faster on its machine. */
+static void share_type(run *r)
+{
+    int type = (int)r->training.type;
+    ranks_share(r->options->together, &type, sizeof type);
+    r->training.type = (nn_type)type;
+}
+
+/* What was trained in, not what was asked for: another type's sums are others. */
+static status record_training(run *r)
+{
+    r->training.type = nn_program_type(r->program);
+    r->training_json = train_config_write(&r->training);
+    return r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
+}
+
+/* What a run begins from is not what it writes. */
+static status check_kept(const run *r)
+{
+    bool replaces = r->options->init && file_is_same(r->options->init, r->paths.weights);
+    for (const char *const *w = r->options->init_shared; w && *w; w++)
+        replaces |= file_is_same(*w, r->paths.weights);
+    if (!replaces) return OK;
+    return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", r->paths.weights);
+}
+
+/* The folder itself is made once data and model are accepted. */
+static status name_output(run *r)
+{
+    const char *folder = r->options->output;
+    r->paths = (paths){file_join(folder, "checkpoint.safetensors"), file_join(folder, "curves.csv"),
+                       file_join(folder, "validation.csv"),         file_join(folder, "curves.png"),
+                       file_join(folder, "weights.safetensors"),    file_join(folder, "seconds.txt")};
+    const paths *p = &r->paths;
+    if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights || !p->seconds)
+        return fail(ERROR_MEMORY, "out of memory");
+    bool exists = file_exists(p->checkpoint);
+    if (exists && !r->options->resume)
+        return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
+                    folder);
+    if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
+    status s = check_kept(r);
+    if (s == OK && !exists && file_exists(p->weights))
+        s = fail(ERROR_USAGE, "%s are a run's whose checkpoint is gone: name another folder, or move them away",
+                 p->weights);
+    return s;
+}
+
+static bool is_lit_by_both(const run *r)
+{
+    return r->model.lighting == MODEL_LIGHT_BOTH;
+}
+
+static bool is_lit_by_any(const run *r)
+{
+    return r->model.lighting == MODEL_LIGHT_ANY;
+}
+
+static status open_data(run *r)
+{
+    trn_dataset_options options = {.size = r->training.size,
+                                   .memory_gib = r->training.memory_gib,
+                                   .environment = is_lit_by_both(r),
+                                   .lamps = is_lit_by_any(r)};
+    status s = trn_dataset_open(r->options->data, &options, &r->data);
+    if (s != OK) return s;
+    size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
+    if (count <= held_back)
+        return fail(ERROR_INPUT, "%s holds %zu samples and \"validation_count\" %zu leaves none to train on",
+                    r->options->data, count, held_back);
+    r->training_count = count - held_back;
+    return trn_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
+}
+
+static void weigh_losses(nn_program *p, const train_config *c)
+{
+    nn_set_loss_weight(p, "albedo", (float)c->albedo_weight);
+    nn_set_loss_weight(p, "depth", (float)c->depth_weight);
+    nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
+    nn_set_loss_weight(p, "relight_ssim", (float)c->ssim_weight);
+    nn_set_loss_weight(p, "relight_brdf_ssim", (float)c->ssim_weight);
+}
+
+/* No more of the graph than there are losses for. */
+static model_part part_of(const train_config *c)
+{
+    if (c->ssim_weight > 0) return MODEL_TRAINING_SSIM;
+    return c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
+}
+
+static status load_weights(nn_params *params, const trn_options *o)
+{
+    status s = o->init ? nn_params_load(params, o->init) : OK;
+    for (const char *const *w = o->init_shared; s == OK && w && *w; w++)
+        s = nn_params_load_shared(params, *w);
+    return s;
+}
+
+static status build(run *r)
+{
+    const train_config *c = &r->training;
+    nn_options options = {.batch = r->batch,
+                          .height = c->size,
+                          .width = c->size,
+                          .type = c->type,
+                          .purpose = NN_TRAIN,
+                          .together = r->options->together};
+    nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
+    trn_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
+                         r->training_count, r->batch};
+    status s = model_build(&r->model, part_of(c), &r->graph);
+    if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
+    if (s == OK) s = load_weights(r->params, r->options);
+    if (s != OK) return s;
+    nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
+    s = nn_adam_new(r->params, &adam, &r->adam);
+    if (s == OK && c->average_decay > 0) s = trn_average_new(r->params, c->average_decay, &r->average);
+    if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
+    if (s == OK) s = record_training(r);
+    if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
+    if (s == OK) weigh_losses(r->program, c);
+    if (s != OK || c->validation_count == 0) return s;
+    options.purpose = NN_INFER;
+    s = nn_compile(r->graph, r->params, &options, &r->judge);
+    if (s == OK) weigh_losses(r->judge, c);
+    return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
+}
+
+static trn_learner learner_of(const run *r)
+{
+    return (trn_learner){r->params, r->adam, r->average};
+}
+
+static trn_identity identity_of(const run *r)
+{
+    return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data),
+                          ranks_count(r->options->together)};
+}
+
+/* Time spent is kept beside the checkpoint, not in it: a resumed run's files are those of one that was not stopped. */
+static status write_seconds(const run *r)
+{
+    char text[32];
+    int n = snprintf(text, sizeof text, "%.0f\n", r->seconds_before + r->saved_at - r->resumed_at);
+    return file_write(r->paths.seconds, text, (size_t)n);
+}
+
+static status read_seconds(run *r)
+{
+    char *text;
+    size_t size;
+    if (!file_exists(r->paths.seconds)) return OK;
+    status s = file_read(r->paths.seconds, 1 << 10, &text, &size);
+    if (s != OK) return s;
+    r->seconds_before = strtod(text, NULL);
+    free(text);
+    return OK;
+}
+
+static status resume(run *r)
+{
+    trn_identity identity = identity_of(r);
+    trn_learner learner = learner_of(r);
+    status s = trn_checkpoint_read(r->paths.checkpoint, &learner, &r->state, &identity);
+    if (s == OK) s = trn_curve_truncate(r->paths.curves, r->state.step);
+    if (s == OK) s = trn_curve_truncate(r->paths.validation, r->state.step);
+    return s == OK ? read_seconds(r) : s;
+}
+
+/* What rank 0 alone reads and writes. */
+static status begin_files(run *r)
+{
+    status s = file_make_folder(r->options->output);
+    if (s != OK) return s;
+    if (r->options->resume) return resume(r);
+    /* curves left by a run that never reached its first checkpoint */
+    s = trn_curve_truncate(r->paths.curves, 0);
+    return s == OK ? trn_curve_truncate(r->paths.validation, 0) : s;
+}
+
+static status begin(run *r)
+{
+    ranks *together = r->options->together;
+    r->state.best = INFINITY;
+    status s = ranks_agree(together, read_configuration(r));
+    if (s != OK) return s;
+    share_type(r);
+    if (is_first(r)) s = name_output(r);
+    if (s == OK) s = open_data(r);
+    if (s == OK) s = build(r);
+    r->resumed_at = r->saved_at = clock_seconds();
+    if (s == OK && is_first(r)) s = begin_files(r);
+    s = ranks_agree(together, s);
+    if (s != OK || ranks_count(together) == 1) return s;
+    trn_learner learner = learner_of(r);
+    trn_checkpoint_share(together, &learner, &r->state);
+    return OK;
+}
+
+static int64_t presented(const run *r)
+{
+    return r->state.step * r->training.batch;
+}
+
+/* Where this rank's share of the next batch begins. */
+static uint64_t own_presentations(const run *r)
+{
+    return (uint64_t)(presented(r) + (int64_t)ranks_index(r->options->together) * r->batch);
+}
+
+static status export_weights(run *r)
+{
+    if (!is_first(r)) return OK;
+    trn_provenance from = {.config = r->model_json,
+                           .training = r->training_json,
+                           .note = r->options->note,
+                           .presentations = presented(r),
+                           .samples = (int64_t)r->training_count,
+                           .size = r->training.size,
+                           .generator_version = trn_dataset_generator_version(r->data),
+                           .validation_loss = r->state.best};
+    return train_export(r->paths.weights, r->params, &from);
+}
+
+/* Does it with the mean of the weights in their place, if the run keeps one. */
+static status with_average(run *r, status (*act)(run *))
+{
+    if (!r->average) return act(r);
+    trn_average_swap(r->average);
+    status s = act(r);
+    trn_average_swap(r->average);
+    return s;
+}
+
+/* Drawn of what the tables hold anyhow, so that a training is not ended for want of a chart or of libvips, which draws
+ * it. */
+static void draw_chart(run *r)
+{
+    status s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
+    if (s != OK && !r->chart_missed && !r->options->quiet)
+        fprintf(messages(), "\nmerlin-lab train: no chart is drawn, training goes on: %s\n", status_message());
+    if (s != OK) r->chart_missed = true;
+}
+
+static status save(run *r)
+{
+    r->saved_at = clock_seconds();
+    if (!is_first(r)) return OK;
+    trn_identity identity = identity_of(r);
+    trn_learner learner = learner_of(r);
+    /* before the checkpoint: behind the last one nothing is done again */
+    status s = r->judge ? OK : with_average(r, export_weights);
+    if (s == OK) s = trn_curve_keep(r->paths.curves);
+    if (s == OK) s = trn_curve_keep(r->paths.validation);
+    if (s == OK) s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
+    if (s == OK) s = write_seconds(r);
+    if (s == OK) draw_chart(r);
+    return s;
+}
+
+static int64_t last_step(const run *r)
+{
+    return ((int64_t)r->training.presentations + r->training.batch - 1) / r->training.batch;
+}
+
+static trn_curve_row row_of(const run *r)
+{
+    return (trn_curve_row){.step = r->state.step,
+                           .presentations = presented(r),
+                           .skipped = nn_adam_skipped(r->adam),
+                           .learning_rate =
+                               trn_learning_rate(&r->training, r->training_count,
+                                                 (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
+}
+
+/* Batch norm's running statistics as the mean over many batches with the weights as they are ("precise BN", Wu and
+ * Johnson 2021). The moving ones see ten batches, too few for the coarsest level, where a handful of pixels decides
+ * about the depth of the whole object. The batches are those that come next. */
+static status settle_statistics(run *r)
+{
+    enum { SETTLING_BATCHES = 64 };
+    uint64_t first = own_presentations(r);
+    status s = OK;
+    for (int i = 0; s == OK && i < SETTLING_BATCHES; i++) {
+        nn_set_norm_momentum(r->program, 1.0f / (float)(i + 1));
+        s = trn_feed_training(r->feed, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
+        if (s == OK) s = nn_forward(r->program);
+    }
+    nn_set_norm_momentum(r->program, NN_NORM_MOMENTUM);
+    nn_params_touch(r->params);
+    return s;
+}
+
+static status validate(run *r)
+{
+    trn_losses losses = {0};
+    status settled = settle_statistics(r);
+    if (settled != OK) return settled;
+    for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
+        const int own = first + ranks_index(r->options->together) * r->batch;
+        status s = trn_feed_validation(r->judge_feed, (size_t)own);
+        if (s == OK) s = nn_forward(r->judge);
+        if (s != OK) return s;
+        trn_losses_add(&losses, r->judge);
+    }
+    trn_curve_row row = row_of(r);
+    status s = is_first(r) ? trn_curve_append(r->paths.validation, &row, &losses) : OK;
+    double mean = losses.total / (double)losses.count;
+    if (s != OK || !(mean < r->state.best)) return s;
+    r->state.best = mean;
+    return export_weights(r);
+}
+
+static status end_row(run *r)
+{
+    trn_curve_row row = row_of(r);
+    status s = is_first(r) ? trn_curve_append(r->paths.curves, &row, &r->state.open) : OK;
+    if (s == OK && !isfinite(r->state.open.total))
+        s = fail(ERROR_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
+                 (long long)r->state.step);
+    r->state.open = (trn_losses){0};
+    return s;
+}
+
+static status one_step(run *r)
+{
+    uint64_t first = (uint64_t)presented(r);
+    status s = trn_feed_training(r->feed, &r->order, own_presentations(r));
+    if (s == OK) s = nn_forward(r->program);
+    if (s == OK) s = nn_backward(r->program);
+    if (s == OK) s = nn_adam_step(r->adam, (float)trn_learning_rate(&r->training, r->training_count, first));
+    if (s != OK) return s;
+    trn_losses_add(&r->state.open, r->program);
+    r->state.step++;
+    if (r->average) trn_average_add(r->average, r->state.step, r->state.step == last_step(r));
+    if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
+    if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
+        s = with_average(r, validate);
+    return s;
+}
+
+/* Not behind the last step: that checkpoint says that all is done, which the last validation still is not. */
+static bool is_time_to_save(const run *r, int64_t last)
+{
+    return r->state.step < last && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes;
+}
+
+/* Whether any rank was asked to stop. */
+static status ask_to_stop(const run *r, bool *stop)
+{
+    double asked = r->options->interrupted && r->options->interrupted();
+    status s = ranks_sum(r->options->together, &asked, 1);
+    *stop = asked > 0;
+    return s;
+}
+
+static status steps(run *r, int64_t last, progress *bar)
+{
+    while (r->state.step < last) {
+        bool stop = false;
+        status s = one_step(r);
+        if (s == OK && is_time_to_save(r, last)) s = save(r);
+        if (s != OK) return s;
+        char note[64];
+        snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->program));
+        progress_update(bar, (size_t)presented(r), note);
+        if (r->state.step < last) s = ask_to_stop(r, &stop);
+        if (s != OK) return s;
+        if (stop) {
+            s = save(r);
+            return s != OK ? s
+                           : fail(ERROR_STOPPED, "stopped after %lld presentations; --resume goes on from there",
+                                  (long long)presented(r));
+        }
+    }
+    return OK;
+}
+
+static status go(run *r)
+{
+    int64_t last = last_step(r), validation_steps = r->training.validation_steps;
+    bool finished_before = r->state.step >= last;
+    progress bar;
+    progress_begin(&bar, "train", "presentations", (size_t)presented(r), (size_t)(last * r->training.batch),
+                   r->options->quiet || !is_first(r));
+    status s = steps(r, last, &bar);
+    progress_end(&bar);
+    if (s != OK || finished_before) return s;
+    if (!r->judge) s = with_average(r, settle_statistics);
+    if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
+    return s == OK ? save(r) : s;
+}
+
+status trn_train(const trn_options *o)
+{
+    run r = {.options = o};
+    status s = begin(&r);
+    if (s == OK) s = go(&r);
+    close_run(&r);
+    return s;
+}

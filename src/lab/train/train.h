@@ -1,0 +1,34 @@
+/* Training: from a folder of samples to weights.
+ *
+ *     trn_options o = {.config = "configs/merlin-point.json", .data = "data/train", .output = "runs/1"};
+ *     status s = trn_train(&o);
+ *
+ * The output folder receives checkpoint.safetensors (every few minutes and when stopped), curves.csv, validation.csv
+ * and curves.png, seconds.txt (time spent), and weights.safetensors, the best so far by validation loss (the latest,
+ * without validation). A run that was killed and resumed ends with the same weights, checkpoint and curves, bit for
+ * bit, as one that was not. */
+#ifndef MERLIN_LAB_TRAIN_TRAIN_H
+#define MERLIN_LAB_TRAIN_TRAIN_H
+
+#include <stdbool.h>
+
+#include "base/ranks.h"
+#include "base/status.h"
+
+typedef struct trn_options {
+    const char *config, *data, *output;
+    const char *init; /* weights to start from, or NULL */
+    /* or other models' weights, ended by NULL: what fits by name and shape, of the last that has it */
+    const char *const *init_shared;
+    const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
+    bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
+    bool quiet;
+    int (*interrupted)(void); /* asked after every step; NULL: never */
+    ranks *together;          /* NULL, or processes that share every batch: rank 0 alone writes */
+} trn_options;
+
+/* ERROR_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
+ * ERROR_ELSEWHERE. Later the others wait for one that has failed: ranks_abandon ends them. */
+status trn_train(const trn_options *o);
+
+#endif

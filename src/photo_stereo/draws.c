@@ -1,0 +1,58 @@
+#include "photo_stereo/draws.h"
+
+#include <stdlib.h>
+
+#include "base/rng.h"
+
+enum { SEED = 1, STREAM_DRAW = 2 };
+
+int draw_count(const pst_capture *all)
+{
+    return all->count > DRAW_PICTURES ? DRAW_MOST : 1;
+}
+
+/* Borrows what it chooses: the first of a shuffled order. */
+static void choose(const pst_capture *all, int draw, pst_capture *some)
+{
+    rng r = rng_at(SEED, (uint64_t)draw, STREAM_DRAW);
+    for (int i = 0; i < all->count; i++) {
+        some->picture[i] = all->picture[i];
+        some->light[i] = all->light[i];
+        some->name[i] = all->name[i];
+    }
+    for (int i = 0; i < some->count; i++) {
+        int other = i + rng_below(&r, all->count - i);
+        uint16_t *picture = some->picture[i];
+        pst_light light = some->light[i];
+        char *name = some->name[i];
+        some->picture[i] = some->picture[other];
+        some->light[i] = some->light[other];
+        some->name[i] = some->name[other];
+        some->picture[other] = picture;
+        some->light[other] = light;
+        some->name[other] = name;
+    }
+}
+
+status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surface *out)
+{
+    *out = (pst_surface){0};
+    pst_capture some = *all;
+    size_t count = (size_t)all->count;
+    some.picture = calloc(count, sizeof *some.picture);
+    some.light = calloc(count, sizeof *some.light);
+    some.name = calloc(count, sizeof *some.name);
+    status s = OK;
+    if (!some.picture || !some.light || !some.name) {
+        s = fail(ERROR_MEMORY, "no memory for %d lights", all->count);
+    } else {
+        if (some.count > DRAW_PICTURES) some.count = DRAW_PICTURES;
+        choose(all, draw, &some);
+        if (method == PST_UNCALIBRATED) pst_capture_forget_lights(&some);
+        s = pst_solve(&some, &(pst_options){.method = method}, out);
+    }
+    free(some.picture);
+    free(some.light);
+    free(some.name);
+    return s;
+}

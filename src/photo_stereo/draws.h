@@ -1,0 +1,21 @@
+/* Photometric stereo from a random part of a capture: the paper's protocol draws 32 of 50 pictures, five times.
+ *
+ *     for (int i = 0; i < draw_count(&capture); i++) {
+ *         pst_surface found;
+ *         status s = draw_solve(&capture, i, PST_AUTO, &found);
+ *         ...
+ *     }
+ */
+#ifndef MERLIN_PHOTO_STEREO_DRAWS_H
+#define MERLIN_PHOTO_STEREO_DRAWS_H
+
+#include "stereo/solve.h"
+
+enum { DRAW_MOST = 5, DRAW_PICTURES = 32 };
+
+/* DRAW_MOST, or 1 for a capture of no more than DRAW_PICTURES, which is always taken whole. */
+int draw_count(const pst_capture *all);
+/* Draw number `draw`, the same for every capture of as many pictures. PST_UNCALIBRATED is not told the lights. */
+status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surface *out);
+
+#endif

@@ -1,0 +1,22 @@
+/* Captures made of pictures in memory: the camera of docs/conventions.md, point lights of the training data's power.
+ *
+ *     pst_capture c;
+ *     status s = near_capture_new(&mask, &depth, 60, &c);
+ *     if (s == OK) s = near_capture_add(&c, &picture, light);      picture in units of NEAR_CAPTURE_WHITE
+ *     pst_capture_free(&c);
+ */
+#ifndef MERLIN_PHOTO_STEREO_NEAR_CAPTURE_H
+#define MERLIN_PHOTO_STEREO_NEAR_CAPTURE_H
+
+#include "stereo/capture.h"
+
+/* Radiance that becomes full scale: a white surface facing a light at half the usual distance is not clipped. */
+#define NEAR_CAPTURE_WHITE 8.0f
+
+/* mask: 1 channel, square, hardened here; depth: 1 channel, whose mean over the mask becomes the camera's
+ * mean_distance; field_of_view: horizontal, degrees. pst_capture_free also after a failure. */
+status near_capture_new(const img *mask, const img *depth, float field_of_view, pst_capture *out);
+/* picture: 3 channels, radiance / NEAR_CAPTURE_WHITE, clipped to [0, 1]. */
+status near_capture_add(pst_capture *c, const img *picture, vec3 light);
+
+#endif

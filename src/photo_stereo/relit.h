@@ -1,0 +1,27 @@
+/* One photograph as a capture for photometric stereo: its object relit under many known near lights.
+ *
+ *     relit r;
+ *     status s = relit_new(model, &maps, 256, NULL, &r);
+ *     ... draws of r.capture, beside r.maps.normal ...
+ *     relit_free(&r);
+ */
+#ifndef MERLIN_PHOTO_STEREO_RELIT_H
+#define MERLIN_PHOTO_STEREO_RELIT_H
+
+#include "estimate/surface.h"
+#include "merlin/merlin.h"
+#include "stereo/capture.h"
+
+enum { RELIT_LIGHTS = 50 };
+
+typedef struct relit {
+    pst_capture capture; /* RELIT_LIGHTS pictures of the maps' crop; its mean_distance is the maps' mean depth */
+    surface maps;        /* what they were made from, of the same size */
+} relit;
+
+/* The maps' crop, side × side pixels, under lights of the frontal hemisphere that a fixed seed draws: rendered by the
+ * BRDF, with the network's bounces. stop (may be NULL) is asked between pictures. */
+status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*stop)(void), relit *out);
+void relit_free(relit *r);
+
+#endif

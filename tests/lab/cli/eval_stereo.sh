@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# merlin-lab eval stereo: the table once with a tiny model, and one line for each kind of bad input.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/../../cli/support/check.bash"
+train_tiny_model
+export OMP_WAIT_POLICY=passive MERLIN_MODEL=$scratch/weights.safetensors
+cd "$scratch" || exit 1
+table() { "$MERLIN_LAB" eval stereo --quiet "$@"; }
+
+"$MERLIN_LAB" render --count 2 --size 64 --spp 1 --paths 1 --targets 8 --no-env --quiet -o near >/dev/null
+succeeds '^single image' table --data near --count 1 --figure sheet.png
+[[ -s sheet.png ]] || complain "no figure"
+grep -q '^  real images' stdout || complain "no row of real images: $(cat stdout)"
+succeeds '"real_images_uncalibrated"' table --data near --count 1 --json
+succeeds '^usage' table --help
+
+refuses 2 'data DIR is missing' table
+refuses 2 'unexpected argument' table --data near more
+refuses 2 'unknown option' table --data near --nonsense
+refuses 2 '--count wants' table --data near --count none
+refuses 1 'missing' table --data missing
+mkdir empty
+refuses 1 'holds no samples' table --data empty
+refuses 1 '000000.exr.*--targets' table --data samples
+refuses 1 'missing.safetensors' table --data near --model missing.safetensors
+refuses 1 'nowhere' table --data near --count 1 --figure nowhere/sheet.png
+mkdir cut
+head -c 3000 near/000000.exr >cut/000000.exr
+refuses 1 '000000.exr' table --data cut
+mkdir -p luces/cup
+echo "nothing of use" >luces/cup/led_params.txt
+refuses 1 'luces/cup/led_params.txt' table --data luces
+refuses 1 'cup/led_params.txt' table --data luces/cup
+finish
