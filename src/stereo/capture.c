@@ -5,11 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
-#include "stereo/capture_parts.h"
-
-typedef enum layout { LAYOUT_PLAIN, LAYOUT_LUCES, LAYOUT_DILIGENT } layout;
-
 status pst_capture_reserve(pst_capture *c, size_t count)
 {
     if (count < 1 || count > PST_MOST_PICTURES)
@@ -84,59 +79,6 @@ void pst_capture_free(pst_capture *c)
     *c = (pst_capture){0};
 }
 
-static status first_with_ending(const char *folder, const char *ending, char **path, size_t *found)
-{
-    const char *const endings[] = {ending, NULL};
-    char **names;
-    status s = file_list(folder, endings, &names, found);
-    if (s != OK || *found == 0) return s;
-    *path = strdup(names[0]);
-    file_list_free(names, *found);
-    return *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
-}
-
-status pst_find_file(const char *folder, const char *asked, const char *usual, const char *ending, char **path,
-                     size_t *found)
-{
-    *found = 0;
-    *path = asked ? strdup(asked) : file_join(folder, usual);
-    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
-    if (asked || file_exists(*path)) return OK;
-    free(*path);
-    *path = NULL;
-    return first_with_ending(folder, ending, path, found);
-}
-
-static layout layout_of(const char *folder)
-{
-    if (file_is_in(folder, "led_params.txt")) return LAYOUT_LUCES;
-    bool named = file_is_in(folder, "filenames.txt") || !file_is_in(folder, "lights.txt");
-    if (file_is_in(folder, "light_directions.txt") && named) return LAYOUT_DILIGENT;
-    return LAYOUT_PLAIN;
-}
-
-bool pst_is_of_data_set(const char *folder)
-{
-    return layout_of(folder) != LAYOUT_PLAIN;
-}
-
-static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
-{
-    if (kind == LAYOUT_DILIGENT && options->near && !options->unknown_lights)
-        return fail(ERROR_USAGE, "the lights of %s/light_directions.txt are no positions; give a list of these",
-                    folder);
-    if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
-    if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
-    return pst_read_plain(folder, options, c);
-}
-
-static status read_truth(layout kind, const char *folder, pst_capture *c)
-{
-    if (kind == LAYOUT_LUCES) return pst_read_luces_truth(folder, c);
-    if (kind == LAYOUT_DILIGENT) return pst_read_diligent_truth(folder, c);
-    return OK;
-}
-
 void pst_capture_forget_lights(pst_capture *c)
 {
     for (int i = 0; i < c->count; i++) {
@@ -163,28 +105,4 @@ void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
     float distance = mean_distance > 0 ? mean_distance : c->camera.mean_distance;
     if (degrees > 0) c->camera = pst_camera_of(c->width, c->height, degrees);
     c->camera.mean_distance = distance;
-}
-
-static status settle_camera(const pst_read_options *options, pst_capture *c)
-{
-    pst_capture_see(c, options->field_of_view, options->distance);
-    if (!(options->distance > 0) || c->camera.perspective) return OK;
-    return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
-}
-
-status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
-{
-    static const pst_read_options defaults = {0};
-    if (!options) options = &defaults;
-    *out = (pst_capture){0};
-    if (!file_is_folder(folder)) return fail(ERROR_INPUT, "there is no folder %s with pictures in it", folder);
-    layout kind = options->lights ? LAYOUT_PLAIN : layout_of(folder);
-    status s = read_layout(kind, folder, options, out);
-    if (s == OK) s = pst_read_pictures(folder, options, out);
-    if (s == OK) s = pst_read_mask(folder, options, out);
-    if (s == OK) s = read_truth(kind, folder, out);
-    if (s == OK) s = settle_camera(options, out);
-    if (s == OK && options->unknown_lights) pst_capture_forget_lights(out);
-    if (s != OK) pst_capture_free(out);
-    return s;
 }

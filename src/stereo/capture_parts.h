@@ -6,10 +6,6 @@
 #include "base/light_list.h"
 #include "stereo/capture.h"
 
-enum { PST_MOST_PICTURES = 4096 };
-
-status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
-
 /* Refuses a folder without pictures, and says which of the folders in it has some. */
 status pst_check_pictures(const char *folder);
 

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/light_list.h"
@@ -10,24 +9,6 @@
 #include "stereo/match_lights.h"
 
 const char *const pst_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
-
-status pst_find_named(const char *folder, const char *const *usual, char **path)
-{
-    char **names;
-    size_t count;
-    *path = NULL;
-    status s = file_list(folder, NULL, &names, &count);
-    if (s != OK) return s;
-    const char *found = NULL;
-    for (size_t k = 0; usual[k] && !found; k++)
-        for (size_t i = 0; i < count; i++) {
-            bool exact = strcmp(file_name_of(names[i]), usual[k]) == 0;
-            if (exact || (!found && strcasecmp(file_name_of(names[i]), usual[k]) == 0)) found = names[i];
-        }
-    if (found && !(*path = strdup(found))) s = fail(ERROR_MEMORY, "no memory for a file name");
-    file_list_free(names, count);
-    return s;
-}
 
 /* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
 static status find_lights(const char *folder, const char *asked, char **path)
