@@ -8,7 +8,7 @@
 #include "base/half.h"
 #include "image/exr.h"
 #include "image/exr_context.h"
-#include "image/read.h"
+#include "image/picture_size.h"
 
 struct exr_file {
     char *path;

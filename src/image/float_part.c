@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "image/picture_dng.h"
+#include "image/float_part.h"
 
 enum { PLAIN = 1, DEFLATE = 8, OLD_DEFLATE = 32946 };
 enum {

@@ -11,23 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* One for each way of reading. */
-typedef enum picture_kind {
-    PICTURE_UNKNOWN,
-    PICTURE_EXR,
-    PICTURE_PNG,
-    PICTURE_JPEG,
-    PICTURE_TIFF,
-    PICTURE_WEBP,
-    PICTURE_HEIC,
-    PICTURE_HDR,
-    PICTURE_RAW,
-    PICTURE_GIF,
-    PICTURE_BMP,
-    PICTURE_PNM,
-    PICTURE_TGA,
-    PICTURE_OTHER, /* a picture, but not read here */
-} picture_kind;
+#include "image/picture_kind.h"
 
 typedef struct img_format {
     picture_kind kind;

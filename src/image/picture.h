@@ -7,8 +7,9 @@
 #include <stdbool.h>
 
 #include "image/image.h"
-#include "image/kind.h"
+#include "image/picture_kind.h"
 #include "image/picture_light.h"
+#include "image/picture_size.h"
 
 /* How colour samples become linear light; alpha is linear always. */
 typedef enum picture_colour {
@@ -49,13 +50,6 @@ bool picture_tiff_is_raw(const char *path);
 bool picture_tiff_is_overfull(const char *path);
 /* By the EXIF standard, from 1 (upright) to 8; 1 for what is damaged. */
 int picture_exif_orientation(void *exif, size_t size);
-/* Refuses what takes too long to read, however little of it is kept. */
-status picture_check_size(const char *path, long long width, long long height);
-/* Refuses, too, sides above IMAGE_MAX_SIDE, of kinds that are decoded as a whole and reduced then. */
-status picture_check_sides(const char *path, long long width, long long height);
-/* Refuses what would take too much memory where a decoder has to hold all of it, so many bytes a pixel; advice:
- * how it is to be saved instead. */
-status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice);
 /* Refuses a picture of a kind that its decoder holds as a whole, where that would take too much memory. */
 status picture_check_held(const char *path, picture_kind kind, int width, int height);
 /* Refuses a WebP that has fewer bytes than it says, for which decoders have other words. */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "image/picture_plain.h"
+#include "image/plain_file.h"
 
 enum { FILE_HEAD = 14, CORE = 12, INFO = 40, V3 = 56, OS2 = 64, MOST_HEAD = 124 };
 enum { RGB = 0, RLE8 = 1, RLE4 = 2, BITFIELDS = 3, ALPHA_BITFIELDS = 6 };

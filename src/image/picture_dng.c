@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "image/float_part.h"
 #include "image/picture_rows.h"
 #include "image/primaries.h"
 #include "image/tiff_head.h"

@@ -4,21 +4,11 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "image/plain_file.h"
 
 static const plain_format *format_of(picture_kind kind)
 {
     return kind == PICTURE_PNM ? &plain_pnm : kind == PICTURE_BMP ? &plain_bmp : &plain_tga;
-}
-
-status plain_damaged(const plain_file *f)
-{
-    return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", f->path);
-}
-
-status plain_check(const plain_file *f, double least_bytes)
-{
-    status s = picture_check_size(f->path, f->layout.width, f->layout.height);
-    return s == OK && (double)f->size < least_bytes ? plain_damaged(f) : s;
 }
 
 static size_t bytes_of_sample(picture_sample sample)

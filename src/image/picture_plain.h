@@ -6,55 +6,10 @@
 #ifndef MERLIN_IMAGE_PICTURE_PLAIN_H
 #define MERLIN_IMAGE_PICTURE_PLAIN_H
 
-#include <stdint.h>
-#include <stdio.h>
-
 #include "image/picture.h"
-#include "image/picture_rows.h"
-
-/* A file being read. */
-typedef struct plain_file {
-    FILE *file;
-    const char *path; /* for messages */
-    uint64_t size;
-    picture_layout layout; /* after its head */
-    int bits;              /* of a sample, as picture_head has them */
-} plain_file;
-
-/* A format: open reads the head up to the pixels and makes what row needs, which close frees; row gives the next row's
- * samples as the layout has them and returns false where the file is damaged or cut short. state is NULL before open
- * and whatever that left, also where it failed. */
-typedef struct plain_format {
-    status (*open)(plain_file *f, void **state);
-    bool (*row)(plain_file *f, void *state, void *samples);
-    void (*close)(void *state);
-} plain_format;
-
-extern const plain_format plain_pnm, plain_bmp, plain_tga;
 
 /* color NULL: the head alone. alpha may be NULL; one that is 0 everywhere says nothing and is left out. */
 status picture_read_plain(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha,
                           picture_head *head);
-
-/* "cannot read PATH: it is damaged or cut short". */
-status plain_damaged(const plain_file *f);
-/* Refuses sizes that cannot be read, and files shorter than the pixels need at least, so that none but large files take
- * much memory or time. */
-status plain_check(const plain_file *f, double least_bytes);
-
-static inline unsigned plain_little16(const uint8_t *p)
-{
-    return p[0] | (unsigned)p[1] << 8;
-}
-
-static inline uint32_t plain_little32(const uint8_t *p)
-{
-    return plain_little16(p) | (uint32_t)plain_little16(p + 2) << 16;
-}
-
-static inline bool plain_get(plain_file *f, void *bytes, size_t count)
-{
-    return fread(bytes, 1, count, f->file) == count;
-}
 
 #endif

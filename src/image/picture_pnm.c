@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "image/picture_plain.h"
+#include "image/plain_file.h"
 
 enum { MOST_DIGITS_AFTER = 1 << 16 }; /* space and remarks before a number */
 

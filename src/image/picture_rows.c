@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "image/picture_size.h"
 #include "image/primaries.h"
-#include "image/read.h"
 
 struct picture_rows {
     picture_layout layout;

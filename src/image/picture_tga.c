@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "image/picture_plain.h"
+#include "image/plain_file.h"
 
 enum { HEAD = 18, MAPPED = 1, TRUE_COLOUR = 2, RUNS = 8, LONGEST_RUN = 128 };
 

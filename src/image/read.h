@@ -9,14 +9,7 @@
 #include <stdbool.h>
 
 #include "image/image.h"
-
-/* Larger pictures are read at a reduced size: the mean of so many of their pixels that they have no more. */
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* so that reading at a reduced size is tried, too, where all is slow  \
-                                                 */
-enum { IMAGE_MAX_SIDE = 4096, IMAGE_MOST_PIXELS = 500 * 1000 };
-#else
-enum { IMAGE_MAX_SIDE = 16384, IMAGE_MOST_PIXELS = 64 * 1000 * 1000 };
-#endif
+#include "image/picture_size.h"
 
 /* How raw pictures' names end; for lists of endings (file_ends_in_any). */
 #define IMAGE_RAW_ENDINGS ".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".pef", ".srw", ".3fr", ".iiq"
