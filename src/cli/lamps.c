@@ -7,7 +7,7 @@
 
 #include "base/light_list.h"
 #include "command/cli.h"
-#include "image/write.h"
+#include "image/color.h"
 #include "optics/blackbody.h"
 
 lamp_options lamp_options_new(void)

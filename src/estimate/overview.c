@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "estimate/exposure.h"
+#include "image/color.h"
 #include "image/resize.h"
-#include "image/write.h"
 
 static const vec3 from_left = {-0.67f, 0.47f, -0.43f}, from_right = {0.77f, 0.28f, -0.43f};
 

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "image/color.h"
+#include "image/start.h"
 #include "image/vips_library.h"
 
 static size_t frame_bytes(const img_animation *a)

@@ -5,6 +5,7 @@
 
 #include "image/codes.h"
 #include "image/color.h"
+#include "image/start.h"
 #include "image/vips_library.h"
 
 status canvas_new(canvas *out, int width, int height)

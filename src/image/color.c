@@ -3,8 +3,6 @@
 #include <math.h>
 #include <pthread.h>
 
-#include "image/write.h"
-
 enum { GUESSES = 4096 };
 
 static pthread_once_t once8 = PTHREAD_ONCE_INIT, once16 = PTHREAD_ONCE_INIT;

@@ -1,5 +1,5 @@
-/* Luminance of linear sRGB, and its codes by table, exact: an 8-bit or 16-bit code to linear light and back.
- * srgb_encode and srgb_decode, the formula itself, are in write.h. */
+/* Luminance of linear sRGB, and its codes, by formula and by table, exact: an 8-bit or 16-bit code to linear light and
+ * back. */
 #ifndef MERLIN_IMAGE_COLOR_H
 #define MERLIN_IMAGE_COLOR_H
 
@@ -11,6 +11,9 @@ static inline float color_luminance(const float rgb[3])
 {
     return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
 }
+
+float srgb_encode(float linear);
+float srgb_decode(float encoded);
 
 /* 256 and 65536 linear values, by code. */
 const float *srgb_decode_table8(void);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "image/exif_find.h"
 #include "image/exif_text.h"
 
 enum {

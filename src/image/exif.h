@@ -32,12 +32,6 @@ void exif_parse(const void *exif, size_t size, exif_facts *out);
 /* Takes them from a picture's file, of whatever kind. */
 void exif_read(const char *path, exif_facts *out);
 
-/* Place in a file of its EXIF. */
-typedef struct exif_place {
-    uint64_t at;
-    size_t size; /* 0: all of the file is a TIFF */
-} exif_place;
-bool exif_find(FILE *file, exif_place *out);
 /* Reads the colour space in an EXIF page, whose place may be 0 for none. */
 exif_colours exif_colours_of(const tiff_head *t, uint64_t page);
 

@@ -1,9 +1,10 @@
 /* Finds where files of the different kinds keep their EXIF. Sizes and places are believed as far as the file goes: each
  * walk moves on by a box at least, and takes so many steps at most. */
+#include "image/exif_find.h"
+
 #include <string.h>
 
 #include "image/box_file.h"
-#include "image/exif.h"
 
 enum { MOST_STEPS = BOX_MOST_STEPS, MOST_SIZE = 1 << 20, HEAD_BYTES = 16 };
 

@@ -2,9 +2,9 @@
 #include <stdlib.h>
 
 #include "image/canvas.h"
+#include "image/color.h"
 #include "image/figure.h"
 #include "image/resize.h"
-#include "image/write.h"
 
 typedef struct layout {
     int columns, rows, tile, margin, gap, label, font;

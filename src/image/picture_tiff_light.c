@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/color.h"
 #include "image/exif.h"
 #include "image/primaries.h"
-#include "image/write.h"
 
 /* Tells how far a curve is from the table's entries at a quarter, a half and three quarters. */
 static double distance(const double v[3], const double y[3], double exponent)

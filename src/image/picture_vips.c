@@ -7,6 +7,7 @@
 #include "image/exif.h"
 #include "image/picture_rows.h"
 #include "image/profile.h"
+#include "image/start.h"
 #include "image/vips_library.h"
 
 /* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be

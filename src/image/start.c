@@ -6,16 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/library.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "image/vips_library.h"
-
-static vips_functions functions;
-#define WANT_VIPS(name) {"vips_" #name, &functions.name},
-#define WANT_GLIB(name) {"g_" #name, &functions.g_##name},
-static const library_function wanted[] = {VIPS_FUNCTIONS(WANT_VIPS) GLIB_FUNCTIONS(WANT_GLIB)};
-static library libvips = {.file = MERLIN_VIPS, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static bool started;
@@ -30,12 +23,12 @@ static void swallow(const gchar *domain, GLogLevelFlags level, const gchar *mess
 
 static void start(void)
 {
-    bool first = functions.g_type_from_name("VipsObject") == 0; /* its first class */
-    if (first) functions.g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
-    started = functions.init("merlin") == 0;
+    bool first = vips()->g_type_from_name("VipsObject") == 0; /* its first class */
+    if (first) vips()->g_log_set_handler("VIPS", G_LOG_LEVEL_MASK, swallow, NULL);
+    started = vips()->init("merlin") == 0;
     if (!first) return;
-    functions.concurrency_set(1);
-    functions.cache_set_max(0);
+    vips()->concurrency_set(1);
+    vips()->cache_set_max(0);
 }
 
 /* GLib ends the program where it gets no memory or no thread. */
@@ -50,16 +43,11 @@ static status check_room(void)
 
 status vips_begin(void)
 {
-    status s = library_need(&libvips);
+    status s = vips_load();
     if (s == OK) s = check_room();
     if (s != OK) return s;
     pthread_once(&once, start);
     return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start");
-}
-
-const vips_functions *vips(void)
-{
-    return &functions;
 }
 
 void vips_without_modules(void)
@@ -71,8 +59,8 @@ bool vips_load_heif(void)
 {
     typedef const gchar *registration(void *module); /* what GModule, which libvips would load it by, calls */
     char path[1024];
-    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", functions.version(0),
-             functions.version(1));
+    snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", vips()->version(0),
+             vips()->version(1));
     void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL); /* for good: its types stay registered */
     registration *begin = NULL;
     void *found = module ? dlsym(module, "g_module_check_init") : NULL;
@@ -83,8 +71,8 @@ bool vips_load_heif(void)
 status vips_refusal(status s, const char *verb, const char *path)
 {
     char words[256];
-    snprintf(words, sizeof words, "%s", functions.error_buffer());
-    functions.error_clear();
+    snprintf(words, sizeof words, "%s", vips()->error_buffer());
+    vips()->error_clear();
     words[strcspn(words, "\r\n")] = 0;
     return fail(s, "cannot %s %s: %s", verb, path, words[0] ? words : "the image library does not say why");
 }

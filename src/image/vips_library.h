@@ -1,4 +1,4 @@
-/* The functions of libvips, which is loaded by vips_begin and not when the program starts.
+/* The functions of libvips, which is loaded by vips_begin (image/start.h) and not when the program starts.
  *
  *     status s = vips_begin();
  *     if (s == OK) failed = vips()->autorot(image, &made, NULL);
@@ -8,7 +8,7 @@
 
 #include <vips/vips.h>
 
-#include "image/start.h"
+#include "base/status.h"
 
 /* What is used of it: vips_NAME for every NAME. */
 #define VIPS_FUNCTIONS(USE)                                                                                            \
@@ -81,7 +81,9 @@ typedef struct vips_functions {
 #undef VIPS_MEMBER
 #undef GLIB_MEMBER
 
-/* After vips_begin (image/start.h). */
+/* For vips_begin (image/start.h) alone: brings the functions, but starts nothing. */
+status vips_load(void);
+/* After vips_begin. */
 const vips_functions *vips(void);
 
 #endif

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "base/file.h"
+#include "image/start.h"
 #include "image/vips_library.h"
 #include "image/write.h"
 

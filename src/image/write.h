@@ -32,7 +32,4 @@ status img_write_picture(const char *path, const img *image, img_file_kind kind)
 /* 1 or 3 channels of [0, 1], as 8 bits as they are, without loss. */
 status img_write_webp(const char *path, const img *image);
 
-float srgb_encode(float linear);
-float srgb_decode(float encoded);
-
 #endif

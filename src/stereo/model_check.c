@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "image/write.h"
+#include "image/color.h"
 #include "optics/camera.h"
 #include "stereo/shrink.h"
 #include "stereo/solve.h"

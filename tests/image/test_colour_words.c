@@ -2,6 +2,7 @@
 #include <math.h>
 #include <vips/vips.h>
 
+#include "image/color.h"
 #include "image/read.h"
 #include "image/write.h"
 

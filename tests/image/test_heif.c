@@ -5,9 +5,9 @@
 #include <unistd.h>
 #include <vips/vips.h>
 
+#include "image/color.h"
 #include "image/read.h"
 #include "image/start.h"
-#include "image/write.h"
 
 #include "writes.h"
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "image/color.h"
 #include "image/read.h"
-#include "image/write.h"
 
 #include "writes.h"
 

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <vips/vips.h>
 
+#include "image/color.h"
 #include "image/exr.h"
 #include "image/read.h"
 #include "image/write.h"

@@ -1,6 +1,7 @@
 #include <sys/stat.h>
 
 #include "capture_files.h"
+#include "image/color.h"
 #include "image/exr.h"
 #include "stereo/capture.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "base/rng.h"
-#include "image/write.h"
+#include "image/color.h"
 #include "relief.h"
 #include "stereo/doubts.h"
 

@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-#include "image/write.h"
+#include "image/color.h"
 #include "lab/scene/number.h"
 
 static float channel(float hue, float saturation, float value, float offset)

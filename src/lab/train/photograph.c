@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "image/write.h"
+#include "image/color.h"
 #include "model/model.h"
 
 /* Natural logarithm of the highest radiance a sensor takes without saturating. */

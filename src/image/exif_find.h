@@ -1,0 +1,17 @@
+/* Where a picture's file, of whatever kind, keeps its EXIF. */
+#ifndef MERLIN_IMAGE_EXIF_FIND_H
+#define MERLIN_IMAGE_EXIF_FIND_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Place in a file of its EXIF. */
+typedef struct exif_place {
+    uint64_t at;
+    size_t size; /* 0: all of the file is a TIFF */
+} exif_place;
+bool exif_find(FILE *file, exif_place *out);
+
+#endif
