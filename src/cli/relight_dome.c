@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/light_list.h"
 #include "cli/check_replaced.h"
-#include "cli/relight_work.h"
+#include "cli/relight_parts.h"
 
 /* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
 static vec3 dome_direction(int i, int count)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "cli/relight_work.h"
+#include "cli/relight_parts.h"
 
 bool relight_is_numbered(const char *name, const char *kind)
 {

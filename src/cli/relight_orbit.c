@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/relight_work.h"
+#include "cli/relight_parts.h"
 #include "image/animation.h"
 
 enum { ORBIT_MILLISECONDS = 3000 };
@@ -63,6 +63,7 @@ static status write_frames(relight_work *w, img_animation *frames)
 {
     const relight_job *job = w->job;
     relight_sheet some = {.count = 0};
+    char path[PATH_MAX];
     /* shares the levels, which a turn does not change */
     env_map turning = job->environment ? job->environment->map : (env_map){.cosine = 1};
     status s = OK;
@@ -75,7 +76,7 @@ static status write_frames(relight_work *w, img_animation *frames)
         if (s == OK) s = img_animation_add(frames, &frame);
         img_free(&frame);
     }
-    if (s == OK) s = relight_sheet_write(&some, w, "orbit.png");
+    if (s == OK) s = relight_sheet_write(&some, staging_path(w->staging, "orbit.png", path));
     relight_sheet_free(&some);
     return s;
 }

@@ -1,7 +1,8 @@
+#include "cli/relight_sheet.h"
+
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/relight_work.h"
 #include "image/figure.h"
 #include "image/resize.h"
 
@@ -28,14 +29,13 @@ void relight_label(const lamp *lights, int count, char label[RELIGHT_LABEL])
         snprintf(label, RELIGHT_LABEL, "environment");
 }
 
-status relight_sheet_write(const relight_sheet *s, const relight_work *w, const char *name)
+status relight_sheet_write(const relight_sheet *s, const char *path)
 {
     figure_tile tiles[RELIGHT_MOST_TILES];
     for (int i = 0; i < s->count; i++)
         tiles[i] = (figure_tile){s->labels[i], &s->pictures[i]};
-    char path[PATH_MAX];
     int columns = s->count < COLUMNS ? s->count : COLUMNS;
-    return figure_sheet(staging_path(w->staging, name, path), tiles, s->count, columns, TILE_SIZE);
+    return figure_sheet(path, tiles, s->count, columns, TILE_SIZE);
 }
 
 status relight_sheet_add(relight_sheet *s, const img *picture, const char *label)
