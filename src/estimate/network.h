@@ -9,10 +9,8 @@
 #ifndef MERLIN_ESTIMATE_NETWORK_H
 #define MERLIN_ESTIMATE_NETWORK_H
 
+#include "estimate/estimation.h"
 #include "estimate/sight.h"
-#include "estimate/surface.h"
-#include "image/image.h"
-#include "model/model.h"
 #include "optics/light.h"
 
 /* The shipped weights were last trained at NETWORK_SIZE. Of pictures a little larger they see fine shape well, and
@@ -51,15 +49,6 @@ void network_release(network *n);
 void network_release_maps(network *n);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
-
-typedef struct network_estimation {
-    surface maps;
-    img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
-                     more views has highlights of its own: empty here, to be asked of network_indirect */
-    float environment[9][3];    /* the photograph's (optics/sh.h), by models of setting B; zero for others */
-    float lights[MODEL_LIGHTS]; /* what lit the photograph, by models of any light (model.h); zero for others */
-    img visibility;             /* by these: of the strongest lamp, 1 channel in [0, 1]; else empty */
-} network_estimation;
 
 /* how: of the square; the maps are for its lens, that of SURFACE_FOV where it is not known. photo: 3 channels, radiance
  * (exposure.h), zero outside the mask, which is 0 or 1. The mean of what the network says of its first `views`

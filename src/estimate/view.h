@@ -11,7 +11,9 @@
 #ifndef MERLIN_ESTIMATE_VIEW_H
 #define MERLIN_ESTIMATE_VIEW_H
 
-#include "estimate/network.h"
+#include "estimate/estimation.h"
+#include "estimate/sight.h"
+#include "optics/light.h"
 
 /* Into picture `slot` of a program's inputs, both before every run, which may overwrite them: a square photograph and
  * its mask (or a mask alone) in this orientation (optics/orientation.h), and a light as it stands to the turned

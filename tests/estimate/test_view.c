@@ -1,4 +1,5 @@
 /* The mean over all eight orientations turns with the photograph. */
+#include "estimate/network.h"
 #include "estimate/view.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "estimate/network.h"
 #include "estimate/view.h"
 #include "lab/eval/predict_parts.h"
 
