@@ -7,26 +7,6 @@
 #include "base/fragile.h"
 #include "base/threads.h"
 
-static const char *reason(dnnl_status_t code)
-{
-    switch (code) {
-    case dnnl_out_of_memory:
-        return "out of memory";
-    case dnnl_invalid_arguments:
-        return "invalid arguments";
-    case dnnl_unimplemented:
-        return "not available for these types and sizes";
-    default:
-        return "runtime error";
-    }
-}
-
-status dnn_check(dnnl_status_t code, const char *what)
-{
-    if (code == dnnl_success) return OK;
-    return fail(code == dnnl_out_of_memory ? ERROR_MEMORY : ERROR_DEVICE, "oneDNN: %s: %s", what, reason(code));
-}
-
 status dnn_open(void **out)
 {
     *out = NULL;
@@ -49,16 +29,6 @@ void dnn_close(void *p)
     if (context->stream) dnnl_stream_destroy(context->stream);
     if (context->engine) dnnl_engine_destroy(context->engine);
     free(context);
-}
-
-dnnl_data_type_t dnn_type(nn_type type)
-{
-    return type == NN_BFLOAT16 ? dnnl_bf16 : dnnl_f32;
-}
-
-dnn_shape dnn_activation(const nn_tensor *t, nn_type type)
-{
-    return (dnn_shape){4, {t->n, t->c, t->h, t->w}, dnn_type(type), dnnl_nhwc};
 }
 
 dnn_layout dnn_query(const dnn_call *call, dnnl_query_t what)

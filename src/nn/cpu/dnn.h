@@ -1,13 +1,11 @@
-/* Short words for oneDNN: statuses with messages, channels-last shapes, convolutions, a primitive with its arguments.
- * Internal to src/nn/cpu.
+/* Short words for oneDNN: convolutions, a primitive with its arguments. Internal to src/nn/cpu.
  *
- * Versions 2 and 3 describe memory and operations by different calls; dnn_describe.c alone knows which one is there. */
+ * Versions 2 and 3 describe memory and operations by different calls; dnn_memory.c and dnn_describe.c alone know
+ * which ones are there. */
 #ifndef MERLIN_NN_CPU_DNN_H
 #define MERLIN_NN_CPU_DNN_H
 
-#include <oneapi/dnnl/dnnl.h>
-
-#include "nn/device.h"
+#include "nn/cpu/dnn_memory.h"
 
 typedef struct dnn_context {
     dnnl_engine_t engine;
@@ -17,28 +15,6 @@ typedef struct dnn_context {
 
 status dnn_open(void **context);
 void dnn_close(void *context);
-
-/* OK, or ERROR_DEVICE with "oneDNN: what: reason". */
-status dnn_check(dnnl_status_t code, const char *what);
-
-/* A tensor's sizes and type in memory; the tag says in which order, or dnnl_format_tag_any. */
-typedef struct dnn_shape {
-    int rank;
-    dnnl_dims_t size;
-    dnnl_data_type_t type;
-    dnnl_format_tag_t tag;
-} dnn_shape;
-
-/* oneDNN's own description of memory, which belongs to the call it was asked of. */
-#if DNNL_VERSION_MAJOR < 3
-typedef const dnnl_memory_desc_t *dnn_layout;
-#else
-typedef const_dnnl_memory_desc_t dnn_layout;
-#endif
-
-dnnl_data_type_t dnn_type(nn_type type);
-/* Returns the channels-last shape of a tensor in a type. */
-dnn_shape dnn_activation(const nn_tensor *t, nn_type type);
 
 enum { DNN_MAX_ARGUMENTS = 6, DNN_ARG_BESIDE = DNNL_ARG_ATTR_MULTIPLE_POST_OP(0) | DNNL_ARG_SRC_1 };
 
@@ -79,10 +55,5 @@ status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn
                            dnn_layout to, void *target);
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);
-
-/* Hides the differences between versions 2 and 3. Every init needs its free. */
-status dnn_memory_init(dnnl_memory_desc_t *memory, const dnn_shape *shape);
-dnn_layout dnn_layout_of(const dnnl_memory_desc_t *memory);
-void dnn_memory_free(dnnl_memory_desc_t *memory);
 
 #endif

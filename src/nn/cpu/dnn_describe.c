@@ -1,4 +1,4 @@
-/* Memory and convolutions in oneDNN's own words, by version 2 or 3, whichever the header is of. */
+/* Convolutions in oneDNN's own words, by version 2 or 3, whichever the header is of. */
 #include <string.h>
 
 #include "nn/cpu/dnn.h"
@@ -8,22 +8,6 @@ typedef struct memories {
 } memories;
 
 #if DNNL_VERSION_MAJOR < 3
-
-status dnn_memory_init(dnnl_memory_desc_t *memory, const dnn_shape *shape)
-{
-    return dnn_check(dnnl_memory_desc_init_by_tag(memory, shape->rank, shape->size, shape->type, shape->tag),
-                     "memory description");
-}
-
-dnn_layout dnn_layout_of(const dnnl_memory_desc_t *memory)
-{
-    return memory;
-}
-
-void dnn_memory_free(dnnl_memory_desc_t *memory)
-{
-    (void)memory;
-}
 
 static dnnl_status_t append_relu(dnnl_post_ops_t post)
 {
@@ -78,24 +62,6 @@ static void end_walk(walk *w)
 }
 
 #else
-
-status dnn_memory_init(dnnl_memory_desc_t *memory, const dnn_shape *shape)
-{
-    *memory = NULL;
-    return dnn_check(dnnl_memory_desc_create_with_tag(memory, shape->rank, shape->size, shape->type, shape->tag),
-                     "memory description");
-}
-
-dnn_layout dnn_layout_of(const dnnl_memory_desc_t *memory)
-{
-    return *memory;
-}
-
-void dnn_memory_free(dnnl_memory_desc_t *memory)
-{
-    if (*memory) dnnl_memory_desc_destroy(*memory);
-    *memory = NULL;
-}
 
 static dnnl_status_t append_relu(dnnl_post_ops_t post)
 {

@@ -5,7 +5,7 @@
 #ifndef MERLIN_NN_CPU_DNN_PACK_H
 #define MERLIN_NN_CPU_DNN_PACK_H
 
-#include "nn/cpu/dnn.h"
+#include "nn/cpu/dnn_memory.h"
 
 typedef struct dnn_packing dnn_packing;
 
