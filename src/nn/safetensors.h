@@ -3,23 +3,11 @@
 #ifndef MERLIN_NN_SAFETENSORS_H
 #define MERLIN_NN_SAFETENSORS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "base/status.h"
+#include "nn/safetensors_tensor.h"
 
-typedef enum st_type { ST_F32, ST_F16, ST_BF16, ST_I64 } st_type;
 /* As files call it: "F32". */
 const char *st_type_name(st_type type);
-
-typedef struct st_tensor {
-    const char *name;
-    st_type type;
-    int rank; /* at most 4 */
-    int64_t shape[4];
-    size_t count;
-    const void *data; /* count elements of type, may be unaligned */
-} st_tensor;
 
 typedef struct st_file st_file;
 

@@ -7,21 +7,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "nn/safetensors.h"
+#include "nn/safetensors_tensor.h"
 
 enum { ST_PREFIX = 8, ST_HEADER_LIMIT = 1 << 20, ST_TYPES = ST_I64 + 1, ST_CHECKSUM_SIZE = 9 };
 
 #define ST_CHECKSUM "crc32"
-
-static inline size_t st_type_size(st_type type)
-{
-    return type == ST_I64 ? 8 : type == ST_F32 ? 4 : 2;
-}
-
-static inline size_t st_bytes_of(const st_tensor *t)
-{
-    return t->count * st_type_size(t->type);
-}
 
 static inline void st_format_checksum(uint32_t sum, char out[ST_CHECKSUM_SIZE])
 {

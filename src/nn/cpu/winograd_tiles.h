@@ -3,7 +3,7 @@
 #ifndef MERLIN_NN_CPU_WINOGRAD_TILES_H
 #define MERLIN_NN_CPU_WINOGRAD_TILES_H
 
-#include "nn/cpu/winograd.h"
+#include "nn/cpu/winograd_shape.h"
 
 /* Takes what a tile of the result is made of from activations x to points `stride` floats apart. copy: room for
  * POINTS pixels of the input, used at the border. */
