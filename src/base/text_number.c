@@ -1,4 +1,6 @@
 /* A number as a word of a table has it: decimal, whatever the locale, with an exponent of e or d. */
+#include "base/text_number.h"
+
 #include <ctype.h>
 #include <float.h>
 #include <math.h>
@@ -7,7 +9,6 @@
 #include <strings.h>
 
 #include "base/plain_locale.h"
-#include "base/text_rows.h"
 
 enum { LONGEST = 400 };
 

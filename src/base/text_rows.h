@@ -19,12 +19,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-
-typedef enum text_kind {
-    TEXT_WORD,
-    TEXT_NUMBER,
-    TEXT_NO_NUMBER /* "nan", "inf" and what no float holds */
-} text_kind;
+#include "base/text_number.h"
 
 typedef struct text_word {
     const char *at; /* in the text, without quotes and what parts words; no zero behind it */
@@ -53,8 +48,5 @@ typedef struct text_rows {
  * line's number. */
 status text_rows_parse(const char *bytes, size_t size, const char *where, text_rows *out);
 void text_rows_free(text_rows *rows);
-
-/* A word's number, in which a comma may be the decimal one. */
-text_kind text_number(const char *word, size_t length, bool comma, double *value);
 
 #endif

@@ -3,7 +3,8 @@
 #ifndef MERLIN_MODEL_BLOCKS_H
 #define MERLIN_MODEL_BLOCKS_H
 
-#include "model/model.h"
+#include "model/config.h"
+#include "nn/nn.h"
 
 /* 3×3 convolution, batch norm, ReLU: parameters `name.conv.*` and `name.norm.*`. */
 nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stride);

@@ -1,10 +1,10 @@
-/* The model's configuration as JSON. */
+#include "model/config.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/json_file.h"
-#include "model/model.h"
 
 /* Three times a width is the most that a layer takes in: what it shares, what comes up and what was there before. */
 enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };

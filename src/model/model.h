@@ -30,13 +30,11 @@
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 
-#include <stdbool.h>
-
-#include "base/status.h"
+#include "model/config.h"
 #include "nn/nn.h"
 #include "optics/camera.h"
 
-enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18, MODEL_SH = 27 };
+enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
 
 /* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
 #define MODEL_FOV 60.0f
@@ -45,9 +43,6 @@ enum { MODEL_LEVELS = 5, MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18, MODEL_SH =
 /* The losses by name; a variant may lack some (nn_loss: NAN). New ones come last, behind the columns of older curves.
  */
 extern const char *const model_losses[MODEL_LOSSES];
-
-typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
-typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH, MODEL_LIGHT_ANY } model_lighting;
 
 /* Where the parts of "lights" begin. Strengths are in the photograph's radiance: 1 is what the lamp of power
  * MODEL_LIGHT_POWER gives at distance 1. They span orders of magnitude, hence model_encode_strength. */
@@ -59,34 +54,6 @@ enum {
     MODEL_LIGHTS_REST = 8,     /* model_encode_sh of everything else: MODEL_SH */
     MODEL_LIGHTS = 8 + MODEL_SH
 };
-
-typedef struct model_config {
-    char name[64];
-    bool input_global;     /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
-    int material_decoders; /* 1 or 4 */
-    bool feature_sharing;  /* relighting decoder sees the material decoder's features */
-    bool gated_attention;
-    model_relight relight; /* by network: has a relighting decoder */
-    bool global_illumination;
-    /* the paper's settings A (point) and B (point and environment), or any light and lens */
-    model_lighting lighting;
-    int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
-    int gi_widths[MODEL_LEVELS];
-    int encoder_blocks[MODEL_LEVELS];      /* residual blocks behind each level's convolutions */
-    int material_blocks[MODEL_LEVELS - 1]; /* behind each stage of the material decoders */
-} model_config;
-
-/* From JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
- * range-checked; messages name the key. */
-status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
-/* A file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files that it
- * names (base/json_file.h). */
-status model_config_read(const char *path, model_config *out);
-/* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
-char *model_config_write(const model_config *config);
-
-/* Length of the lighting code: 3 or 30. */
-int model_light_size(const model_config *config);
 
 /* Radiance above which the network sees no more: photographs whose white lies higher are scaled down before. */
 #define MODEL_BRIGHTEST 4.0f
