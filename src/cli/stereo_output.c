@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "cli/stereo_view.h"
 #include "estimate/api.h"
 #include "estimate/map_png.h"
 #include "image/figure.h"
@@ -12,14 +13,6 @@
 #include "stereo/mesh_write.h"
 
 enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
-
-void stereo_result_free(stereo_result *r)
-{
-    img *images[] = {&r->normal, &r->albedo, &r->depth, &r->mask, &r->error};
-    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
-        img_free(images[i]);
-    skipped_free(&r->skipped);
-}
 
 static size_t pixel_count(const stereo_result *r)
 {

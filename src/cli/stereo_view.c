@@ -1,8 +1,8 @@
 /* A view of a depth map from the side, so that a person sees what a front view hides. */
+#include "cli/stereo_view.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-#include "cli/stereo_output.h"
 
 static const float COSINE = 0.70710678f, GROUND = 0.015f, JUMP = 10, FILL = 0.92f, LEAST_SQUARE = 0.5f;
 enum { MOST_CUTS = 12 };

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/progress.h"
+#include "command/photo_folder.h"
 #include "command/photo_hint.h"
 
 /* mask: the job's, else alpha; without data if neither. */

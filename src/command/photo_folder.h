@@ -3,7 +3,8 @@
 #ifndef MERLIN_COMMAND_PHOTO_FOLDER_H
 #define MERLIN_COMMAND_PHOTO_FOLDER_H
 
-#include "command/photos.h"
+#include "base/status.h"
+#include "command/photo_list.h"
 
 /* Adds one photograph; a copy of its path is kept. */
 status photo_list_add(photo_list *list, const char *photo);
@@ -17,5 +18,8 @@ status photo_folder_find_masks(photo_list *list, const char *folder);
 
 /* Takes out what is the mask of another one by its name: estimate * names masks, too. */
 void photo_list_drop_masks(photo_list *list);
+
+/* Finds the mask that lies beside a photograph; *mask is malloc'ed, NULL if there is none. */
+status photo_own_mask(const char *photo, char **mask);
 
 #endif

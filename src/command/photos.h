@@ -6,27 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/skipped.h"
 #include "base/status.h"
-#include "merlin/merlin.h"
-
-typedef struct photo_job {
-    char *photo, *output;
-    char *mask;              /* NULL: alpha, or the object is searched for, */
-    const merlin_hint *hint; /* by this, or NULL; borrowed */
-} photo_job;
-
-typedef struct photo_folder {
-    char *path;
-    skipped_files skipped;
-} photo_folder;
-
-typedef struct photo_list {
-    photo_job *at;
-    size_t count;
-    photo_folder *folder;
-    size_t folders;
-} photo_list;
+#include "command/photo_list.h"
 
 /* One photograph goes to `output`, by default its name without ending + ".merlin". Several, or a folder's, each go to a
  * folder of their own inside `output`, by default beside them. `mask` is one photograph's, or a folder of masks for
@@ -46,8 +27,6 @@ size_t photo_list_drop_done(photo_list *list);
 void photo_list_tell(const photo_list *list, const char *command);
 /* Adds to a photograph's report what was left aside of all folders, if anything was. */
 void photo_list_put(const photo_list *list, cJSON *report);
-/* Finds the mask that lies beside a photograph; *mask is malloc'ed, NULL if there is none. */
-status photo_own_mask(const char *photo, char **mask);
 /* Has the object searched for by a hint, which is borrowed, in place of taking the mask that lies beside it. */
 void photo_use_hint(photo_job *job, const merlin_hint *hint);
 void photo_list_free(photo_list *list);
