@@ -213,7 +213,6 @@ void bundle_take(bundle *b, const bundle *from)
             float x = (float)(b->left + column * b->side), y = (float)(b->top + row * b->side);
             if (n >= 0) b->log_depth[n] = logf(bundle_depth(from, x, y));
         }
-    bundle_fit_albedo(b);
 }
 
 status bundle_inflate(bundle *b, float relief)

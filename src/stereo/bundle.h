@@ -52,7 +52,7 @@ float bundle_depth(const bundle *b, float x, float y);
 /* The surface that a balloon of the object's outline has (inflate.h), its heights times relief; below 0: a bowl. */
 status bundle_inflate(bundle *b, float relief);
 
-/* The surface and lights of another grid over the same problem. */
+/* The surface and lights of another grid over the same problem; albedos stay as they are. */
 void bundle_take(bundle *b, const bundle *from);
 
 /* The cells' albedos for the surface and lights as they are. */

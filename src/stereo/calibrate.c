@@ -8,19 +8,6 @@
 #include "stereo/doubts.h"
 #include "stereo/pixel_fit.h"
 
-void pst_calibration_free(pst_calibration *c)
-{
-    for (int i = 0; c->name && i < c->count; i++)
-        free(c->name[i]);
-    free(c->name);
-    free(c->direction);
-    free(c->highlight);
-    free(c->residual);
-    skipped_free(&c->skipped);
-    img_free(&c->brightest);
-    *c = (pst_calibration){0};
-}
-
 static float grey(const uint16_t *pixel, int channels)
 {
     float sum = 0;

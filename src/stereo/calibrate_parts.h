@@ -2,7 +2,8 @@
 #ifndef MERLIN_STEREO_CALIBRATE_PARTS_H
 #define MERLIN_STEREO_CALIBRATE_PARTS_H
 
-#include "stereo/calibrate.h"
+#include "stereo/calibration.h"
+#include "stereo/capture.h"
 
 /* The circle whose edge is seen most completely in a picture of one channel, beside another or NULL; false if there is
  * none. */

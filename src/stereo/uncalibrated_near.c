@@ -183,6 +183,7 @@ status pst_find_near_lights(const pst_problem *p, const pst_camera *camera, pst_
     if (s == OK) s = bundle_new(p, camera, FINE, &fine);
     if (s == OK) {
         bundle_take(&fine, &coarse);
+        bundle_fit_albedo(&fine);
         s = refine(&fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
     }
     if (s == OK) s = take_result(&fine, light, depth);
