@@ -4,8 +4,6 @@
 
 #include <cjson/cJSON.h>
 
-#include "base/json.h"
-
 enum { JSON_KEYS = 64, JSON_WHERE = 256 };
 
 struct json_object {
