@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "lab/scene/gltf.h"
-#include "lab/scene/mesh_file.h"
+#include "lab/scene/mesh_limits.h"
 
 /* The value of a letter of base 64; -1 of any other. */
 static int value_of(char c)

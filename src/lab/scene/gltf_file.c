@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "lab/scene/gltf.h"
-#include "lab/scene/mesh_file.h"
 
 enum { GLB_HEAD = 12, CHUNK_HEAD = 8, DEEPEST = 64, MOST_VALUES = 2000000 };
 enum { CHUNK_JSON = 0x4e4f534a, CHUNK_BINARY = 0x004e4942 };

@@ -5,16 +5,9 @@
 #include "base/file.h"
 #include "base/plain_locale.h"
 #include "lab/scene/mesh_gltf.h"
+#include "lab/scene/mesh_limits.h"
 #include "lab/scene/mesh_obj.h"
 #include "lab/scene/mesh_ply.h"
-
-enum { TRIANGLE_LIMIT = 5000000, SMALL_FILE_TRIANGLES = 1000000, TRIANGLE_BYTES = 4 };
-
-size_t mesh_most_triangles(size_t bytes)
-{
-    size_t most = SMALL_FILE_TRIANGLES + bytes / TRIANGLE_BYTES;
-    return most < TRIANGLE_LIMIT ? most : TRIANGLE_LIMIT;
-}
 
 /* Above 0 where a triangle faces the way of its vertices' normals, below where it faces the other way. */
 static float agreement(const scn_mesh *mesh, const uint32_t t[3])
@@ -46,7 +39,7 @@ static status read_kind(const char *path, scn_mesh *mesh, int *parts)
     static const char *const gltf[] = {".gltf", ".glb", NULL};
     *parts = 1;
     if (file_ends_in(path, ".ply")) return mesh_read_ply(path, mesh);
-    if (file_ends_in(path, ".obj")) return mesh_read_obj(path, TRIANGLE_LIMIT, mesh, parts);
+    if (file_ends_in(path, ".obj")) return mesh_read_obj(path, MESH_TRIANGLES, mesh, parts);
     if (file_ends_in_any(path, gltf)) return mesh_read_gltf(path, mesh, parts);
     return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
 }
@@ -61,8 +54,8 @@ status mesh_read(const char *path, scn_mesh *mesh, int *parts)
     uselocale(before);
     if (s != OK) return s;
     if (mesh->triangle_count == 0) return fail(ERROR_INPUT, "no triangles in it");
-    if (mesh->triangle_count > TRIANGLE_LIMIT)
-        return fail(ERROR_INPUT, "%u triangles; at most %d", mesh->triangle_count, TRIANGLE_LIMIT);
+    if (mesh->triangle_count > MESH_TRIANGLES)
+        return fail(ERROR_INPUT, "%u triangles; at most %d", mesh->triangle_count, MESH_TRIANGLES);
     mesh_drop_repeated(mesh);
     mesh_weld(mesh);
     if (mesh->failed) return fail(ERROR_MEMORY, "no memory for the mesh");

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "lab/scene/gltf.h"
-#include "lab/scene/mesh_file.h"
+#include "lab/scene/mesh_limits.h"
 
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "lab/scene/mesh_file.h"
+#include "lab/scene/mesh_limits.h"
 
 enum { CORNERS = 1024, MATERIALS = 256, NAME = 128, COUNT_LIMIT = 20000000 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "lab/scene/mesh_file.h"
+#include "lab/scene/mesh_limits.h"
 
 enum { PROPERTIES = 32, ELEMENTS = 8, NAME = 32, POLYGON = 256, COUNT_LIMIT = 20000000 };
 

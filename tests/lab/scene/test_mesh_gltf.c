@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "lab/scene/mesh_file.h"
 #include "lab/scene/mesh_gltf.h"
+#include "lab/scene/mesh_limits.h"
 #include "scratch.h"
 
 /* last: it defines a macro named fail */
