@@ -7,7 +7,7 @@
 #ifndef MERLIN_LAB_RENDER_CONTENTS_H
 #define MERLIN_LAB_RENDER_CONTENTS_H
 
-#include "lab/render/generate.h"
+#include "lab/render/options.h"
 
 /* Describes the mesh and the folders that the options name, these by names and bytes of all files that are read, in any
  * order. Empty where they name none; ERROR_INPUT for what cannot be read. */

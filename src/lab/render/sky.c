@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "lab/render/environment.h"
 #include "lab/scene/noise.h"
 #include "optics/latlong.h"
 
