@@ -14,27 +14,6 @@ typedef struct evaluation {
     eval_report *report;
 } evaluation;
 
-double eval_score(const eval_scores *scores, eval_row row, eval_answer answer)
-{
-    size_t count = scores->count[row][answer];
-    return count ? scores->sum[row][answer] / (double)count : NAN;
-}
-
-double eval_best_trivial(const eval_scores *scores, eval_row row)
-{
-    double best = NAN;
-    for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++) {
-        double score = eval_score(scores, row, (eval_answer)answer);
-        best = row >= EVAL_RECONSTRUCTION ? fmax(best, score) : fmin(best, score);
-    }
-    return best;
-}
-
-double eval_region_error(const eval_region *region, eval_row map, eval_answer answer)
-{
-    return region->pixels ? region->sum[map][answer] / (double)region->pixels : NAN;
-}
-
 static void add_region(eval_region *to, const eval_region *from)
 {
     to->pixels += from->pixels;

@@ -1,7 +1,9 @@
-#include "lab/eval/predict_parts.h"
+#include "lab/eval/predict.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+#include "lab/eval/predict_parts.h"
 
 enum { MOST_OUTPUTS = 8 + MODEL_FEATURES };
 static const char *const estimated[] = {"albedo",   "normal",           "roughness",   "depth", "direct",

@@ -2,6 +2,7 @@
 
 #include "estimate/network.h"
 #include "estimate/view.h"
+#include "lab/eval/predict.h"
 #include "lab/eval/predict_parts.h"
 
 static status take(const eval_model *m, const char *name, int channels, img *out)

@@ -2,7 +2,9 @@
 #ifndef MERLIN_LAB_EVAL_PREDICT_PARTS_H
 #define MERLIN_LAB_EVAL_PREDICT_PARTS_H
 
-#include "lab/eval/predict.h"
+#include "lab/eval/maps.h"
+#include "model/model.h"
+#include "optics/light.h"
 
 typedef struct eval_program {
     nn_graph *graph;

@@ -4,6 +4,7 @@
 #include "estimate/shadow.h"
 #include "estimate/smooth.h"
 #include "estimate/view.h"
+#include "lab/eval/predict.h"
 #include "lab/eval/predict_parts.h"
 
 static float clip(float x)

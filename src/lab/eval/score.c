@@ -3,20 +3,6 @@
 #include "estimate/shadow.h"
 #include "lab/eval/metrics.h"
 
-void eval_note(eval_scores *scores, eval_row row, eval_answer answer, double value)
-{
-    scores->sum[row][answer] += value;
-    scores->count[row][answer]++;
-}
-
-status eval_note_similarity(eval_scores *scores, eval_row row, eval_answer answer, const img *image, const img *target)
-{
-    double similarity = 0;
-    status s = eval_ssim(image, target, &similarity);
-    if (s == OK) eval_note(scores, row, answer, similarity);
-    return s;
-}
-
 static void score_maps(eval_subject *on, const eval_maps *maps, eval_answer answer)
 {
     const img *mask = &on->mask;
@@ -27,70 +13,15 @@ static void score_maps(eval_subject *on, const eval_maps *maps, eval_answer answ
     eval_note(&on->scores, EVAL_ROUGHNESS, answer, eval_mse(&maps->roughness, &on->truth.roughness, mask));
 }
 
-/* A trivial answer's picture is its maps rendered. */
-static status score_trivial_picture(eval_subject *on, const eval_maps *maps, eval_answer answer, eval_row row,
-                                    const illumination *light, const img *target)
-{
-    img lit;
-    const sample *s = on->sample;
-    status st = eval_render(maps, &on->mask, s->fov, s->light_power, light, &lit);
-    if (st != OK) return st;
-    st = eval_note_similarity(&on->scores, row, answer, &lit, target);
-    img_free(&lit);
-    return st;
-}
-
 static status score_reconstruction(eval_scorer *e, eval_subject *on)
 {
     float sh[9][3];
     illumination flash = {on->sample->light, eval_mean_surroundings(e, sh)};
     status s =
         eval_note_similarity(&on->scores, EVAL_RECONSTRUCTION, EVAL_MODEL, &e->prediction.reconstruction, &on->image);
-    if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, EVAL_RECONSTRUCTION, &flash, &on->image);
-    if (s == OK) s = score_trivial_picture(on, &on->inflated, EVAL_INFLATED, EVAL_RECONSTRUCTION, &flash, &on->image);
+    if (s == OK) s = eval_score_trivial(on, &e->means.maps, EVAL_MEAN, EVAL_RECONSTRUCTION, &flash, &on->image);
+    if (s == OK) s = eval_score_trivial(on, &on->inflated, EVAL_INFLATED, EVAL_RECONSTRUCTION, &flash, &on->image);
     return s;
-}
-
-void eval_repeat_trivial(eval_scores *scores, eval_row from, eval_row to)
-{
-    for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++) {
-        scores->sum[to][answer] = scores->sum[from][answer];
-        scores->count[to][answer] = scores->count[from][answer];
-    }
-}
-
-status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row decoder,
-                             eval_row brdf, const img *by_network, const img *by_brdf)
-{
-    status s = OK;
-    for (int i = 0; s == OK && i < r->count; i++) {
-        const img *target = &r->targets[i];
-        const illumination *light = &r->lights[i];
-        if (eval_model_relights(e->model))
-            s = eval_note_similarity(&on->scores, decoder, EVAL_MODEL, &by_network[i], target);
-        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
-        if (s == OK) s = score_trivial_picture(on, &e->means.maps, EVAL_MEAN, brdf, light, target);
-        if (s == OK) s = score_trivial_picture(on, &on->inflated, EVAL_INFLATED, brdf, light, target);
-        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_UNCHANGED, &on->image, target);
-    }
-    eval_repeat_trivial(&on->scores, brdf, decoder);
-    return s;
-}
-
-void eval_relighting_free(eval_relighting *r)
-{
-    for (int i = 0; i < EVAL_LIGHTS; i++)
-        img_free(&r->targets[i]);
-}
-
-status eval_render_targets(const eval_subject *on, eval_relighting *r)
-{
-    const sample *s = on->sample;
-    status st = OK;
-    for (int i = 0; i < r->count && st == OK; i++)
-        st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, &r->lights[i], &r->targets[i]);
-    if (st != OK) eval_relighting_free(r);
-    return st;
 }
 
 /* The sample's path-traced targets from `first` on; a last group that is not full repeats its first light. */

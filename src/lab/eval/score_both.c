@@ -1,7 +1,7 @@
 /* Setting B: photographs by flash in surroundings, and relighting under both. */
 #include <math.h>
 
-#include "lab/eval/score.h"
+#include "lab/eval/score_parts.h"
 #include "optics/sh.h"
 
 static void scaled(const float from[9][3], float to[9][3])

@@ -4,7 +4,7 @@
 #include "estimate/relight_env.h"
 #include "estimate/smooth.h"
 #include "lab/eval/metrics.h"
-#include "lab/eval/score.h"
+#include "lab/eval/score_parts.h"
 #include "lab/render/generate.h"
 
 /* Four times what samples are made with: their grain costs more similarity than shadows bring. */

@@ -1,6 +1,6 @@
 /* Errors of the maps by what the photograph shows of a pixel: where gloss is not seen, nothing tells roughness. */
 #include "lab/eval/metrics.h"
-#include "lab/eval/score.h"
+#include "lab/eval/score_parts.h"
 #include "optics/camera.h"
 
 /* From which share of the flash's light that gloss returns the regions behind EVAL_BURNT_OUT begin. */

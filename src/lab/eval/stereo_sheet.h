@@ -12,7 +12,7 @@
 
 #include "lab/eval/sheet_rows.h"
 #include "lab/eval/stereo_object.h"
-#include "lab/eval/stereo_table.h"
+#include "lab/eval/stereo_row.h"
 
 status stereo_sheet_new(size_t objects, sheet_rows **out);
 /* normal: one a row of the table, of the capture's size; empty where there is no solution. */

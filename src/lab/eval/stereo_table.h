@@ -17,15 +17,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
-
-typedef enum stereo_row {
-    STEREO_SINGLE, /* the network's own normals */
-    STEREO_RELIT,  /* photometric stereo from relit pictures, lights known */
-    STEREO_REAL,   /* from real ones */
-    STEREO_RELIT_UNCALIBRATED,
-    STEREO_REAL_UNCALIBRATED,
-    STEREO_ROWS
-} stereo_row;
+#include "lab/eval/stereo_row.h"
 
 typedef struct stereo_score {
     double error;  /* mean angle to the true normals over the object, degrees; the mean of the draws that were solved */
