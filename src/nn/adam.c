@@ -1,5 +1,5 @@
 /* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013). */
-#include "nn/adam.h"
+#include "nn/adam_step.h"
 
 #include <math.h>
 #include <stdlib.h>

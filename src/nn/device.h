@@ -6,7 +6,7 @@
 #ifndef MERLIN_NN_DEVICE_H
 #define MERLIN_NN_DEVICE_H
 
-#include "nn/adam.h"
+#include "nn/adam_step.h"
 #include "nn/graph.h"
 #include "nn/params.h"
 #include "nn/tensor.h"

@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "nn/adam.h"
+#include "nn/adam_step.h"
 #include "nn/tensor.h"
 
 enum { CPU_MAX_CHANNELS = 2048 }; /* the widest tensor these loops take: their buffers live on the stack */

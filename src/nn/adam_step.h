@@ -1,6 +1,6 @@
 /* Adam's step as a device is asked for it, one parameter at a time. Internal to src/nn. */
-#ifndef MERLIN_NN_ADAM_H
-#define MERLIN_NN_ADAM_H
+#ifndef MERLIN_NN_ADAM_STEP_H
+#define MERLIN_NN_ADAM_STEP_H
 
 typedef struct adam_step {
     float learning_rate, beta1, beta2, epsilon;
