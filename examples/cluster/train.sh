@@ -2,7 +2,7 @@
 # One training run over eight machines, a rank each. Before its time is over it is told to stop, writes a checkpoint, and
 # is queued again to go on from there.
 #
-#     sbatch examples/cluster/train.sh configs/merlin-point.json data/train runs/point
+#     sbatch examples/cluster/train.sh configs/runs/merlin-point/01-128.json data/train runs/point
 #SBATCH --job-name=merlin-train
 #SBATCH --nodes=8
 #SBATCH --ntasks-per-node=1

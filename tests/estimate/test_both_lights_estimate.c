@@ -67,7 +67,7 @@ static int set_up(void **state)
     snprintf(f->output, sizeof f->output, "%s/out", f->folder);
     snprintf(f->surroundings, sizeof f->surroundings, "%s/room.png", f->folder);
     draw(f);
-    if (write_random_weights_of("merlin-env", f->weights) != OK || write_random_weights(f->point_weights) != OK ||
+    if (write_random_weights_of("merlin-env-deep", f->weights) != OK || write_random_weights(f->point_weights) != OK ||
         write_surroundings(f->surroundings) != OK || merlin_model_open(f->weights, &f->model) != MERLIN_OK ||
         merlin_model_open(f->point_weights, &f->point) != MERLIN_OK)
         return -1;

@@ -57,7 +57,7 @@ static void see(const fixture *f, const float code[MODEL_LIGHTS])
 {
     model_config config;
     nn_params *params = NULL;
-    assert_int_equal(write_random_weights_of("merlin-any-96", f->any), OK);
+    assert_int_equal(write_random_weights_of("merlin-any", f->any), OK);
     assert_int_equal(model_load(f->any, &config, &params), OK);
     nn_param *weight = nn_params_find(params, "lights.fc2.weight"), *bias = nn_params_find(params, "lights.fc2.bias");
     assert_non_null(weight);
@@ -163,7 +163,7 @@ static void weights_for_flashes_are_read_when_one_is_seen(void **state)
     see(f, code);
     assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
     assert_int_equal(merlin_model_add_flash(model, f->flash), MERLIN_OK);
-    assert_int_equal(write_random_weights_of("merlin-env", f->flash), OK);
+    assert_int_equal(write_random_weights_of("merlin-env-deep", f->flash), OK);
     assert_int_equal(merlin_estimate(model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
     merlin_maps_free(&maps);
     p.flash = 1;

@@ -74,7 +74,7 @@ static void the_mean_over_all_views_turns_with_the_photograph(void **state)
     network *n;
     img photo, mask, turned_photo, turned_mask;
     network_estimation one = {0}, other = {0};
-    assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
+    assert_int_equal(write_random_weights_of("merlin-env-deep", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     assert_int_equal(network_estimate(n, &photo, &mask, NULL, ORIENTATIONS, NULL, &one), OK);
@@ -112,7 +112,7 @@ static void the_light_that_is_found_turns_with_the_photograph(void **state)
     img photo, mask, turned_photo, turned_mask;
     network_estimation one = {0}, other = {0};
     const sight how = {.lens = {35, {0.2f, -0.1f}}};
-    assert_int_equal(write_random_weights_of("merlin-any-96", scratch_path("any.safetensors")), OK);
+    assert_int_equal(write_random_weights_of("merlin-any", scratch_path("any.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("any.safetensors"), &n), OK);
     draw(&photo, &mask);
     assert_int_equal(network_estimate(n, &photo, &mask, &how, ORIENTATIONS, NULL, &one), OK);
@@ -149,7 +149,7 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     img photo, mask, relit;
     const float environment[9][3] = {{0.8f, 0.7f, 0.6f}, {0.1f, 0.2f, 0.3f}, {-0.2f, 0, 0.1f}, {0.3f, -0.1f, 0.2f}};
     const illumination light = {{0.6f, 0.3f, -0.4f}, environment};
-    assert_int_equal(write_random_weights_of("merlin-env", scratch_path("w.safetensors")), OK);
+    assert_int_equal(write_random_weights_of("merlin-env-deep", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     network_look *look;

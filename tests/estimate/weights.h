@@ -24,11 +24,11 @@ static inline status write_params(const char *path, nn_params *params, const cha
     return s;
 }
 
-/* A configuration of configs/, a few channels wide. */
+/* A network of configs/models, a few channels wide. */
 static inline status write_random_weights_of(const char *name, const char *path)
 {
     char from[512];
-    snprintf(from, sizeof from, "%s/configs/%s.json", MERLIN_SOURCE_DIR, name);
+    snprintf(from, sizeof from, "%s/configs/models/%s.json", MERLIN_SOURCE_DIR, name);
     model_config config;
     nn_graph *g = NULL;
     nn_params *params = NULL;
@@ -47,7 +47,7 @@ static inline status write_random_weights_of(const char *name, const char *path)
 
 static inline status write_random_weights(const char *path)
 {
-    return write_random_weights_of("merlin-point", path);
+    return write_random_weights_of("merlin-point-plain", path);
 }
 
 #endif

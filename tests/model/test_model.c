@@ -15,13 +15,13 @@
 #include <cmocka.h>
 
 static const char *const files[] = {"table1-1", "table1-2", "table1-3", "table1-4", "table1-5",
-                                    "table1-6", "table1-7", "table1-8", "table1-9", "merlin-point"};
+                                    "table1-6", "table1-7", "table1-8", "table1-9", "merlin-point-plain"};
 enum { FILES = sizeof files / sizeof *files };
 
 static void read_config(const char *name, model_config *c)
 {
     char path[512];
-    snprintf(path, sizeof path, "%s/configs/%s.json", MERLIN_SOURCE_DIR, name);
+    snprintf(path, sizeof path, "%s/configs/models/%s.json", MERLIN_SOURCE_DIR, name);
     if (model_config_read(path, c) != OK) fail_msg("%s", status_message());
 }
 
@@ -62,7 +62,7 @@ static void relighting_by_brdf_can_be_trained_beside_the_network(void **unused)
     (void)unused;
     enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
     model_config c;
-    read_config("merlin-point", &c);
+    read_config("merlin-point-plain", &c);
     nn_params *params = NULL;
     nn_program *p = compile(&c, MODEL_TRAINING, NN_TRAIN, SIZE, &params);
     assert_true(isnan(nn_loss(p, "relight_brdf")));
@@ -88,7 +88,7 @@ static void similarity_of_relit_images_is_trained_only_where_asked_for(void **un
     enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
     static const char *const names[] = {"relight_ssim", "relight_brdf_ssim"};
     model_config c;
-    read_config("merlin-point", &c);
+    read_config("merlin-point-plain", &c);
     nn_params *params = NULL;
     nn_program *p = compile(&c, MODEL_TRAINING_BRDF, NN_TRAIN, SIZE, &params);
     for (int i = 0; i < 2; i++)
@@ -163,13 +163,13 @@ static void keeps_the_budget(const char *name)
 static void default_models_keep_the_budget(void **unused)
 {
     (void)unused;
-    keeps_the_budget("merlin-point");
+    keeps_the_budget("merlin-point-plain");
     keeps_the_budget("merlin-point-deep");
     keeps_the_budget("merlin-point-fine");
-    keeps_the_budget("merlin-point-sharp");
-    keeps_the_budget("merlin-env");
+    keeps_the_budget("merlin-point");
+    keeps_the_budget("merlin-env-deep");
     keeps_the_budget("merlin-env-fine");
-    keeps_the_budget("merlin-env-sharp");
+    keeps_the_budget("merlin-env");
 }
 
 /* So that they can be added to weights that are trained already. */
@@ -178,7 +178,7 @@ static void residual_blocks_begin_as_nothing(void **unused)
     (void)unused;
     enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
     model_config plain, deep;
-    read_config("merlin-point", &plain);
+    read_config("merlin-point-plain", &plain);
     read_config("merlin-point-deep", &deep);
     nn_params *a = NULL, *b = NULL;
     /* drawn by name and seed, what both have is the same */
@@ -207,7 +207,7 @@ static void indirect_part_equals_the_whole_models(void **unused)
     (void)unused;
     enum { SIZE = 64, PIXELS = SIZE * SIZE };
     model_config c;
-    read_config("merlin-point", &c);
+    read_config("merlin-point-plain", &c);
     nn_params *params = NULL;
     nn_program *whole = compile(&c, MODEL_WHOLE, NN_INFER, SIZE, &params);
     nn_program *part = compile(&c, MODEL_INDIRECT, NN_INFER, SIZE, &params);
@@ -283,8 +283,8 @@ static void relighting_part_equals_the_whole_models(const char *name)
 static void relighting_parts_equal_their_models(void **unused)
 {
     (void)unused;
-    relighting_part_equals_the_whole_models("merlin-point");
-    relighting_part_equals_the_whole_models("merlin-env");
+    relighting_part_equals_the_whole_models("merlin-point-plain");
+    relighting_part_equals_the_whole_models("merlin-env-deep");
     relighting_part_equals_the_whole_models("table1-3"); /* without feature sharing */
 }
 
@@ -303,7 +303,7 @@ static void maps_stay_in_their_ranges(void **unused)
     (void)unused;
     enum { SIZE = 64, PIXELS = SIZE * SIZE };
     model_config c;
-    read_config("merlin-point", &c);
+    read_config("merlin-point-plain", &c);
     nn_params *params = NULL;
     nn_program *p = compile(&c, MODEL_WHOLE, NN_INFER, SIZE, &params);
     fill(nn_input_data(p, "image"), 3 * PIXELS, 0.7f);

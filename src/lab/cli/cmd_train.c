@@ -11,7 +11,7 @@
 
 static const char help[] =
     "usage: merlin-lab train CONFIG.json --data DIR -o DIR [OPTION]...\n"
-    "Train the model of a configuration (configs/) on samples made by merlin-lab render.\n"
+    "Train the model of a configuration (configs/runs) on samples made by merlin-lab render.\n"
     "\n"
     "  -d, --data DIR      folder of samples, all of the configuration's size\n"
     "  -o, --output DIR    receives weights.safetensors (from the first validation on),\n"

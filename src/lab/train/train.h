@@ -1,6 +1,6 @@
 /* Training: from a folder of samples to weights.
  *
- *     trn_options o = {.config = "configs/merlin-point.json", .data = "data/train", .output = "runs/1"};
+ *     trn_options o = {.config = "configs/runs/merlin-point/01-128.json", .data = "data/train", .output = "runs/1"};
  *     status s = trn_train(&o);
  *
  * The output folder receives checkpoint.safetensors (every few minutes and when stopped), curves.csv, validation.csv
