@@ -64,7 +64,7 @@ for command in "${commands[@]}"; do
 done
 for shell in "${shells[@]}"; do
     completes "$shell" relight merlin rel
-    completes "$shell" photos merlin-lab eval ph
+    [[ -z ${MERLIN_LAB:-} ]] || completes "$shell" photos merlin-lab eval ph
     completes "$shell" calibrate merlin stereo c
     completes "$shell" merlin-env merlin relight photo.png --model merlin-e
     completes "$shell" network merlin relight photo.png --by n
@@ -73,5 +73,5 @@ done
 completes bash network merlin relight photo.png --by = # as the shell parts --by=
 completes bash network merlin relight photo.png --by = n
 completes bash merlin-env merlin relight photo.png --model = merlin-e
-completes bash photos merlin-lab help eval ph
+[[ -z ${MERLIN_LAB:-} ]] || completes bash photos merlin-lab help eval ph
 finish
