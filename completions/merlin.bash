@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Bash completion for merlin and merlin-lab: source it, or install it as share/bash-completion/completions/merlin and
 # merlin-lab. Commands and options are what --help says.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One photograph, lit from thirty places, and from these pictures its surface:
  *
  *     photo_to_mesh models/merlin-point.safetensors photo.jpg out.glb */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One photograph, lit from the left:
  *
  *     relight_photo models/merlin-point.safetensors photo.jpg out.png */

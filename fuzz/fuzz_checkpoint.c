@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A checkpoint's words from arbitrary lines (counters, the open row of the curves, the best loss, the training's
  * configuration) around sound tensors: whatever is accepted must count no further than a run can. Files that are
  * damaged elsewhere are fuzz_safetensors' to find. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Configurations from arbitrary bytes: whatever is accepted must be within range and survive being written and read. */
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Raw pictures of floats from arbitrary bytes; all others are LibRaw's. */
 #include "fuzz_picture.h"
 #include "image/picture_dng.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* EXIF from arbitrary bytes, and the walk to it through files of every kind. */
 #include "fuzz_picture.h"
 #include "image/box_file.h"

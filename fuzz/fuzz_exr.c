@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* OpenEXR pictures from arbitrary bytes. */
 #include "fuzz_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* For readers that want a path: arbitrary bytes as a file that lies in memory alone.
  *
  *     img_read(fuzz_file(data, size), &color, &alpha);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glTF and GLB files from arbitrary bytes. */
 #include "lab/scene/mesh_gltf.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Radiance pictures from arbitrary bytes. */
 #include "fuzz_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* JSON objects from arbitrary bytes, asked for keys of every type: whatever is accepted must be within its range. */
 #include <math.h>
 #include <stdint.h>

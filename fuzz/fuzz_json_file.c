@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A file and the one that it may name, base.json, from arbitrary bytes with a line of three dashes between: whatever is
  * accepted must have no key twice, and its base put in. */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* LUCES light files from arbitrary bytes: whatever is accepted must be finite and complete. */
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light lists from arbitrary bytes: whatever is accepted must be finite and few enough. */
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* maps.exr from arbitrary bytes: whatever is accepted must be complete and finite. */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* MATLAB files from arbitrary bytes: whatever is accepted must hold as many numbers as its size says. */
 #include <stdint.h>
 #include <stdlib.h>

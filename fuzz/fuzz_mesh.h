@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meshes from arbitrary bytes: whatever is accepted must be made of vertices that are there, and finite. */
 #ifndef MERLIN_FUZZ_MESH_H
 #define MERLIN_FUZZ_MESH_H

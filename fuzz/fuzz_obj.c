@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* OBJ files from arbitrary bytes. */
 #include "lab/scene/mesh_obj.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures of one kind from arbitrary bytes: whatever is accepted must be finite, of three channels, of the size that
  * its head says, and a mask within [0, 1]. */
 #ifndef MERLIN_FUZZ_PICTURE_H

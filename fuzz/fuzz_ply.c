@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PLY files from arbitrary bytes. */
 #include "lab/scene/mesh_ply.h"
 

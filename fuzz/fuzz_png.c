@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PNGs from arbitrary bytes. */
 #include "fuzz_picture.h"
 

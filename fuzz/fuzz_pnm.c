@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* netpbm's pictures from arbitrary bytes. */
 #include "fuzz_picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Weights from arbitrary bytes: whatever is accepted must lie inside the bytes and be readable to its end. */
 #include <stdint.h>
 #include <stdlib.h>

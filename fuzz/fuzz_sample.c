@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Training samples from arbitrary bytes, read whole and as training reads them. */
 #include <string.h>
 

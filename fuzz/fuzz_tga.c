@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* TGAs from arbitrary bytes. */
 #include "fuzz_picture.h"
 

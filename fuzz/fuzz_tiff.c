@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* TIFFs, and what EXIF holds from arbitrary bytes. */
 #include "fuzz_picture.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Finds files that stand on each other, directly or through further ones, prints one circle of each such knot and then
 # ends with 1.
 #

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin: one photograph of an object, taken apart into its material and lit again from elsewhere.
  *
  *     merlin_image photo, alpha;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin/stereo: the surface of an object from pictures of it under many lights.
  *
  *     merlin_capture *capture;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Numbers as text, in no locale's way and many times faster than printf: for files of millions of them.
  *
  *     char line[3 * DECIMAL_ROOM], *end = decimal_put(line, 0.25, 7);        "0.25"

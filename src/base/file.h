@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files as wholes: read into memory, and written so that a reader sees the old file or the new one, never half. */
 #ifndef MERLIN_BASE_FILE_H
 #define MERLIN_BASE_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Marks on calls into libraries that end the program, or crash, where the system refuses them memory or a thread:
  * oneDNN's machine code, GLib behind libvips.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* 16-bit floats: IEEE half (files, samples in memory) and bfloat16 (network activations), rounded to nearest even. */
 #ifndef MERLIN_BASE_HALF_H
 #define MERLIN_BASE_HALF_H

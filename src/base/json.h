@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* JSON configuration read strictly: every key is asked for by name and type, and what nobody asked for is refused.
  *
  *     json_object *o;

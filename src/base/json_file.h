@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* JSON files that name others, so that what many have in common stands in one of them.
  *
  *     {"base": "01-96.json", "training": {"seed": 42}}                             01-96.json with another seed

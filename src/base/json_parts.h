@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a json_object is, for those who put one together. */
 #ifndef MERLIN_BASE_JSON_PARTS_H
 #define MERLIN_BASE_JSON_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sixteen of a kind at once: loops over lanes become vector instructions, as wide as the processor has them.
  *
  *     lanes p;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/leftovers.h"
 
 #include <dirent.h>

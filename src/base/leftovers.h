@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Names of what is being written, and the removal of such things where their process has ended without it.
  *
  * A name carries a mark of the machine, its start and the space of its process numbers, and the number of a process or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Shared libraries that a program loads when it needs them. One that is linked starts with every program, whether it is
  * called or not: libvips and the hundred libraries behind it take 20 ms.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Columns of a list of lights by the names in its header, as spreadsheets and programs write one. */
 #include <ctype.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/light_list.h"
 
 #include <stdlib.h>

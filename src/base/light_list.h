@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of lights from text, as people, spreadsheets and programs write them (docs/light_lists.md).
  *
  *     light_list lights;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What stands before the lights of a list, and what the list is as a whole; base/light_table.h has its columns. */
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Columns of a list of lights without names: told by where words and numbers stand, and by what the numbers are. */
 #include <ctype.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is in which column of a list of lights: a part of base/light_list.h. */
 #ifndef MERLIN_BASE_LIGHT_TABLE_H
 #define MERLIN_BASE_LIGHT_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Blocks of memory for numbers: zero, and aligned to a cache line.
  *
  *     float *x = memory_new(count * sizeof *x);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines for people, and none of other libraries between them: what decoders think of a damaged picture they print to
  * standard error, five lines for one file. A program that asks for it has a stream of its own to the same place, while
  * standard error leads nowhere as long as any thread is in a decoder.

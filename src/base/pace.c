@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/pace.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How long work will still take, by how quickly it went of late.
  *
  *     pace p;

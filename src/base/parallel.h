@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parallel loops over OpenMP. Results never depend on the number of threads: bodies write only what index i owns. */
 #ifndef MERLIN_BASE_PARALLEL_H
 #define MERLIN_BASE_PARALLEL_H

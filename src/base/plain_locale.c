@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/plain_locale.h"
 
 #include <pthread.h>

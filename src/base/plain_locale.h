@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Numbers in files have a decimal point, whatever a program that uses the library has told setlocale.
  *
  *     float x = strtof_l(word, &end, plain_locale());

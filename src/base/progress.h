@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A progress bar with the time left, on a terminal; a plain line every ten seconds elsewhere; silent if told so.
  *
  * That is for work whose log is worth keeping: training, rendering, evaluation. What people wait for at a terminal has

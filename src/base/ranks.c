@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/ranks.h"
 
 #include <stdbool.h>

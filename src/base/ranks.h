@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Processes that compute one thing together, on one machine or many: each of them is a rank.
  *
  *     ranks *together;                             NULL wherever there is one process alone

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finds the plug-in that speaks MPI, which nothing else of the program needs. */
 #include <dlfcn.h>
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random numbers that depend on (seed, index, stream) alone, so that a sample, an augmentation or a draw is the same
  * whatever thread makes it and in whatever order.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/skipped.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files of a folder that were left aside, each with the reason, so that a person is told of them in one line.
  *
  *     skipped_files left = {0};

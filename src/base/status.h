@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How functions report failure.
  *
  * A function that can fail returns a status. The words for a person (what, where, what to do) are kept per thread and

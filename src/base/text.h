@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Text as programs of all systems write it, made plain: UTF-8 without a mark, each line ended by one '\n'.
  *
  *     char *text;

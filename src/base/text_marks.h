@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the signs of a table of numbers mean where they stand: comments, quotes, and brackets round rows and round all.
  * A part of base/text_rows.h. */
 #ifndef MERLIN_BASE_TEXT_MARKS_H

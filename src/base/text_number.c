@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A number as a word of a table has it: decimal, whatever the locale, with an exponent of e or d. */
 #include "base/text_number.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tells numbers from words in text that people and programs write. */
 #ifndef MERLIN_BASE_TEXT_NUMBER_H
 #define MERLIN_BASE_TEXT_NUMBER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/text_rows.h"
 
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tables of words and numbers as people and programs write them: one row a line.
  *
  *     text_rows rows;

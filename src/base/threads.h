@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The number of threads that parallel loops have, and the way in which these wait for each other.
  *
  *     threads_use(4);       // every thread's loops, from its next threads_begin on

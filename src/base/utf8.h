@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Text of unknown bytes, such as a file's name, as text for files that want UTF-8. */
 #ifndef MERLIN_BASE_UTF8_H
 #define MERLIN_BASE_UTF8_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Small vectors. `real` is float everywhere but in tests, which compile the same headers with MERLIN_REAL double to
  * check derivatives against finite differences. */
 #ifndef MERLIN_BASE_VEC_H

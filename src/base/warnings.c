@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "base/warnings.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Warnings tell a person what to know of a result before they trust it: each has a code for programs, in snake_case,
  * and one sentence for people. They are gathered while the work is done and told once, at its end:
  *

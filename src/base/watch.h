@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A watch tells how far long work is to whoever waits for it. Libraries take one and never print:
  *
  *     watch_tell(w, "solving", 0.4);                                    w may be NULL

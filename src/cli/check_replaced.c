@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/check_replaced.h"
 
 #include <stddef.h>

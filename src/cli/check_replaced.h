@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Refusals to write over what is not a command's own, before anything that takes time. Its own results are replaced:
  * whoever runs it again wants that. */
 #ifndef MERLIN_CLI_CHECK_REPLACED_H

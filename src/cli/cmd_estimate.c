@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin estimate: photographs to maps. */
 #include <math.h>
 #include <stdio.h>

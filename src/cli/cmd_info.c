@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin info: what is in a weights file. */
 #include <stdio.h>
 #include <stdlib.h>

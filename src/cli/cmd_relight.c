@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin relight: the object of a photograph under other light. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin stereo: surfaces from many lights, and from one photograph. */
 #include <cJSON.h>
 #include <stdio.h>

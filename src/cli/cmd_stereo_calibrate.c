@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin stereo calibrate: light directions from pictures of a ball. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/expect.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What long work costs: seconds that it took two processors. Only how the parts compare is of use, which is about the
  * same on other machines. */
 #ifndef MERLIN_CLI_EXPECT_H

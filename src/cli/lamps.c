@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/lamps.h"
 
 #include <ctype.h>

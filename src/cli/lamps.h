@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The lamps of a command line, and how bright and of what colour they are.
  *
  *     lamp_options lamps = lamp_options_new();

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin: what is done with photographs. */
 #include "cli/commands.h"
 #include "command/program.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/mesh_file.h"
 
 #include <stdio.h>

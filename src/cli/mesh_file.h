@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A mesh that --mesh FILE names, written beside maps that go somewhere else: all of them or none.
  *
  *     mesh_file m = {.path = "cup.obj", .folder = "cup.merlin", .inputs = inputs, .maps = maps, .write = write, .what =

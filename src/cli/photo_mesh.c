@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/photo_mesh.h"
 
 #include "base/file.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a photograph shows of its object, as a mesh.
  *
  *     status s = photo_mesh_write(&maps, "cup.merlin/mesh.glb"); */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A dome: pictures under lights spread evenly over the frontal hemisphere, for RTI tools and for merlin stereo. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What merlin relight is to make, and what came of it. */
 #ifndef MERLIN_CLI_RELIGHT_JOB_H
 #define MERLIN_CLI_RELIGHT_JOB_H

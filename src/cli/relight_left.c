@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures that an earlier run left beside these: they are not removed, for this run has not made them, but told of. */
 #include <ctype.h>
 #include <stdio.h>

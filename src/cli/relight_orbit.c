@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An orbit: frames of the square, and animations of them. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/relight_output.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The files of merlin relight: a picture a light or environment, domes, frames and animations of an orbit, contact
  * sheets. */
 #ifndef MERLIN_CLI_RELIGHT_OUTPUT_H

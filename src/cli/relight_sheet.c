@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/relight_sheet.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Small copies of relit pictures and their labels, on one sheet. */
 #ifndef MERLIN_CLI_RELIGHT_SHEET_H
 #define MERLIN_CLI_RELIGHT_SHEET_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures of a job, one after the other: the state that the parts of relight_output.h share. */
 #ifndef MERLIN_CLI_RELIGHT_WORK_H
 #define MERLIN_CLI_RELIGHT_WORK_H

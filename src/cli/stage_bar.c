@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stage_bar.h"
 
 #include <errno.h>

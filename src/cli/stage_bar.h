@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One bar for all of a command's long work, with the time left: on a terminal's standard error alone, drawn once the
  * work lasts, and gone when it ends, fails or is interrupted.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The verbs of merlin stereo that have a file of their own. */
 #ifndef MERLIN_CLI_STEREO_COMMANDS_H
 #define MERLIN_CLI_STEREO_COMMANDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stereo_folder.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photometric stereo of a capture on disk, ready to be written. */
 #ifndef MERLIN_CLI_STEREO_FOLDER_H
 #define MERLIN_CLI_STEREO_FOLDER_H

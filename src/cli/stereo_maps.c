@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stereo_maps.h"
 
 #include <math.h>

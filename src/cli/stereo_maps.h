@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The maps of merlin stereo as merlin estimate's, so that a surface can be relit.
  *
  *     if (stereo_maps_in("surface")) s = stereo_maps_read("surface", &maps);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stereo_output.h"
 
 #include <stdlib.h>

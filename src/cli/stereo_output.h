@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The files of merlin stereo: maps, pictures for people, meshes and a report. */
 #ifndef MERLIN_CLI_STEREO_OUTPUT_H
 #define MERLIN_CLI_STEREO_OUTPUT_H

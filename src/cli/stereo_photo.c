@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stereo_photo.h"
 
 #include <math.h>

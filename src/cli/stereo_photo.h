@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photometric stereo from one photograph: estimate, relight under many known near lights, solve, several times over. */
 #ifndef MERLIN_CLI_STEREO_PHOTO_H
 #define MERLIN_CLI_STEREO_PHOTO_H

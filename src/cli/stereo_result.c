@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/stereo_result.h"
 
 void stereo_result_free(stereo_result *r)

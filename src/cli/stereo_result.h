@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What merlin stereo has found. */
 #ifndef MERLIN_CLI_STEREO_RESULT_H
 #define MERLIN_CLI_STEREO_RESULT_H

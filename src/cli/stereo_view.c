@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A view of a depth map from the side, so that a person sees what a front view hides. */
 #include "cli/stereo_view.h"
 

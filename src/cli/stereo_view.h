@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The surface that merlin stereo has found, from the side. */
 #ifndef MERLIN_CLI_STEREO_VIEW_H
 #define MERLIN_CLI_STEREO_VIEW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cli/written.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How much a command has written, in words. */
 #ifndef MERLIN_CLI_WRITTEN_H
 #define MERLIN_CLI_WRITTEN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/check_files.h"
 
 #include "base/file.h"

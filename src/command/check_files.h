@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files that a command is given or is to write, looked at before anything that takes time. */
 #ifndef MERLIN_COMMAND_CHECK_FILES_H
 #define MERLIN_COMMAND_CHECK_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/cli.h"
 
 #include <errno.h>

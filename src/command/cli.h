@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the subcommands share: their table, how they refuse, and how they read option values.
  *
  * A command returns the exit status: 0, 2 for wrong use, 1 for anything else. It prints one line to stderr when it

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/json_line.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What commands print with --json: one line of valid JSON, whatever bytes a file's name has.
  *
  *     cJSON *report = report_begin(&doubts);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/last_words.h"
 
 #include <signal.h>

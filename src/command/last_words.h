@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One line and exit status 1 where a library ends the program, or crashes, because the system refused it memory or a
  * thread; what was being written is removed. Any other crash stays one. */
 #ifndef MERLIN_COMMAND_LAST_WORDS_H

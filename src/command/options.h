@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A command's options as a table: what each is called and where its value goes.
  *
  *     const cli_option options[] = {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/photo_ahead.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photograph read, and its object found, by a thread of its own while something else is done
  * (docs/notes/estimate_time.md).
  *

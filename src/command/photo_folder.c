@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/photo_folder.h"
 
 #include <limits.h>

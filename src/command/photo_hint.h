@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --point and --box: help for the search for a photograph's object, for rows of command/options.h. */
 #ifndef MERLIN_COMMAND_PHOTO_HINT_H
 #define MERLIN_COMMAND_PHOTO_HINT_H

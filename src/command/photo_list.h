@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographs to work on, each with its mask and the place where its results go. */
 #ifndef MERLIN_COMMAND_PHOTO_LIST_H
 #define MERLIN_COMMAND_PHOTO_LIST_H

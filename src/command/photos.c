@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/photos.h"
 
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What estimate and relight share: which photographs, their masks, where results go, and where the weights are. */
 #ifndef MERLIN_COMMAND_PHOTOS_H
 #define MERLIN_COMMAND_PHOTOS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/program.h"
 
 #include <malloc.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A program of several commands: finds the one that is asked for and runs it.
  *
  *     static const cli_command commands[] = {{"estimate", "take a photograph apart", cmd_estimate}};

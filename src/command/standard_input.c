@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "command/standard_input.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photograph that is piped in, "-" in a file's place (a file of that name is ./-).
  *
  *     status s = standard_input_take(&argv[i]);        a name that every reader takes, for as long as the program runs

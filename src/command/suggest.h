@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What somebody meant who mistyped a command or an option.
  *
  *     const char *meant = suggest("esitmate", 8, names, count);     "estimate", or NULL if nothing is near */

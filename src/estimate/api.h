@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What stands behind include/merlin/merlin.h, and what its parts share. */
 #ifndef MERLIN_ESTIMATE_API_H
 #define MERLIN_ESTIMATE_API_H

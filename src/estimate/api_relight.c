@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin_relight, merlin_relight_environment and merlin_stage: maps under other light. */
 #include <math.h>
 #include <stdlib.h>

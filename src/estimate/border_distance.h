@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How unlike a picture's border its pixels are: how far colours must change on the way there.
  *
  *     img away;                                  colours and ring of one size

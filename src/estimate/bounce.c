@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/bounce.h"
 
 #include "image/resize.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light of bounces 2 and up under another light than the flash.
  *
  *     status s = bounce_follow(&direct_by_flash, &direct, NULL, &indirect);

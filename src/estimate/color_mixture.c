@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/color_mixture.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What colours a part of a picture has, and where: a mixture of Gaussians over colour and place, so that a colour
  * counts most beside others of its kind.
  *

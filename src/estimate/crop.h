@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The square of a photograph that the network sees.
  *
  * In the training data the object fills 25 to 75 % of a square frame, its bounding box about 80 % of the side; a

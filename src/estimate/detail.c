@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/detail.h"
 
 #include "estimate/fuse.h"

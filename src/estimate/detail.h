@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Shape finer than the network's own size shows.
  *
  *     network_estimate(n, &low_photo, &low_mask, views, stop, &low);       at NETWORK_SIZE

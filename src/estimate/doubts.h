@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Why the maps of a photograph may be wrong: merlin_maps' doubts found, and put into words. */
 #ifndef MERLIN_ESTIMATE_DOUBTS_H
 #define MERLIN_ESTIMATE_DOUBTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/env_lights.h"
 
 #include <stdbool.h>

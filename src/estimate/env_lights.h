@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surroundings as a few distant lights, many where they are bright: what shadows are cast by.
  *
  *     env_light lights[ENV_LIGHTS_MOST];

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surroundings to be reflected: a latitude-longitude map made ready for blurred look-ups.
  *
  *     env_map env;

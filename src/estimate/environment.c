@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin_environment: surroundings from a file. */
 #include <float.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a network says of a photograph. */
 #ifndef MERLIN_ESTIMATE_ESTIMATION_H
 #define MERLIN_ESTIMATE_ESTIMATION_H

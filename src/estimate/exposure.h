@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From the brightness of a photograph to the radiance the network knows.
  *
  * A photograph's values are relative: 1 is where it saturates, at whatever exposure the camera chose. The network was

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/fill.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Values for the pixels that have none, from those that do: the pull-push of Gortler et al. 1996. */
 #ifndef MERLIN_ESTIMATE_FILL_H
 #define MERLIN_ESTIMATE_FILL_H

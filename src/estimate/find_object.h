@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finds the object of a photograph that has no mask: what its colours, its place and the photograph's edges set apart
  * from the border's background.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The light that a model of any light sees in a photograph, and a surface under it.
  *
  *     found_light_take(estimation.lights, &maps.light);

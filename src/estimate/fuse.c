@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/fuse.h"
 
 #include <stdlib.h>

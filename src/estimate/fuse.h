@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Depth made to agree with normals.
  *
  *     status s = fuse_depth(&normal, &mask, 60, &depth);

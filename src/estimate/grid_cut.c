@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/grid_cut.h"
 
 #include <stdbool.h>

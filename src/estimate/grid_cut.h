@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parts a picture in two at the least cost: exact minimum cut of a grid whose pixels are tied to their eight
  * neighbours.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/horizon.h"
 
 #include <stdbool.h>

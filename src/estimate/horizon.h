@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How much of its surroundings every point of a visible surface sees past the surface itself.
  *
  *     horizon h;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/input.h"
 
 #include "estimate/surface.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The picture that the network sees of a photograph.
  *
  *     img picture, seen;

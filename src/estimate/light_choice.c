@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/light_choice.h"
 
 #include "estimate/found_light.h"

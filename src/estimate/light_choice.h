@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The choice between two networks for a photograph: one of any light, and one that knows a flash at the lens alone, and
  * better.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Judges whether the light of a photograph stood at the lens, as its maps take for granted.
  *
  *     light_cues cues;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The light that a photograph is lit by, in words for a person.
  *
  *     char words[LIGHT_WORDS];

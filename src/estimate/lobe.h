@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What one point of a surface mirrors of its surroundings: the specular lobe over an environment map.
  *
  *     lobe_sampler l;

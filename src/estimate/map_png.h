@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Maps as 16-bit PNG for people and other programs, black beside the object.
  *
  *     status s = map_write_normals("normal.png", &normal, &mask);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/maps_examine.h"
 
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An examination of maps that were read, whether they can be what merlin estimate and merlin stereo write: anybody may
  * have edited the file, and what cannot be would be clamped without a word.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* maps.exr, both ways. Beside the maps it holds the photograph, so that a folder can be relit by the network too. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin_maps_write: a folder with everything, or nothing. */
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/mask.h"
 
 #include "estimate/find_object.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which part of a photograph is the object. */
 #ifndef MERLIN_ESTIMATE_MASK_H
 #define MERLIN_ESTIMATE_MASK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The trained networks of one weights file, compiled when first needed and kept for the next photograph.
  *
  *     network *n;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/object_candidate.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One answer to where an object is: grown from a first guess in a few rounds of "learn the colours of both sides, cut
  * at the least cost, keep the main regions" (GrabCut, Rother et al. 2004), and what speaks for it and against it. */
 #ifndef MERLIN_ESTIMATE_OBJECT_CANDIDATE_H

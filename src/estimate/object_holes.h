@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finds holes that a first guess takes for object because the object surrounds them: parts of it that have the very
  * colours of the background beside the object. */
 #ifndef MERLIN_ESTIMATE_OBJECT_HOLES_H

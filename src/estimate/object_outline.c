@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From the small picture that the search works in to the photograph, outline by outline. */
 #include <math.h>
 #include <stdbool.h>

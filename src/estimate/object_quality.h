@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How likely a candidate for an object's place is right. */
 #ifndef MERLIN_ESTIMATE_OBJECT_QUALITY_H
 #define MERLIN_ESTIMATE_OBJECT_QUALITY_H

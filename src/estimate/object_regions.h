@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Connected parts of what was found, and its outer shape. */
 #ifndef MERLIN_ESTIMATE_OBJECT_REGIONS_H
 #define MERLIN_ESTIMATE_OBJECT_REGIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Candidates for where a photograph's object is, and the one that is most likely right.
  *
  *     object_search s;

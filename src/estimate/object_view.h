@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photograph in the size and the values that the search for its object works in. */
 #ifndef MERLIN_ESTIMATE_OBJECT_VIEW_H
 #define MERLIN_ESTIMATE_OBJECT_VIEW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photograph, its maps and two new lights as tiles for a sheet, at the network's size.
  *
  *     overview o;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a surface mirrors of its surroundings.
  *
  *     surface_add_reflections(&maps, &env, NULL, &image);   image += the specular lobe over the map

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A stage under light. */
 #include <math.h>
 #include <stdbool.h>

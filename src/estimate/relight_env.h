@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A surface under an environment: diffuse by its spherical harmonics, highlights from the map itself or, where only the
  * coefficients are known, from these.
  *

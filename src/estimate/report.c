@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* report.json: what was done to a photograph, and the maps' statistics. */
 #include <cJSON.h>
 #include <math.h>

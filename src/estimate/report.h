@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Begins every report of a command, on standard output and in report.json. docs/json.md lists all names. */
 #ifndef MERLIN_ESTIMATE_REPORT_H
 #define MERLIN_ESTIMATE_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The shadow that a visible surface casts on itself.
  *
  *     shadow_caster caster;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How a photograph was taken, as far as anybody knows, and what follows of it for the maps of its crop.
  *
  *     sight how = sight_of(fov, focal_35mm, width, height, crop);

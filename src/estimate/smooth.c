@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/smooth.h"
 
 #include "estimate/fill.h"

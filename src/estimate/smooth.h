@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the network's last layer leaves behind.
  *
  * It makes four pixels from one, each by weights of its own, so that a faint pattern of two pixels' period lies over

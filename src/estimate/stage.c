@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The maps of a crop at the size that is asked for, and made ready for many lights. */
 #include <stdbool.h>
 

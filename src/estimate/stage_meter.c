@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meters how bright a stage's pictures become, before they are made. */
 #include <math.h>
 #include <stdlib.h>

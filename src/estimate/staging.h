@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A folder's files made aside and moved into place together: a full disk or an interrupt leaves nothing half done.
  *
  *     staging *t;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A visible surface in a square frame: the maps of one crop, and what is done with them.
  *
  *     surface low;                         what the network said, at its size

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photograph seen by the network in several orientations, and the mean of what it says of them.
  *
  *     view_mean_new(config, size, &mean);

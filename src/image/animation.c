@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/animation.h"
 
 #include <limits.h>

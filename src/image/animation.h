@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Animated WebP and GIF, from frames that are handed over one by one.
  *
  *     img_animation a;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/box_file.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files of boxes in boxes, as HEIC, AVIF and Canon's CR3 are (ISO 14496-12). Sizes and places are believed as far as
  * the file goes: a walk moves on by a box at least, and takes so many steps at most. */
 #ifndef MERLIN_IMAGE_BOX_FILE_H

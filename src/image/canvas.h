@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A canvas of 8-bit sRGB pixels that takes pictures, words and SVG drawings (text, lines) and ends as a PNG; what
  * figures are made of. */
 #ifndef MERLIN_IMAGE_CANVAS_H

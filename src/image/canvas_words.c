@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Words by FreeType alone: what an SVG needs for them, fonts found by name and scripts laid out, takes as long as the
  * network. */
 #include <ft2build.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PNG from codes that are made row by row. */
 #ifndef MERLIN_IMAGE_CODES_H
 #define MERLIN_IMAGE_CODES_H

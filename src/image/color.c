@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/color.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Luminance of linear sRGB, and its codes, by formula and by table, exact: an 8-bit or 16-bit code to linear light and
  * back. */
 #ifndef MERLIN_IMAGE_COLOR_H

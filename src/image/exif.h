@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Reads from its EXIF how a photograph was taken: of JPEG, PNG, WebP, HEIC, TIFF and cameras' raw files.
  *
  *     exif_facts facts;

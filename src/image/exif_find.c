@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Finds where files of the different kinds keep their EXIF. Sizes and places are believed as far as the file goes: each
  * walk moves on by a box at least, and takes so many steps at most. */
 #include "image/exif_find.h"

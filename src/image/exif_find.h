@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where a picture's file, of whatever kind, keeps its EXIF. */
 #ifndef MERLIN_IMAGE_EXIF_FIND_H
 #define MERLIN_IMAGE_EXIF_FIND_H

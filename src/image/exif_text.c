@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/exif_text.h"
 
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* EXIF as text in a PNG, where programs put it before the format had a chunk for it, and some still do: hexadecimal, in
  * a tEXt or zTXt chunk with the keyword "Raw profile type exif" or "Raw profile type APP1" (ImageMagick's profiles).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Multi-layer OpenEXR files by OpenEXR Core: named channels and attributes, half float where not told otherwise, ZIP.
  *
  *     exr_channel channels[] = {{"albedo.R", albedo.data, 3, false}, {"albedo.G", albedo.data + 1, 3, false}, ...};

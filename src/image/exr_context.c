@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/exr_context.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What reading and writing EXR share: an OpenEXR Core context that never prints.
  *
  * The library's complaints are kept by thread, not in the context's user data: while writing it calls the error handler

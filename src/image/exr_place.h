@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Values that were read from an EXR file, put where its display window has them.
  *
  *     s = exr_read(f, targets, n);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures for people: labelled contact sheets and line charts.
  *
  *     figure_tile tiles[] = {{"input", &photo}, {"albedo", &albedo}, ...};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How floats are packed in TIFF and DNG: Adobe's TIFF technical note 3 (the predictor of floats), and the DNG
  * specification's floats of 16 and 24 bits. */
 #include <libdeflate.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Strips and tiles of floats, as TIFF and DNG pack them. */
 #ifndef MERLIN_IMAGE_FLOAT_PART_H
 #define MERLIN_IMAGE_FLOAT_PART_H

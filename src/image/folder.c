@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/folder.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What lies in a folder of pictures, told by content: photographs, their masks, and what is neither.
  *
  *     img_folder f;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Guided filter (He, Sun & Tang 2013): in every window the map is a linear function of the guide, q = a·I + b. Fast
  * form (He & Sun 2015): a and b are found at the map's size and enlarged. All means are weighted by the mask, so that a
  * window over the border sees only what is inside. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What an ICC profile says, as far as it is needed beside libvips, which applies profiles to whole numbers alone.
  *
  *     picture_light light;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Float images, interleaved, rows from the top, linear sRGB primaries unless a name says otherwise.
  *
  * A large new image takes memory only where something was written: what is done to the pictures of an object leaves the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* JPEG: what it does to a picture, without a file, and a file's bytes.
  *
  *     status s = img_jpeg_spoil(pixels, 128, 128, &(img_jpeg){.quality = 75, .halved = true});

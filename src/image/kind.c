@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/kind.h"
 
 #include <stdio.h>

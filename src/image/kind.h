@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a file is by its content: its name may say anything.
  *
  *     img_format f = img_format_of("holiday.jpg");

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whether a picture looks like a mask, where its name leaves that open. */
 #ifndef MERLIN_IMAGE_MASK_LOOK_H
 #define MERLIN_IMAGE_MASK_LOOK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/mask_names.h"
 
 #include <ctype.h>

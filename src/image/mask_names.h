@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whose mask a picture is, by the names that people and programs give to masks. Of a photograph cup.jpg it is
  *
  *     cup.mask.png, cup_mask.png, cup-mask.png, "cup mask.png", cupmask.png, mask_cup.png, cup_mask_1.png

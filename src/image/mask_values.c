@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/mask_values.h"
 
 #include <math.h>

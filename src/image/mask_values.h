@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which of a mask's values are the object. White on black is the usual, but programs that segment write the number of a
  * label, so that the object is 1 or 15 of 255 and all but black: two values are a mask, whatever they are. */
 #ifndef MERLIN_IMAGE_MASK_VALUES_H

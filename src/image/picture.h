@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Reading, before colour is decoded: a picture as its samples lie in the file, upright, colour and alpha apart. The
  * sources behind it, libpng, libvips, EXR and LibRaw, are read by picture_read_png, picture_decode, picture_read_exr
  * and picture_read_raw, what is read without any by picture_read_plain (image/picture_plain.h). */

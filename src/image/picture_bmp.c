@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* BMP, as Microsoft documents BITMAPFILEHEADER and the heads behind it (core, info, version 4 and 5), and OS/2's longer
  * ones, whose first 40 bytes are the same: by a palette, packed in runs or not, or by masks. */
 #include <stdlib.h>

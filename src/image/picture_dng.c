@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/picture_dng.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Raw pictures of floats: DNGs that programs make of several exposures, or of a picture that they have mosaicked no
  * more. LibRaw does not read those that are deflated, as nearly all are, where it was built without zlib, and scales
  * others by what they show. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a Radiance picture's head says and libvips passes over: colours in CIE XYZ, and rows that run another way than
  * from the top left. */
 #include <stdio.h>

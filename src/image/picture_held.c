@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures that decoders hold as a whole, however few of their pixels are kept: what a small file may make of memory.
  */
 #include "base/file.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Kinds of pictures, one for each way of reading. */
 #ifndef MERLIN_IMAGE_PICTURE_KIND_H
 #define MERLIN_IMAGE_PICTURE_KIND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Makes a picture's codes linear light in sRGB's primaries: by the curve and the primaries that the file states,
  * by sRGB's where it states none.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/picture_plain.h"
 
 #include <stdlib.h>

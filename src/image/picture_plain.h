@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Formats so plain that they are read here, a row at a time, as their specifications have them: netpbm's, BMP and TGA.
  * Each tells its head first and then gives its rows in the file's order; which way up they are the layout says.
  *

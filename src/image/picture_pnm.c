@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* netpbm's formats, by its manual (pbm, pgm, ppm, pam and pfm of section 5): P1 to P7, and the floats of PF and Pf. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a camera's sensor saw, by LibRaw: linear, so that no camera's curve has to be guessed. */
 #include <libraw/libraw.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/picture_rows.h"
 
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A picture's rows on their way from a decoder to linear float: each is decoded by its curve, parted into colour and
  * alpha, turned upright and, of a picture too large to be held, averaged with its neighbours. Whatever a file's size,
  * its codes are never held as a whole.

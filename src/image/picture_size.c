@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/picture_size.h"
 
 /* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */

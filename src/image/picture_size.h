@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How large a picture may be, and how large it is read. */
 #ifndef MERLIN_IMAGE_PICTURE_SIZE_H
 #define MERLIN_IMAGE_PICTURE_SIZE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* TGA, by Truevision's file format specification 2.0: mapped, true colour and grey, packed in runs or not. */
 #include <math.h>
 #include <stdlib.h>

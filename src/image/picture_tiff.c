@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Reads what a TIFF says of itself and libvips keeps to itself or does not find: which page is the picture, whether it
  * is a camera's raw one, and how much memory it would take. */
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/picture_tiff_light.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light of a TIFF's codes by its own words beside a profile. */
 #ifndef MERLIN_IMAGE_PICTURE_TIFF_LIGHT_H
 #define MERLIN_IMAGE_PICTURE_TIFF_LIGHT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/plain_file.h"
 
 status plain_damaged(const plain_file *f)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the readers of plain formats are and share: each tells a file's head and then its rows. Internal to
  * picture_plain.h. */
 #ifndef MERLIN_IMAGE_PLAIN_FILE_H

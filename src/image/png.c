@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PNG, written here for speed: every row is filtered by the one above it, and libdeflate compresses all rows at once.
  * Several times faster than the usual zlib for files of the same size. Of the filters this one is as fast as any, and
  * makes maps of large photographs 7 to 25 % smaller than the left neighbour does; a choice for each row gains nothing

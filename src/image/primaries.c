@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/primaries.h"
 
 #include <math.h>

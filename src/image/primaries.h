@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Linear colours of any primaries as those of this project, linear sRGB.
  *
  *     double m[9];

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/profile.h"
 
 #include "image/icc.h"

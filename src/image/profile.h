@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A picture's embedded colour profile, applied by libvips to whole numbers: samples become sRGB of 16 bits.
  *
  *     VipsImage *made;

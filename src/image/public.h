@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Between the public headers' types and the inside's, which are laid out alike. */
 #ifndef MERLIN_IMAGE_PUBLIC_H
 #define MERLIN_IMAGE_PUBLIC_H

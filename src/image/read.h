@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographs and maps from disk into linear float (libpng, OpenEXR Core, LibRaw, own readers of BMP, TGA and netpbm's
  * formats, libvips for all others).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/read.h"
 
 enum { LEAST_HEIGHT = 4 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sizes, crops and filters. */
 #ifndef MERLIN_IMAGE_RESIZE_H
 #define MERLIN_IMAGE_RESIZE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* libvips, which a hundred other libraries hang from: loaded when it is first needed, so that a program that reads and
  * writes PNG and EXR alone does without it; started once, silent, and without the caches and threads that a command
  * reading a few files does not need. A program that has started it for itself keeps its own of all these. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/tiff_head.h"
 
 #include <string.h>

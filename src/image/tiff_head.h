@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Reads what stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form: its pages, one
  * behind the other and each perhaps with more below it, and the numbers in them.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/vips_library.h"
 
 #include "base/library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The functions of libvips, which is loaded by vips_begin (image/start.h) and not when the program starts.
  *
  *     status s = vips_begin();

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lossless WebP, by libvips. */
 #include <stdlib.h>
 

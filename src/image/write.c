@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "image/write.h"
 
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Images to disk. Every file appears whole or not at all. */
 #ifndef MERLIN_IMAGE_WRITE_H
 #define MERLIN_IMAGE_WRITE_H

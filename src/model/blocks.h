@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The pieces MERLiN's encoders and decoders are made of. Channels last; level 0 is half the image's size, each further
  * level half of the one before. */
 #ifndef MERLIN_MODEL_BLOCKS_H

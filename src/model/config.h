@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A model's configuration, and as JSON. */
 #ifndef MERLIN_MODEL_CONFIG_H
 #define MERLIN_MODEL_CONFIG_H

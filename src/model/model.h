@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* MERLiN and its ablations as graphs.
  *
  * A model is its configuration (JSON: configs/models/NAME.json, and inside every weights file) plus parameters. The

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013). */
 #include "nn/adam_step.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Adam's step as a device is asked for it, one parameter at a time. Internal to src/nn. */
 #ifndef MERLIN_NN_ADAM_STEP_H
 #define MERLIN_NN_ADAM_STEP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Compilation: lowered steps become device steps with memory. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A device as a table of functions, and a step as what the compiler asks a device to compute.
  *
  * The compiler describes a step (operation, shapes, what is fused into it, parameters); the device looks at it once in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Graph construction: every builder function checks its arguments, infers channels and reduction, appends a node. */
 #include "nn/graph.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The graph as the builder leaves it: nodes in topological order, shapes as channels and reduction, the first error.
  * Internal to src/nn. */
 #ifndef MERLIN_NN_GRAPH_H

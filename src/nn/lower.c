@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Shapes, live nodes, fusion and the flow of gradients. */
 #include "nn/lower.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From a graph to values and steps: what is live, what is fused, and which gradients flow.
  * Internal to src/nn; compile.c turns the result into a program. */
 #ifndef MERLIN_NN_LOWER_H

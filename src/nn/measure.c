@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a program costs, where its time goes, and what the machine can do. */
 #include <math.h>
 #include <string.h>

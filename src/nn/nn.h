@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The network engine: build a graph of named nodes, compile it for a device, a batch, a size and a purpose, run it.
  *
  *     nn_graph *g = nn_graph_new();

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The operations of a network, and what graph and compiler know of each on whatever device: a row of op.c's table.
  * How a device computes it stands in a table of the device (cpu/ops.c). Internal to src/nn. */
 #ifndef MERLIN_NN_OP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters: float32 masters by name, their first values, their gradients. */
 #include "nn/params.h"
 

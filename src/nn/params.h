@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters' inside: what programs need beyond nn.h. Internal to src/nn. */
 #ifndef MERLIN_NN_PARAMS_H
 #define MERLIN_NN_PARAMS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters from a safetensors file. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Memory by lifetime: buffers that are never in use at the same time share bytes of one arena. Internal to src/nn. */
 #ifndef MERLIN_NN_PLAN_H
 #define MERLIN_NN_PLAN_H

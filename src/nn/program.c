@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Running a program: a loop over its steps. */
 #include "nn/program.h"
 

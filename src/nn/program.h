@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A compiled program: a flat list of steps over one arena. Internal to src/nn. */
 #ifndef MERLIN_NN_PROGRAM_H
 #define MERLIN_NN_PROGRAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Reading: the header is parsed into a list of tensors sorted by place, each checked by itself, then the list as a
  * whole, then the data's checksum. */
 #include "nn/safetensors.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* safetensors files: named tensors and string metadata. Reading trusts nothing in the file: every length, offset, type
  * and name is checked, and the header must be the JSON the format defines. */
 #ifndef MERLIN_NN_SAFETENSORS_H

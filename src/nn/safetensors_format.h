@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What reader and writer of safetensors files share. Internal to src/nn.
  *
  * A file is the length of its header (8 bytes, little-endian), the header (JSON, padded with spaces), the data. */

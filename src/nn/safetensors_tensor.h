@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A named tensor of a safetensors file. */
 #ifndef MERLIN_NN_SAFETENSORS_TENSOR_H
 #define MERLIN_NN_SAFETENSORS_TENSOR_H

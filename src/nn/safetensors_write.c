@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Writing: the whole file is put together in memory and written at once. */
 #include "nn/safetensors.h"
 

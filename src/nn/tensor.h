@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A dense channels-last tensor in a device's memory: what steps and kernels work on. */
 #ifndef MERLIN_NN_TENSOR_H
 #define MERLIN_NN_TENSOR_H

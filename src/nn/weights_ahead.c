@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/weights_ahead.h"
 
 #include <stdio.h>

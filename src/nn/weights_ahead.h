@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A program's own copies of its parameters, made on a thread of their own while the steps behind are still bound.
  *
  *     weights_ahead a;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the specular lobe reflects of surroundings that are known by nine spherical harmonics only.
  *
  *     vec3 radiance = ambient_specular(sh, roughness, n, v);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The colour of light by its temperature.
  *
  *     vec3 lamp = blackbody_color(2700);      a light bulb

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Microfacet BRDF of Karis 2013: diffuse albedo plus one GGX lobe with F0 = 0.05.
  *
  * One definition for everybody: the path tracer, the network's rendering layer and the relighter include this file, so

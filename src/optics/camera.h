@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pinhole camera at the origin, looking along -z, x right, y up; square pixels.
  *
  *     camera c = {.width = 256, .height = 256, .fov = 60};

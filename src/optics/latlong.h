@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Latitude-longitude maps: the top row is up (+y), columns run around the y axis, the middle one is straight ahead of
  * the camera (-z) and columns right of it lie to the camera's right.
  *

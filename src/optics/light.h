@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Point light on a surface point seen by the camera at the origin, and its derivative.
  *
  *     shade_input in = {albedo, roughness, normal, depth, camera_point(&c, x, y, 1), light, 5.95f};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The sphere of directions as a square: an octahedron of curved faces unfolded so that equal areas are equal solid
  * angles (P. Clarberg, Fast equal-area mapping of the (hemi)sphere using SIMD, JGT 13(3), 2008).
  *

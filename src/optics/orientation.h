@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The eight orientations of a square frame. Camera, flash and frame look the same after each of them, so that a turned
  * photograph is a photograph of the turned object.
  *

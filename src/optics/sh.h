@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Real spherical harmonics of bands 0 to 2, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22.
  *
  *     real sh[9][3] = {0};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photometric stereo from a random part of a capture: the paper's protocol draws 32 of 50 pictures, five times.
  *
  *     for (int i = 0; i < draw_count(&capture); i++) {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "photo_stereo/near_capture.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Captures made of pictures in memory: the camera of docs/conventions.md, point lights of the training data's power.
  *
  *     pst_capture c;

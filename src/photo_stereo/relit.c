@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "photo_stereo/relit.h"
 
 #include "base/rng.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One photograph as a capture for photometric stereo: its object relit under many known near lights.
  *
  *     relit r;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/albedo_scale.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scale of an albedo that was found under lights of unknown power.
  *
  *     float scale;

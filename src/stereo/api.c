@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What stands behind include/merlin/stereo.h. */
 #include "merlin/stereo.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arrays of numbers from the files of other worlds: MATLAB v5 (.mat) and NumPy (.npz). Bounds-checked against damaged
  * and hostile files.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/array_parts.h"
 
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the readers of .mat and .npz share: numbers from bytes, sizes within reason, zlib. */
 #ifndef MERLIN_STEREO_ARRAY_PARTS_H
 #define MERLIN_STEREO_ARRAY_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A surface and the near lights over it found together from the pictures alone ("bundle adjustment"): a depth map on a
  * coarse grid, an albedo a cell and a position a light, by robust nonlinear least squares on all values at once.
  *

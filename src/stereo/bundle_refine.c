@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Levenberg and Marquardt's steps for bundle.h. A cell's albedo is at its best for the rest at any time, so it is
  * eliminated from each step (Schur's complement); corners and lights are left, one dense symmetric system. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/calibrate.h"
 
 #include <stdio.h>

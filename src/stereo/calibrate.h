@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light directions from pictures of a ball: where lights mirror in a chrome one, or how they shade a matte one.
  *
  *     pst_calibration c;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The ball's outline: edges with their directions vote for circles by random sampling (Fischler & Bolles 1981), two
  * edges and their normals making a circle; the one seen all the way round wins and is refined by least squares. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Doubts that a calibration fits its pictures: the shading may be no matte ball's, the mask no ball's. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One light from one picture of a ball: the mirror direction of a chrome ball's highlight, or the least-squares light
  * of a matte ball's shading. */
 #include <stdlib.h>

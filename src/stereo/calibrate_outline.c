@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The outline of a mirror ball on a table. Its rim mirrors the table, its middle the room before it, and the edge
  * between these is a circle, too, and often the strongest in sight: of a large table straight behind the ball its
  * radius is the ball's by the root of two, of a small table it is more. So around a circle that was found another is

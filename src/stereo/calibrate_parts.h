@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The steps of a calibration: the ball's circle, its shape, and one light from one picture. */
 #ifndef MERLIN_STEREO_CALIBRATE_PARTS_H
 #define MERLIN_STEREO_CALIBRATE_PARTS_H

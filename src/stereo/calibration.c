@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/calibration.h"
 
 #include <stdlib.h>

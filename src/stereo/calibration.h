@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The lights that a ball tells of, and the ball. */
 #ifndef MERLIN_STEREO_CALIBRATION_H
 #define MERLIN_STEREO_CALIBRATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A photometric-stereo capture: many pictures of one still object from one camera, each under one light.
  *
  *     pst_capture c;

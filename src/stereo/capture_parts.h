@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the readers of the capture layouts share. Each layout fills names, lights and camera; then the pictures are
  * read, and last what must have their size. On failure pst_capture_read frees what was filled. */
 #ifndef MERLIN_STEREO_CAPTURE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Dense linear algebra of photometric stereo, for matrices of three to some hundred rows.
  *
  *     double value[2 * N];

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Doubts tell a person what to know of a capture and of the surface found from it before they trust that.
  *
  *     warnings doubts = {0};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How far away a pixel is, from how its light falls off.
  *
  *     pst_fall_off found = pst_fall_off_of(&here, &deeper, &lobe, &shading);

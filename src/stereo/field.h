@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Many pixels of a problem and what each one's fit found. */
 #ifndef MERLIN_STEREO_FIELD_H
 #define MERLIN_STEREO_FIELD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The robust fit of pixel_fit.h over many pixels: gathers each pixel's values from the pictures, and its lights where
  * they are near.
  *

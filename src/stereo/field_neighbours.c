@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/field_neighbours.h"
 
 /* Of a majority's member and of what it is against, beside the member's. Across a crease half of the neighbours are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the pixels around one of a field have found, for a further try of its own fit. Internal to field_fit.c.
  *
  *     pst_around a = {.field = f, .slot = pst_field_slots(f)};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The mask of a capture that has none. In the object is what some light brings above black and, where the picture's
  * edge is dark, what is brighter than that edge in the root mean square: noise and black cloth are no object. Specks go
  * then, and small holes, of dark paint, are filled. How right that is is in docs/notes/masks.md. */

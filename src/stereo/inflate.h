@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A surface from an outline alone: what a balloon of that outline looks like.
  *
  *     img normal, height;

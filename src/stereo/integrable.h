@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The last step to the lights of uncalibrated: a surface that is known up to a rotation or reflection is turned to what
  * it must be to be one.
  *

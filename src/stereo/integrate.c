@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/integrate.h"
 
 #include <math.h>

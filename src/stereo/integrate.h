@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From normals to a surface over the mask.
  *
  *     img depth;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What both ways of integrating share: the neighbours, and the unknown that steps from one to the next. Internal.
  *
  * The unknown x is depth in pixels (orthographic) or the logarithm of depth (perspective; Quéau, Durou & Aujol 2018,

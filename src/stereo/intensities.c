@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A pixel's value under light k is m = e_k l_k · b. With x = 1/e that is linear in x and b together: m_k x_k = l_k · b
  * (D. Cho, Y. Matsushita, Y.-W. Tai, I. S. Kweon, Photometric stereo under non-uniform light intensities and exposures,
  * ECCV 2016). Each pixel's b is eliminated by projection (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 1973), so that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Intensities of distant lights of known direction, under Lambert's law: where the semi-calibrated solver starts.
  *
  *     double e[PST_MAX_LIGHTS], told;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tells whether a list of lights can be that of the pictures. The residual alone does not tell: with y listed downward
  * it is the same, and of gloss and shadows it is large.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/light_fit.h"
 
 #include <math.h>

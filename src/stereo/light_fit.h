@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tells how a small version of a capture goes with a list of lights: the ground for telling whether the list is right.
  *
  *     pst_light_fit f;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tells whether a list of lights has the camera's axes: turned ones leave the same residual and a surface that is
  * turned as well, which then has normals that are no surface's, point inward at its outline, or face away from the
  * camera. */

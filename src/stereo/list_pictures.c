@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which files of a folder are a capture's pictures. */
 #include <stdlib.h>
 #include <string.h>

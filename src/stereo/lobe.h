@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A pixel's surface as Lambert's law plus one specular lobe, and its observations laid out for fits of that.
  *
  * The radiance under a light l is  a max(0, n·l − τ) + s G(n·l) (1 + u (1 − (n·h)²))^−γ,  h half way between l and the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/lobe_choice.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What all pixels of an object share (lobe_fit.h), found from a sample of them.
  *
  *     pst_lobe lobe;

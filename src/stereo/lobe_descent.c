@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/lobe_descent.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Down to the nearest minimum of one pixel's loss, from a start. Internal to lobe_fit.c.
  *
  *     pst_shading found = pst_lobe_descend(&data, &lobe, &start, PST_DESCENT_NEAR, HUGE_VALF);

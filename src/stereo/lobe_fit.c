@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A residual counts relative to the pixel's ordinary brightness or, for what is brighter, to the value itself: a lobe's
  * model is right to a share of its height, and a highlight's flank fixes the normal all the same. */
 #include "stereo/lobe_fit.h"

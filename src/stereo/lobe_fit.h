@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One pixel's surface from its values under many lights: Lambert's law plus one specular lobe, with cast shadows, light
  * from elsewhere and what the lobe does not explain as outliers.
  *

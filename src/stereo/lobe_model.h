@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The model of lobe.h at one light, for loops over lights without a branch. Internal to the fit. */
 #ifndef MERLIN_STEREO_LOBE_MODEL_H
 #define MERLIN_STEREO_LOBE_MODEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lambertian least squares (R. J. Woodham, Photometric method for determining surface orientation from multiple images,
  * Optical Engineering 19(1), 1980): per pixel the weighted 3×3 normal equations over observations that are neither dark
  * nor saturated, one right-hand side a colour channel.

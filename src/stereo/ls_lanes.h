@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What least squares does by whole vector registers: pictures' codes taken apart into channels, answers woven together.
  * Sixteen pixels side by side where registers are that wide, else eight; the order in which values are fetched from
  * registers is written down for each, because compilers turn what is not made for their registers into a value after

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/ls_sums.h"
 
 #include <stdlib.h>

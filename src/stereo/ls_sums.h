@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The sums of a block of pixels over all pictures, at the speed of memory: what ls.c solves.
  *
  *     ls_lights lights;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* led_params.txt of the LUCES layout (Mecca et al. 2021), parsed: camera and LEDs, turned into this project's axes. */
 #ifndef MERLIN_STEREO_LUCES_H
 #define MERLIN_STEREO_LUCES_H

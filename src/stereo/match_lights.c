@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/match_lights.h"
 
 #include <ctype.h>

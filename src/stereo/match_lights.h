@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which picture a list's light belongs to: by name, by number, or by their order.
  *
  *     status s = pst_match_lights(folder, "dome.lp", &list, &capture);      fills the capture's names, a light each */

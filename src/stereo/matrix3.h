@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Systems of three equations: a pixel's normal from its values. */
 #ifndef MERLIN_STEREO_MATRIX3_H
 #define MERLIN_STEREO_MATRIX3_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/mesh_build.h"
 
 #include <math.h>

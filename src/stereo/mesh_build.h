@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A depth map as triangles, before it becomes a file. Internal. */
 #ifndef MERLIN_STEREO_MESH_BUILD_H
 #define MERLIN_STEREO_MESH_BUILD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A built mesh as a file: one source a format. Internal to mesh_write.h. */
 #ifndef MERLIN_STEREO_MESH_FORMATS_H
 #define MERLIN_STEREO_MESH_FORMATS_H

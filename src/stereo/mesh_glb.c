@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer; albedo, a tangent-space normal map and roughness as PNGs
  * inside. Its roughness is that of docs/conventions.md: both square it to the width of the lobe.
  *

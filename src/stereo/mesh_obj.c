@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* OBJ with texture coordinates, its material beside it, and the material's albedo texture as PNG. */
 #include <stdio.h>
 #include <stdlib.h>

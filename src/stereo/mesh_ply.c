@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PLY, binary little-endian, with normals and vertex colours. */
 #include <stdio.h>
 #include <string.h>

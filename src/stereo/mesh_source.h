@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The maps and the camera that a mesh is made of. */
 #ifndef MERLIN_STEREO_MESH_SOURCE_H
 #define MERLIN_STEREO_MESH_SOURCE_H

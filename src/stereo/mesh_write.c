@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/mesh_write.h"
 
 #include "base/file.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A surface as a mesh that opens in Blender and a browser: PLY (vertex colours), OBJ with texture coordinates and MTL,
  * GLB with albedo, normal and roughness maps. The file's ending decides. */
 #ifndef MERLIN_STEREO_MESH_WRITE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tells whether something that was told or assumed of a capture, other than its lights' order and axes, explains the
  * pictures clearly worse than another value would: a lens, a distance, a tone curve, equal strengths.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Near point lights and a perspective camera, alternating (the scheme of Logothetis, Mecca & Cipolla, Semi-calibrated
  * near field photometric stereo, CVPR 2017, with a robust fit for the normals): from a depth map each pixel has its own
  * light vectors, inverse-square attenuation and LED lobes; from these its normal (field_fit.h); from the normals a

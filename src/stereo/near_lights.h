@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What near lights send to a point.
  *
  *     pst_near_lights lights;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Robust regression of Lambert's law on one pixel: iteratively reweighted least squares under the redescending loss of
  * Geman & McClure (1987), its scale narrowed step by step (graduated non-convexity, Blake & Zisserman 1987), started
  * from the observations between two ranks of brightness (position thresholding: highlights are the brightest, shadows

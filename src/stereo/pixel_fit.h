@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One pixel's surface from its values under many lights, some of them highlights or cast shadows.
  *
  *     pst_observations o = {.padded = pst_padded(count), .x = x, .y = y, .z = z, .value = v, .usable = u};

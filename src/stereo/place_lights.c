@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/place_lights.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lights whose places are listed about the object, as lists of domes have them: how far the camera is from it then
  * is not known, but the pictures tell, by how light falls off along the object and comes from elsewhere.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sparse least squares over the pixels of a mask: known differences between neighbours, natural boundaries.
  *
  *     poisson_grid g;

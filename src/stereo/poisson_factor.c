@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/poisson_factor.h"
 
 #include <cholmod.h>

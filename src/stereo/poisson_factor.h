@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sparse Cholesky of a graph's operator, by CHOLMOD. Internal to the Poisson solver. */
 #ifndef MERLIN_STEREO_POISSON_FACTOR_H
 #define MERLIN_STEREO_POISSON_FACTOR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The levels of the Poisson solver above its grid: blocks of pixels as nodes, with links between them. Internal. */
 #ifndef MERLIN_STEREO_POISSON_GRAPH_H
 #define MERLIN_STEREO_POISSON_GRAPH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The Poisson solver's levels: a grid, ever smaller graphs over it, and a factorization of the smallest. Internal. */
 #ifndef MERLIN_STEREO_POISSON_LEVEL_H
 #define MERLIN_STEREO_POISSON_LEVEL_H

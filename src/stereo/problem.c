@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/problem.h"
 
 #include <stdlib.h>

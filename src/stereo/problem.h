@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a solver is given: a capture with every choice of the options made, and what all of them ask of it. */
 #ifndef MERLIN_STEREO_PROBLEM_H
 #define MERLIN_STEREO_PROBLEM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A capture from a folder: which layout it has, and what is read behind one another. */
 #include "base/file.h"
 #include "stereo/capture_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How strong lights are, from a file of its own: one number a line, or three, or a light in each column. */
 #include <ctype.h>
 #include <stdio.h>

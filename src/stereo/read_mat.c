@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* MATLAB's "MAT-File Format" (MathWorks, version 5 part): a header of 128 bytes, then elements of tag and data, each on
  * a multiple of eight bytes; a matrix is an element of elements: flags, sizes, name, real part. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* NumPy's .npz: a ZIP archive (PKWARE's APPNOTE.TXT; sizes from the central directory, as writers that stream leave
  * them out of the local headers) of .npy files (NumPy Enhancement Proposal 1): magic, version, a Python dictionary,
  * numbers. */

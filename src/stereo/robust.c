@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Highlights, cast shadows and light from elsewhere told from Lambert's law, under distant lights: a lobe a pixel
  * (lobe_fit.h), what pixels share from a sample (lobe_choice.h), and neighbours' results as further starts; pixels that
  * most neighbours contradict take their answer if it explains the pictures about as well. */

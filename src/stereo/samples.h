@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A sample of pixels under all lights as one matrix, factored into lights times surface: what the solvers that do not
  * know all of the light work on.
  *

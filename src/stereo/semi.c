@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light directions known, intensities not (D. Cho, Y. Matsushita, Y.-W. Tai, I. S. Kweon, Semi-calibrated photometric
  * stereo, ECCV 2016 and PAMI 2018).
  *

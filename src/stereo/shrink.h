@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A capture with fewer, larger pixels: what slow searches start on, and what evaluation brings large ones to.
  *
  *     pst_capture small;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Normals, albedo and depth from a capture.
  *
  *     pst_surface surface;

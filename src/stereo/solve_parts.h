@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The solvers of solve.h: each takes a checked problem and fills an allocated surface. */
 #ifndef MERLIN_STEREO_SOLVE_PARTS_H
 #define MERLIN_STEREO_SOLVE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/surface.h"
 
 #include <stdlib.h>

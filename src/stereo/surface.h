@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What photometric stereo finds, and by which method. */
 #ifndef MERLIN_STEREO_SURFACE_H
 #define MERLIN_STEREO_SURFACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/surface_error.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A surface by photometric stereo held against the truth that its capture has.
  *
  *     size_t pixels;

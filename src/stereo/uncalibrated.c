@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lights of unknown position or direction. They are found twice, as near ones (uncalibrated_near.c) and as distant ones
  * (uncalibrated_distant.c); whichever explain a sample of pixels better are used, the robust fit does the rest. The
  * further near lights are, the less they fall off, and the more easily a bowl under them passes for a ball whose

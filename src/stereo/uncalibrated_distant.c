@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Distant lights of unknown direction.
  *
  * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors

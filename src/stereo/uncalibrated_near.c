@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Near lights of unknown position. Unlike distant ones they leave no ambiguity: what they send falls off with the
  * squared distance, so that how pictures darken from one side to the other tells where the light is (T. Papadhimitri,
  * P. Favaro, Uncalibrated near-light photometric stereo, BMVC 2014, alternate light positions, normals and depth). Here

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What method uncalibrated is made of: two ways to find the lights, and what they found. */
 #ifndef MERLIN_STEREO_UNCALIBRATED_PARTS_H
 #define MERLIN_STEREO_UNCALIBRATED_PARTS_H

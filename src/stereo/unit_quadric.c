@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/unit_quadric.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What turns vectors into unit vectors, up to a rotation: the prior of uncalibrated photometric stereo, for lights of
  * one strength or a surface of one albedo (H. Hayakawa, JOSA A 11(11), 1994, his constraints 2 and 1).
  *

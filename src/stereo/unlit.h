@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pixels that no light reaches: they show noise, and a fit to it is a normal at random, a spike in the mesh. They go on
  * from their neighbours instead (docs/notes/real_captures.md).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Numbers as text against printf and strtod. */
 #include "base/decimal.h"
 

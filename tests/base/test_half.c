@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* 16-bit floats against their definitions, over every value they have. */
 #include "base/half.h"
 

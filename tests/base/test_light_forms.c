@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The forms in which people, spreadsheets and programs write lists of lights: all say the same four directions. */
 #include "base/light_list.h"
 

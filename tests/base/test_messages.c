@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lines for people are seen, those of libraries in a decoder are not. */
 #include "base/messages.h"
 

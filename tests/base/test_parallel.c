@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Bodies that fail in parallel loops. */
 #include "base/parallel.h"
 

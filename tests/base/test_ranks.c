@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums of several processes: of one order, whatever their number and size, the same in all. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of files that were left aside. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests how many threads loops have, and that waiting ones sleep soon. */
 #include "base/threads.h"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Every option that a command takes is in its help and in the manual, and bash, zsh and fish complete exactly those.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What make install puts under a prefix is all that another program needs, wherever that prefix is.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # make installs what is missing in silence, but for a bar on a terminal; apt is one of this script's own.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Lack of memory is one line, odd numbers of threads are no matter, and what a killed command leaves the next one removes.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Pipes and devices in the place of files are refused before they are opened, whatever they should have been: no command
 # waits for somebody to write into them, and nothing is taken from them.
 # shellcheck source=tests/cli/support/check.bash
@@ -16,13 +17,6 @@ refuses 1 'pipe.exr: it is not a plain file' "${soon[@]}" relight folder --env p
 refuses 1 'not a plain file' "${soon[@]}" stereo capture
 refuses 1 'not a plain file' "${soon[@]}" stereo capture --lights pipe.lp
 refuses 1 'pipe.exr is not a plain file' "${soon[@]}" info pipe.exr
-refuses 1 'not a plain file' "${soon[@]}" eval --data folder --model pipe.safetensors
-refuses 1 'pipe.json is not a plain file' "${soon[@]}" train pipe.json --data folder -o run
-refuses 1 'capture/a.png: it is not a plain file' "${soon[@]}" render --count 1 --env-dir capture -o out
-refuses 1 'capture/a.png: it is not a plain file' "${soon[@]}" render --count 1 --material-dir capture -o out
-for mesh in pipe.obj pipe.ply pipe.gltf; do
-    refuses 1 "$mesh: not a plain file" "${soon[@]}" render --count 1 --mesh "$mesh" -o out
-done
 refuses 1 'zero: it is not a plain file' "${soon[@]}" estimate /dev/zero
 
 finish

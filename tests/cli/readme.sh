@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The commands that README.md and the pages behind it print do what they say, and the programs of docs/library.md build and run.
 # What a reader brings along (photo.jpg, room.hdr, pictures of a ball and of an object) is made here.
 # shellcheck source=tests/cli/support/check.bash

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What tests of environments share: a map of what a function says of each direction. */
 #ifndef MERLIN_TESTS_ESTIMATE_SURROUNDINGS_H
 #define MERLIN_TESTS_ESTIMATE_SURROUNDINGS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How unlike the border: even and shaded backgrounds, objects inside and cut off. */
 #include "estimate/border_distance.h"
 

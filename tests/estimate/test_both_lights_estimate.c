@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographs in surroundings: models of both lights from estimate to relight, with random weights. */
 #include "image/image.h"
 #include "image/write.h"

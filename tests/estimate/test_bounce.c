@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/bounce.h"
 
 #include <setjmp.h>

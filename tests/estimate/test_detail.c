@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fine normals from a larger picture: what is taken from it, and when. */
 #include "estimate/detail.h"
 

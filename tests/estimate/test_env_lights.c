@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Distant lights must send what the surroundings send that they stand for. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The whole way from photograph to folder with a model of random weights: everything but the answer's quality. */
 #include "base/file.h"
 #include "base/parallel.h"

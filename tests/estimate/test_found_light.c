@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The light that a model of any light sees: from its code to a lamp, and a surface under it. */
 #include "estimate/found_light.h"
 

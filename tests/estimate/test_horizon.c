@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surfaces whose view of the sky is known in closed form. */
 #include <math.h>
 #include <stdbool.h>

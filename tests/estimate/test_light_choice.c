@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The choice of a model for the light of a photograph: by its photographer's word, its camera's, or what the first
  * sees. */
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* maps.exr after others have had it: read rightly, refused by name, or mended with a word. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
 #include "estimate/doubts.h"
 #include "image/public.h"

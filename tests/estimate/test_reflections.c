@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Interpolated reflections against the lobe sampled at every pixel. */
 #include "estimate/reflections.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surfaces under environments whose reflection is known in closed form or by quadrature. */
 #include <math.h>
 

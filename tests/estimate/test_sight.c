@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is known of a photograph's lens, and what follows for the maps of its crop. */
 #include "estimate/sight.h"
 

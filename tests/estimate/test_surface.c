@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "estimate/crop.h"
 #include "estimate/exposure.h"
 #include "estimate/fill.h"

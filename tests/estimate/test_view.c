@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The mean over all eight orientations turns with the photograph. */
 #include "estimate/network.h"
 #include "estimate/view.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A weights file of a small model with random parameters, for tests that care about everything but the answer. */
 #ifndef MERLIN_TESTS_ESTIMATE_WEIGHTS_H
 #define MERLIN_TESTS_ESTIMATE_WEIGHTS_H

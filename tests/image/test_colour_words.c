@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What pictures say of their colours outside of PNG's chunks: TIFF's tags, EXIF, the numbers of HEIC and AVIF. */
 #include <math.h>
 #include <vips/vips.h>

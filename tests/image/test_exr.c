@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include <OpenEXR/openexr.h>
 #include <math.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Packed EXR files of other programs: what this OpenEXR unpacks is read, the rest is refused by name. */
 #include <OpenEXR/openexr.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Folders of pictures. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* HEIC as the command reads it: libvips has started without its modules, and HEIF's is brought when a picture needs it.
  * The fixture is made by a child, because the libvips that writes it has its modules. */
 #include <math.h>

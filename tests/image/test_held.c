@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures whose decoders hold them as a whole: a few bytes that claim millions of pixels are refused before they are
  * decoded. */
 #include <stdio.h>

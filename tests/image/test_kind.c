@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files are told by their content. */
 #include "image/kind.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Names of masks. */
 #include <setjmp.h>
 #include <stdarg.h>

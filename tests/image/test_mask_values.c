@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include <vips/vips.h>
 
 #include "image/exr.h"

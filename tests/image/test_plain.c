@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* netpbm's formats, BMP and TGA, byte by byte as their specifications have them. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Colour profiles: what they say of whole numbers and of floats, beside alpha, and of grey pictures. */
 #include <math.h>
 #include <stdio.h>

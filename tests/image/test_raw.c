@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Raw pictures, which most cameras write in a TIFF's frame. */
 #include <math.h>
 

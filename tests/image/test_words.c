@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests what pictures say about themselves: their curve, the page that is meant, a size beyond what is held. */
 #include <math.h>
 #include <png.h>

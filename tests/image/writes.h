@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What image tests share: cmocka, and what failing writes leave. */
 #ifndef MERLIN_TESTS_IMAGE_WRITES_H
 #define MERLIN_TESTS_IMAGE_WRITES_H

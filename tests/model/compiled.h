@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What tests of the model share: a program of one of its parts. */
 #ifndef MERLIN_TESTS_MODEL_COMPILED_H
 #define MERLIN_TESTS_MODEL_COMPILED_H

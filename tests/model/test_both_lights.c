@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Setting B: a flash and an environment in one photograph. */
 #include <math.h>
 #include <stdlib.h>

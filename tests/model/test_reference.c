@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The whole network against PyTorch in double precision: tests/reference/make_reference.py wrote the vectors and says
  * what is in them.
  *

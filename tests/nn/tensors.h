@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tensors for the tests of kernels: made, filled, read as doubles, compared. */
 #ifndef MERLIN_TESTS_TENSORS_H
 #define MERLIN_TESTS_TENSORS_H

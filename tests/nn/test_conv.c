@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Convolutions and batch norm against loops in double precision that follow their definitions: values, and gradients
  * by central differences of the double loops. */
 #include <math.h>

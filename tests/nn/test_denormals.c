@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Programs run with denormal numbers taken for zero. Between runs nobody may notice. */
 #include <float.h>
 #include <string.h>

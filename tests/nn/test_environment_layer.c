@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Setting B's environment in the rendering layer against the same sums in double, and its gradients. */
 #define MERLIN_REAL double
 #include "optics/sh.h"

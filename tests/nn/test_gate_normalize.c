@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "tensors.h"
 
 static const int bases[][4] = {{1, 1, 1, 1}, {2, 5, 7, 3}, {1, 3, 2, 1500}, {2, 19, 23, 33}};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The builder's checks, parameters and what a program promises around a run. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A processor without AVX-512: bfloat16 programs compute in float32. A program of its own because oneDNN fixes the
  * instruction set once. */
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests that what is computed with a convolution gives what the steps one by one give. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A net of every operation: its gradients against finite differences, its runs bit for bit, its sizes and types. */
 #include <math.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parameters from safetensors files: all or nothing. */
 #include <stdarg.h>
 #include <stddef.h>

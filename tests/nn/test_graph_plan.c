@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The memory planner, on random lifetimes. */
 #include <setjmp.h>
 #include <stdarg.h>

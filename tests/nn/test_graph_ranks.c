@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A batch shared by several processes has the losses, gradients and statistics of one that has all of it. */
 #include <setjmp.h>
 #include <stdarg.h>

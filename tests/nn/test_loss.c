@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Masked losses against their definitions in double, gradients against central differences of those definitions. */
 #include "tensors.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The linear operations: each against its definition written per element, and against its own adjoint. */
 #include "tensors.h"
 

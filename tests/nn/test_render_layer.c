@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rendering layer in float against the same physics in double, and its gradients against central differences. */
 #define MERLIN_REAL double
 #include "optics/camera.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests Winograd's filtering against convolutions by their definition in double precision, and steps that a program
  * computes by it against differences. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The specular lobe under smooth surroundings, against quadrature. */
 #define MERLIN_REAL double
 #include "optics/ambient.h"

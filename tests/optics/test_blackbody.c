@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "optics/blackbody.h"
 
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The BRDF against its own formula, computed elsewhere, and against physics. Compiled in double, so that tolerances
  * measure the formula and not float. */
 #define MERLIN_REAL double

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define MERLIN_REAL double
 #include "optics/latlong.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Shading and its hand-written derivative, in double so that finite differences are sharp; and camera and target
  * lights. */
 #define MERLIN_REAL double

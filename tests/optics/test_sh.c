@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Spherical harmonics against quadrature over the sphere. */
 #define MERLIN_REAL double
 #include "optics/sh.h"

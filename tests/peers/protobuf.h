@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Just enough of Protocol Buffers to write an ONNX model: growing messages that can hold one another.
  *
  *     pb node = {0};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Writes the network of a weights file as an ONNX model, with an input and what this project makes of it, and how long
  * that takes, to be held against another engine (tools/compare-onnxruntime).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What tests of captures share: cmocka, and files to write in a test's folder. */
 #ifndef MERLIN_TESTS_STEREO_CAPTURE_FILES_H
 #define MERLIN_TESTS_STEREO_CAPTURE_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include <unistd.h>
 
 /* Balls rendered here under known lights, and the real ones where they are at hand. */

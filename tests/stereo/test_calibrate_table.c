@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Balls on a table, which a mirror ball's rim mirrors: the circle that is seen best is not always the outline. */
 #include "capture_files.h"
 #include "stereo/calibrate.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tests what is said of captures whose lights, pictures or places are not what they are taken for, and not of those
  * that are.
  */

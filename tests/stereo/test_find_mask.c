@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which pixels of a capture without a mask are the object. */
 #include <setjmp.h>
 #include <stdarg.h>

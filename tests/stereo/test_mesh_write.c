@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>

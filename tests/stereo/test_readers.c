@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The layouts of data sets and the array files in them, made here byte by byte. */
 #include <zlib.h>
 

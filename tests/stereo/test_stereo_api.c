@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* include/merlin/stereo.h, by pictures of a ball that are made here and read from a folder. */
 #include "merlin/stereo.h"
 

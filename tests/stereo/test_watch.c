@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whoever waits for a solver hears how far it is. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "comma.h"
 
 #include <locale.h>

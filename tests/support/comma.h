@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A locale with decimal commas, as half of Europe has.
  *
  *     if (!comma_begin(scratch)) return;     says so and leaves out what follows

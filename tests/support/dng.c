@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "dng.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Raw pictures for tests: Adobe DNGs of a camera that sees sRGB's primaries, with a mosaic of red, green, green, blue.
  *
  *     dng d = {.width = 64, .height = 64, .see = grey, .neutral = {1, 1, 1}, .orientation = 1};

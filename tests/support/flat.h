@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures of one value for tests, and cmocka. */
 #ifndef MERLIN_TESTS_FLAT_H
 #define MERLIN_TESTS_FLAT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "forked_ranks.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ranks that are forked processes of this one and speak through shared memory: what MPI does, without it. */
 #ifndef MERLIN_TESTS_FORKED_RANKS_H
 #define MERLIN_TESTS_FORKED_RANKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Captures with known answers: a bumpy relief or a sphere seen from far away under distant lights, with cast shadows by
  * marching, and a sphere before a perspective camera under near lights. Heights and normals are in closed form. */
 #ifndef MERLIN_TESTS_STEREO_RELIEF_H

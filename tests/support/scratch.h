@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Folders for tests to write in, under $TMPDIR or /tmp.
  *
  * One for a test or for a group of them, by cmocka's fixtures:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the model, the estimate and the renderer cost on this machine, as shares of what it can do.
  *
  *     bench_options options = {.weights = "weights.safetensors", .program = "/usr/bin/merlin"};

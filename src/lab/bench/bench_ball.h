@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The picture that estimating and relighting are measured on. */
 #ifndef MERLIN_LAB_BENCH_BENCH_BALL_H
 #define MERLIN_LAB_BENCH_BENCH_BALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One picture through `merlin estimate` as a process of its own, and what a process holds. For bench.c. */
 #ifndef MERLIN_LAB_BENCH_BENCH_ESTIMATE_H
 #define MERLIN_LAB_BENCH_BENCH_ESTIMATE_H

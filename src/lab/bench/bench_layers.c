@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_layers.h"
 
 #include <cjson/cJSON.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where the network's time goes, layer by layer, slowest first: of one picture's inference and of a training step, in
  * every precision that the processor computes in.
  *

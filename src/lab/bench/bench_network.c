@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_network.h"
 
 #include "base/rng.h"

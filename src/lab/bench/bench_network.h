@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The network at work as `merlin-lab bench` measures it: one picture's inference, or a training step with Adam. */
 #ifndef MERLIN_LAB_BENCH_BENCH_NETWORK_H
 #define MERLIN_LAB_BENCH_BENCH_NETWORK_H

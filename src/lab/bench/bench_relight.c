@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_relight.h"
 
 #include "image/public.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What one more light costs. For bench.c. */
 #ifndef MERLIN_LAB_BENCH_BENCH_RELIGHT_H
 #define MERLIN_LAB_BENCH_BENCH_RELIGHT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_stereo.h"
 
 #include <cjson/cJSON.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What photometric stereo by least squares costs: how fast it takes its pictures from memory, beside the rate at which
  * this machine copies, and how much memory it needs beyond them.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How the bench measures time, and the rate of copying that it holds others against.
  *
  *     double seconds;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab bench: what the model, the estimate and the renderer cost on this machine. */
 #include <errno.h>
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval: the paper's measures on held-out samples, beside trivial answers. */
 #include <stdio.h>
 #include <stdlib.h>

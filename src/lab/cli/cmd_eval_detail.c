@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval detail: what a larger picture adds to an estimate's shape. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval doubts: how often a photograph's warnings are right. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval lights: what an estimate is worth by the kind of light. */
 #include <stdbool.h>
 #include <stdio.h>

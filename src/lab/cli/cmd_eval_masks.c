@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval masks: how well the object of a photograph without a mask is found, and how well it is known how
  * well. */
 #include <stdbool.h>

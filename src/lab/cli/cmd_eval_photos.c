@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval photos: photographs taken apart by several weights, side by side in one picture. */
 #include <stdbool.h>
 #include <stdio.h>

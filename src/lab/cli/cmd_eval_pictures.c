@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval pictures: one picture's estimate, for every picture of real captures. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval solvers: photometric stereo where the truth is known. */
 #include <stdbool.h>
 #include <stdio.h>

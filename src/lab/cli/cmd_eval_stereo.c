@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab eval stereo: the paper's Table 3. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab render: training data. */
 #include <limits.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab train: from a folder of samples to weights. */
 #include <stdio.h>
 #include <stdlib.h>

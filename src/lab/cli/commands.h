@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The commands of merlin-lab: each takes what follows its name and returns the exit status (command/cli.h). */
 #ifndef MERLIN_LAB_CLI_COMMANDS_H
 #define MERLIN_LAB_CLI_COMMANDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The verbs of merlin-lab eval that have a file of their own. */
 #ifndef MERLIN_LAB_CLI_EVAL_COMMANDS_H
 #define MERLIN_LAB_CLI_EVAL_COMMANDS_H

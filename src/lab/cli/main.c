@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin-lab: how the models of merlin are made and measured. */
 #include "command/program.h"
 #include "lab/cli/commands.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographs whose mask is known: a rendered sample's object before a background that the project makes itself.
  *
  *     composite c;

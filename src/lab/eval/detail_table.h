@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a larger picture adds to an estimate's shape (estimate/detail.h), on samples of more than NETWORK_SIZE pixels.
  *
  *     detail_options options = {.data = "large", .weights = "merlin-point.safetensors", .views = NETWORK_VIEWS};

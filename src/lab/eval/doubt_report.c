@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* doubt_table.h's table as text and as JSON. */
 #include <cJSON.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Counts how often an estimate's doubts (merlin.h) are right: on pictures lit by a flash at the lens, and on others.
  *
  *     doubt_table table = {0};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A model measured on held-out samples, beside trivial answers.
  *
  *     eval_options options = {.data = "heldout", .weights = "weights.safetensors"};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stereo/inflate.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/trivial.h"

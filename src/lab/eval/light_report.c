@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* light_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 #include <math.h>

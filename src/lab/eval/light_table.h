@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What an estimate is worth by the kind of light in the photograph, on samples that merlin-lab render made with
  * --lamps.
  *

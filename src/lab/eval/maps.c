@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/maps.h"
 
 #include <string.h>

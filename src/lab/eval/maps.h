@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The four material maps as the metrics take them, and pictures rendered from them.
  *
  *     eval_maps truth;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* mask_table.h's table as text and as JSON. */
 #include <cJSON.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/mask_table.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Holds what the search for an object finds against masks that are known: photographs' and composites' (composite.h).
  *
  *     mask_table table = {0};

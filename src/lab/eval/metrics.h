@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The paper's measures of a material estimate and of a relit picture.
  *
  *     double error = eval_mse(&albedo, &truth.albedo, &mask);     maps in the network's ranges

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/normal_frame.h"
 
 #include "stereo/field_fit.h"

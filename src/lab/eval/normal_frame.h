@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Normals seen by one camera, told to another. Internal to the evaluation of stereo.
  *
  * The network takes the crop around an object for the whole frame of its own camera, 60 degrees wide. What a picture

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* picture_table.h's table as text and as JSON. */
 #include <cJSON.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Errors of an estimate from one picture, for every picture of real captures: each is lit by a lamp from elsewhere.
  *
  *     picture_options options = {.folder = folders, .count = 2, .weights = "merlin-any.safetensors"};

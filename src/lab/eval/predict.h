@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A model as the evaluation runs it: a picture's maps once, then relit under four lights at a time, as often as wanted.
  *
  *     eval_model *m;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the files of eval/predict.h share. */
 #ifndef MERLIN_LAB_EVAL_PREDICT_PARTS_H
 #define MERLIN_LAB_EVAL_PREDICT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/rendered_capture.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Captures of this project's own objects by ray tracing, with true normals and depth, to hold the solvers of
  * photometric stereo against: cast shadows always, light between surfaces if asked for.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/report.h"
 
 #include <cjson/cJSON.h>

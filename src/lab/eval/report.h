@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An evaluation as a table for a person and as JSON for a program. */
 #ifndef MERLIN_LAB_EVAL_REPORT_H
 #define MERLIN_LAB_EVAL_REPORT_H

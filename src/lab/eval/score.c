@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/score.h"
 
 #include "estimate/shadow.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One sample's figures, for evaluate.c: what the model and the trivial answers reach on it. */
 #ifndef MERLIN_LAB_EVAL_SCORE_H
 #define MERLIN_LAB_EVAL_SCORE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Setting B: photographs by flash in surroundings, and relighting under both. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Relighting by an environment: that of the next sample, in which the object is rendered again for its truth. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/score_parts.h"
 
 status eval_score_trivial(eval_subject *on, const eval_maps *maps, eval_answer answer, eval_row row,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Errors of the maps by what the photograph shows of a pixel: where gloss is not seen, nothing tells roughness. */
 #include "lab/eval/metrics.h"
 #include "lab/eval/score_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/scores.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Figures of a model and of trivial answers, summed over samples: a row of the tables each. */
 #ifndef MERLIN_LAB_EVAL_SCORES_H
 #define MERLIN_LAB_EVAL_SCORES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/sheet.h"
 
 #include "image/figure.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A picture of predictions beside the truth, a row a sample. */
 #ifndef MERLIN_LAB_EVAL_SHEET_H
 #define MERLIN_LAB_EVAL_SHEET_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/sheet_rows.h"
 
 #include <stdlib.h>

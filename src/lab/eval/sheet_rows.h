@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A contact sheet that is filled row by row: what the evaluation's sheets share.
  *
  *     sheet_rows *sheet;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* solver_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 

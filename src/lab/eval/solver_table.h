@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How right the solvers of photometric stereo are, and how fast, on captures of this project's own objects.
  *
  *     solver_options options = {.seed = 2000, .count = 8, .size = 224};

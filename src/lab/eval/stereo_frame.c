@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/stereo_frame.h"
 
 #include <math.h>

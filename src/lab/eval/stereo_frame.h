@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A capture of any size brought to a small square around its object. Internal to the evaluation of stereo. */
 #ifndef MERLIN_LAB_EVAL_STEREO_FRAME_H
 #define MERLIN_LAB_EVAL_STEREO_FRAME_H

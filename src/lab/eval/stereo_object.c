@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/stereo_object.h"
 
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The objects that photometric stereo is evaluated on: a real capture with ground truth, and the one photograph of it
  * that is nearest to a flash.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rows of the stereo table. */
 #ifndef MERLIN_LAB_EVAL_STEREO_ROW_H
 #define MERLIN_LAB_EVAL_STEREO_ROW_H

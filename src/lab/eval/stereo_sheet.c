@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/eval/stereo_sheet.h"
 
 #include <math.h>

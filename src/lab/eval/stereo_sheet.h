@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A picture of what photometric stereo found: a line of tiles an object, its photograph, true and found normals, and
  * where the found ones are off. Internal to the evaluation of stereo.
  *

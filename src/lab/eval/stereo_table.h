@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Table 3 of the paper: how far normals are off that come from a single photograph, from that photograph relit, and
  * from real pictures under as many lights.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The two trivial answers that a model must beat: the data set's mean maps, and maps inflated from the mask.
  *
  *     eval_means means;

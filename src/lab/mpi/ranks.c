@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* merlin_mpi.so: ranks that speak MPI (base/ranks.h). Loaded by those alone who ask for it. */
 #include <limits.h>
 #include <mpi.h>

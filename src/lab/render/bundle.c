@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/render/bundle.h"
 
 #include "optics/brdf.h"

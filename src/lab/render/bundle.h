@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The first step of many paths at once: what is arithmetic alone is done for all of them in vector registers, then
  * their rays are traced together. Most paths end there, for most of an object's surface sees no other.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/render/contents.h"
 
 #include <inttypes.h>

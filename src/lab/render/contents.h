@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The contents of the files that samples are made of, as lines of text that change when they do:
  *
  *     char *lines;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Embree 3 or 4, whichever there is, by one set of words: the versions name their headers and a query's settings
  * differently. Internal to src/lab/render.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light from all around: a latitude-longitude map of linear radiance, procedural or from a file.
  *
  *     environment env;

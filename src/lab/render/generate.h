@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A data set: samples (seed, first), (seed, first + 1), ... rendered into a folder, one thread a sample.
  *
  *     render_options o = render_options_default();

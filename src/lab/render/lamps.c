@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/render/lamps.h"
 
 #include "optics/light.h"

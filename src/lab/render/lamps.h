@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lamps as people have them: anywhere in front of an object and beside it, near or far, points or small discs.
  *
  *     rng r = rng_at(seed, index, STREAM_LAMPS);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light reaching a visible point: straight from a point light, by way of other surfaces, or from an environment.
  *
  * Paths are drawn from the mixture of both lobes of the BRDF; at every surface they meet, the light is sampled on its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One sample rendered into memory.
  *
  *     sample s;

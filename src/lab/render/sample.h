@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A rendered training sample, in memory and as one multi-layer OpenEXR file (half float, ZIP).
  *
  * Space, light and ranges as in docs/conventions.md: camera at the origin looking along -z, depth is -z, normals unit

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/render/sample.h"
 
 #include <inttypes.h>

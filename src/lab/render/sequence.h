@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Well-spread numbers for the paths of a picture: Sobol' points with Owen's scrambling (Burley 2020), dealt to the
  * pixels in Z-order (Ahmed & Wonka 2020), so that a pixel's paths, and those of every square block of pixels, cover the
  * square of directions evenly. What a filter then averages over a few pixels has far less noise than random numbers

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Procedural surroundings: skies with sun and clouds, rooms with windows and lamps, studios with soft boxes. */
 #ifndef MERLIN_LAB_RENDER_SKY_H
 #define MERLIN_LAB_RENDER_SKY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Takes the grain out of path-traced layers.
  *
  * A few paths a pixel leave noise that a network would have to learn to ignore. Indirect light varies slowly over a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The renderer's random streams (base/rng.h): one a purpose, so that no layer's draws move another's. The numbers are
  * part of the data set's identity; new ones are added at the end. */
 #ifndef MERLIN_LAB_RENDER_STREAMS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rays against one object, by Embree.
  *
  *     trace_device *device;

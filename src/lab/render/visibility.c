@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/render/visibility.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which points of the object each pixel shows, by strata × strata camera rays a pixel.
  *
  *     visibility *v;

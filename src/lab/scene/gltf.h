@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glTF 2.0 (ISO/IEC 12113) as far as a surface needs it: the file with its buffers, accessors, and where its nodes put
  * its meshes. mesh_gltf.c makes a mesh of it.
  *

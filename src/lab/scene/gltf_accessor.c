@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Accessors: numbers of six types in a buffer, close together or apart, some of them replaced by others. */
 #include <math.h>
 #include <string.h>

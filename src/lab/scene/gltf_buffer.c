@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The bytes that a document names: its own, written into it, or a file's beside it. */
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The file: GLB or text, its JSON, what it requires. */
 #include <stdlib.h>
 #include <string.h>

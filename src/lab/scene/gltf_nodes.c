@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Nodes: which meshes a scene shows, and where. */
 #include <math.h>
 #include <stdlib.h>

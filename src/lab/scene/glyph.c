@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/glyph.h"
 
 #include "lab/scene/noise.h"

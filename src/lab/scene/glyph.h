@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lettering of an invented alphabet: lines of words whose letters are strokes on a small lattice. */
 #ifndef MERLIN_LAB_SCENE_GLYPH_H
 #define MERLIN_LAB_SCENE_GLYPH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/implicit.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Smooth unions of simple solids given by approximate signed distances, turned to triangles by surface nets. */
 #ifndef MERLIN_LAB_SCENE_IMPLICIT_H
 #define MERLIN_LAB_SCENE_IMPLICIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/material.h"
 
 #include "lab/scene/noise.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A procedural svBRDF: paints laid over one another, each where its mask says, and relief finer than the mesh. */
 #ifndef MERLIN_LAB_SCENE_MATERIAL_H
 #define MERLIN_LAB_SCENE_MATERIAL_H

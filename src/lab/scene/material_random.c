@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which paints an object wears: plain, painted, grown or weathered, as objects are. */
 #include <stdlib.h>
 

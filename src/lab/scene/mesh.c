@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/mesh.h"
 
 #include <stdlib.h>

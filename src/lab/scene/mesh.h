@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A triangle mesh that grows, and what shapes are made of: grids wrapped onto solids, lathed profiles, tubes.
  *
  *     scn_mesh mesh = {0};

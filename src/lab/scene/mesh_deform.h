@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Other shapes out of one: mirrored, stretched, bent, twisted, tapered, dented, or, a third of them, as they are. */
 #ifndef MERLIN_LAB_SCENE_MESH_DEFORM_H
 #define MERLIN_LAB_SCENE_MESH_DEFORM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/mesh_file.h"
 
 #include <sys/stat.h>

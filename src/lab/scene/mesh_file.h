@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meshes from OBJ, PLY and glTF files. */
 #ifndef MERLIN_LAB_SCENE_MESH_FILE_H
 #define MERLIN_LAB_SCENE_MESH_FILE_H

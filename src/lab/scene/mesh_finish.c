@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The last step of a mesh: no triangle without area, no vertex without use, normals with creases. */
 #include <stdlib.h>
 #include <string.h>

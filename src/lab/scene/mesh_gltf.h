@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glTF and GLB files, version 2: triangles, strips and fans of all meshes of the scene, where its nodes put them, in
  * the pose in which they are stored. */
 #ifndef MERLIN_LAB_SCENE_MESH_GLTF_H

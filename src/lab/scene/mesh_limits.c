@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/mesh_limits.h"
 
 enum { SMALL_FILE_TRIANGLES = 1000000, TRIANGLE_BYTES = 4 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How large a mesh's files may be. */
 #ifndef MERLIN_LAB_SCENE_MESH_LIMITS_H
 #define MERLIN_LAB_SCENE_MESH_LIMITS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/mesh_obj.h"
 
 #include <stdlib.h>

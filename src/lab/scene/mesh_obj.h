@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* OBJ files (Wavefront's format of 1995, as everybody writes it): v, vn, f and usemtl. Nothing else is opened for them:
  * a material library says nothing of the shape. */
 #ifndef MERLIN_LAB_SCENE_MESH_OBJ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/mesh_ply.h"
 
 #include <stdio.h>

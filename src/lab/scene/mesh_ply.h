@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* PLY files, ascii and binary little endian (Turk 1994). */
 #ifndef MERLIN_LAB_SCENE_MESH_PLY_H
 #define MERLIN_LAB_SCENE_MESH_PLY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Polygons of more than three corners, cut into triangles ear by ear (Meisters 1975). */
 #include <string.h>
 

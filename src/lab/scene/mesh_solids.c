@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The meshes that shapes are made of: a wrapped cube grid, a lathe, a tube. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Vertices and triangles as a surface needs them rather than as a file lists them. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/model_folder.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meshes of a folder as objects for rendering: each drawn as often as the others, deformed so that a few hundred give
  * hundreds of thousands.
  *

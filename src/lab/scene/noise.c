@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/noise.h"
 
 #include <stdbool.h>

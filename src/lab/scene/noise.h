@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Solid noise without tables or state: lattice hashes alone, so that any thread may evaluate it anywhere.
  *
  *     float height = noise_fbm(vec3_scale(p, 3), 4, seed);

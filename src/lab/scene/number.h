@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Minimum, maximum and a smooth step that compile to an instruction or two: fminf and fmaxf are calls into the library,
  * because they promise more about NaN than anybody here needs. */
 #ifndef MERLIN_LAB_SCENE_NUMBER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Objects put together: shape, pose, material. */
 #include <stdlib.h>
 #include <string.h>

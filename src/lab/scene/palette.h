@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Colours that go together: what an object's paints are mixed from. */
 #ifndef MERLIN_LAB_SCENE_PALETTE_H
 #define MERLIN_LAB_SCENE_PALETTE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/pattern.h"
 
 #include "lab/scene/glyph.h"

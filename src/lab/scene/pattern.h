@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Scalar patterns in the solid space of an object: what colours, borders, roughness and normal detail are made from.
  *
  *     pattern_values(&pattern, &reference, &facing, lanes_first(count), share);      // in [0, 1]

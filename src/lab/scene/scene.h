@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Objects for rendering: triangles with a solid procedural material, made from (seed, index) alone or read from a mesh
  * file.
  *

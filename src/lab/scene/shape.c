@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What several classes of shapes share: rotations, ellipsoids, bending. */
 #include "lab/scene/shape.h"
 

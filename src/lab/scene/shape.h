@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The classes of random shapes. Each adds closed surfaces to an empty mesh, in its own space with y up, and says what
  * the later steps should know about it. */
 #ifndef MERLIN_LAB_SCENE_SHAPE_H

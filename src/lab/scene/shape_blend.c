@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Smooth implicit bodies: heaps of melted solids, and figures with body, head, limbs, ears and eyes, alike on both
  * sides, as toys and figurines are. */
 #include "lab/scene/implicit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Nearly flat things with fine relief on their front: coins, plaques, tablets, tiles, cushions, folded sheets. */
 #include "lab/scene/glyph.h"
 #include "lab/scene/noise.h"

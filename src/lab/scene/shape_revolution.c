@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surfaces of revolution: open vessels with a wall, lathed solids, fruit, rings; some fluted, some with a handle. */
 #include "lab/scene/number.h"
 #include "lab/scene/shape.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Superellipsoids (Barr 1981) and rounded convex polyhedra, bent, twisted and dented. */
 #include "lab/scene/number.h"
 #include "lab/scene/shape.h"

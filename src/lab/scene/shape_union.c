@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Unions of 1 to 9 cubes, ellipsoids and cylinders, each deformed by a random smooth height field (Xu et al. 2018);
  * one in ten put together as a toy on wheels. */
 #include "lab/scene/number.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What rays see on an object: place, normals and material of points on its triangles. */
 #include "lab/scene/material.h"
 #include "lab/scene/scene.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/scene/texture.h"
 
 enum { PLANES = 3, MAX_CHANNELS = 3 };

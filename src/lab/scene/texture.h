@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographed materials that tile, from a folder: albedo with, where the folder has them, roughness and normal detail.
  *
  *     scn_textures textures;

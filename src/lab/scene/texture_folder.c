@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which files of a folder make which material, and their reading. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/train/average.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The mean of the weights over the last steps, which is better than any one of them (Polyak & Juditsky 1992): an
  * exponential moving average. It is what a run with "average_decay" validates and exports.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/train/checkpoint.h"
 
 #include <cjson/cJSON.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A training run on disk: parameters, Adam's moments, the weights' mean, counters and the open row of the curves, in
  * one safetensors file written at once or not at all. */
 #ifndef MERLIN_LAB_TRAIN_CHECKPOINT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/train/config.h"
 
 #include <limits.h>

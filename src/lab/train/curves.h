@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Loss curves: one CSV for training (means over curve_steps steps) and one for validation, and a picture of both. */
 #ifndef MERLIN_LAB_TRAIN_CURVES_H
 #define MERLIN_LAB_TRAIN_CURVES_H

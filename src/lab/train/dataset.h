@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A folder of rendered samples as training sees it: read once, kept packed in memory, unpacked into a batch in any of
  * the eight orientations.
  *

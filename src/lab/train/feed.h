@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fills a training program's inputs with one batch, samples in parallel. */
 #ifndef MERLIN_LAB_TRAIN_FEED_H
 #define MERLIN_LAB_TRAIN_FEED_H

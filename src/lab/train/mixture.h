@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The light of one photograph, mixed of what a sample was rendered under: flash, lamps and surroundings. Light adds, so
  * that any mixture is exact.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Other photographs of the same object that are physically as right as the rendered one: the camera turned about its
  * lens, and everything nearer or farther.
  *

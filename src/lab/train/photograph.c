@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lab/train/photograph.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A camera's part in a presentation: from radiance to the encoded picture that the network sees, with what cameras and
  * whoever cut the object out do to it. Everything random comes from the generators that are handed in. */
 #ifndef MERLIN_LAB_TRAIN_PHOTOGRAPH_H

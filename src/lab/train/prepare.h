@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From a sample to what one presentation shows the network: masks, the photograph with a camera's imperfections, the
  * target light and what it makes of the object. Everything random depends on (seed, presentation) alone. */
 #ifndef MERLIN_LAB_TRAIN_PREPARE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which sample comes when, and how fast the network learns then. Both depend on the presentation's number alone, so
  * that a resumed run goes on as if it had never stopped. */
 #ifndef MERLIN_LAB_TRAIN_SCHEDULE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Training: from a folder of samples to weights.
  *
  *     trn_options o = {.config = "configs/runs/merlin-point/01-128.json", .data = "data/train", .output = "runs/1"};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Adam's arithmetic on one parameter tensor. */
 #include "nn/cpu/kernels.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Operations that pick, repeat, weigh or sum whole pixels: runs of channels. */
 #include "nn/cpu/kernels.h"
 

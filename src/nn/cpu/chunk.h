@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tensors as runs of floats: the kernels of this folder are written once, on float32 chunks that stay in the first
  * cache, whatever type the tensor has in memory.
  *

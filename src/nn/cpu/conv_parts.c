@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/conv_parts.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a convolution does whatever computes it: batch norm folded into the weights, ReLU undone in the gradient, work
  * counted. Internal to src/nn/cpu. */
 #ifndef MERLIN_NN_CPU_CONV_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The CPU as a device: oneDNN for convolutions, OpenMP loops for the rest. */
 #ifdef __SSE__
 #include <xmmintrin.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/dnn.h"
 
 #include <stdlib.h>

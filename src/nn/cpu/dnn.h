@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Short words for oneDNN: convolutions, a primitive with its arguments. Internal to src/nn/cpu.
  *
  * Versions 2 and 3 describe memory and operations by different calls; dnn_memory.c and dnn_describe.c alone know

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Convolutions by oneDNN.
  *
  * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Convolutions in oneDNN's own words, by version 2 or 3, whichever the header is of. */
 #include <string.h>
 

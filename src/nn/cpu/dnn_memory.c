@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/dnn_memory.h"
 
 static const char *reason(dnnl_status_t code)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Short words for what oneDNN computes on: statuses with messages, channels-last shapes, descriptions of memory.
  * Internal to src/nn/cpu. */
 #ifndef MERLIN_NN_CPU_DNN_MEMORY_H

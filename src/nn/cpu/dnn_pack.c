@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/dnn_pack.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Weights into a padded blocked layout, by this project's own loop.
  *
  * The reorder of oneDNN 3 (seen in 3.7.2, with AVX-512) loses some of the values where both channel counts are padded:

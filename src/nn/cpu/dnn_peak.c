@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The machine's peak: the rate of a convolution that everything favours. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Structural dissimilarity as a loss (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, Image quality assessment:
  * from error visibility to structural similarity, IEEE TIP 13(4), 2004): a window around every pixel, black beyond the
  * mask and the frame, so that windows without any of the object cost nothing.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Operations that look at one element at a time. */
 #include "nn/cpu/kernels.h"
 

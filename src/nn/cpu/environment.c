@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The diffuse half of setting B's rendering layer: maps under an environment known by nine spherical harmonics, and the
  * derivative by maps and coefficients. A pixel outside the mask is never looked at. */
 #include "nn/cpu/kernels.h"

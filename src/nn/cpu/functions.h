@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* exp, sigmoid and tanh without branches or tables, so that loops over them vectorize. NaN in, NaN out. */
 #ifndef MERLIN_NN_CPU_FUNCTIONS_H
 #define MERLIN_NN_CPU_FUNCTIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What oneDNN has no primitive for: forward and backward of the elementwise, resampling, rendering and loss operations
  * on channels-last tensors, as short OpenMP loops.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Masked losses. A pixel outside the mask is never looked at, so that what stands there may be anything.
  *
  * Sums are taken over a fixed number of blocks of rows, then over the blocks in order: the same bits whatever the

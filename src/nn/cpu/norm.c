@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/norm.h"
 
 #include <math.h>

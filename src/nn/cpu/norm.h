@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Batch normalization (Ioffe & Szegedy 2015) over rows of channels, with ReLU behind it if asked for.
  *
  * Rows are N·H·W, float32 or bfloat16. Statistics are sums over a fixed number of chunks of rows, combined in double in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Batch norm as a step: batch statistics in training, running ones otherwise. */
 #include <math.h>
 #include <stdlib.h>

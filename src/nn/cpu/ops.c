@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How the CPU computes each operation: a row of a table, and between it and the kernels of nn/cpu/kernels.h functions
  * that take a step apart. */
 #include "nn/cpu/kernels.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rendering layer: material maps under one point light, by the same inline physics as the renderer, and its
  * derivative. Whole rows at a time, so that the compiler shades 16 pixels in one pass; each row is cut to the span of
  * the mask first. */

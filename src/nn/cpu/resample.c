@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Twice the size, and the exact adjoints. */
 #include "nn/cpu/kernels.h"
 

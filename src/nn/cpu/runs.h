@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Copies of equal short runs at equal strides: concatenation, slicing and the block rearrangements are all this. */
 #ifndef MERLIN_NN_CPU_RUNS_H
 #define MERLIN_NN_CPU_RUNS_H

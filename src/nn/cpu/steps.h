@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The kinds of steps of the CPU device. Each create function reads what the compiler asked for and fills in the
  * device's part of the step. Internal to src/nn/cpu. */
 #ifndef MERLIN_NN_CPU_STEPS_H

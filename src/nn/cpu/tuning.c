@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/tuning.h"
 
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The faster way on each processor, by what `merlin-lab bench --layers` measured there: a table, so that the same
  * machine computes the same bits today and tomorrow. Internal to src/nn/cpu. */
 #ifndef MERLIN_NN_CPU_TUNING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Convolutions of 3×3 with stride 1 and a border of zeros in a quarter of the products: Winograd's minimal filtering
  * F(4×4, 3×3) (A. Lavin & S. Gray, Fast Algorithms for Convolutional Neural Networks, CVPR 2016). A tile of 6×6 values
  * becomes 36 others, each of which is multiplied with the like of the kernel's and summed over channels; these 36 sums

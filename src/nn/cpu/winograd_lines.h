@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The linear maps of F(4, 3), a line of values to six points or of six back, a register of channels side by side. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_LINES_H
 #define MERLIN_NN_CPU_WINOGRAD_LINES_H

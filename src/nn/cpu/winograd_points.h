@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Squares of values to the 36 points of F(4×4, 3×3) and back, a register of channels at once. Internal to winograd.h.
  */
 #ifndef MERLIN_NN_CPU_WINOGRAD_POINTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/winograd_product.h"
 
 /* rows, and registers side by side, are constants where this is called. */

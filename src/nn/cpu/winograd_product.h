@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Products of matrices as Winograd's filtering needs them: many rows, a panel of a few registers wide, both operands
  * where they are. Internal to winograd.c. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_PRODUCT_H

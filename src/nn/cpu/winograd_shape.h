@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The sizes of a convolution by winograd.h, and what is done behind it. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_SHAPE_H
 #define MERLIN_NN_CPU_WINOGRAD_SHAPE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A convolution as a step of the device, by Winograd's filtering. */
 #include <stdlib.h>
 #include <string.h>

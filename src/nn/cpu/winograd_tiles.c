@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "nn/cpu/winograd_tiles.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A picture's tiles to Winograd's points and back: borders, types of activations and what follows a convolution.
  * Internal to winograd.c. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_TILES_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Lights with y down or in another order than the pictures leave normals 55 degrees off: one line says so and what would fit, and
 # nothing is said of lights that do.
 # shellcheck source=tests/cli/support/cases.bash

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # A raw picture of deflated floats is read, as a photograph and as a picture of a capture.
 # shellcheck source=tests/cli/support/cases.bash
 source "$(dirname "$0")/../support/cases.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Masks under their usual names are taken for masks, and not for photographs.
 # shellcheck source=tests/cli/support/cases.bash
 source "$(dirname "$0")/../support/cases.bash"

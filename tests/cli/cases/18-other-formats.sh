@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Formats that are read are estimated whatever their name; others are refused by name.
 # shellcheck source=tests/cli/support/cases.bash
 source "$(dirname "$0")/../support/cases.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # glTF files that harm a careless reader: each is rendered or refused in one line, in 10 s and 1 GB, and nothing is waited for.
 # shellcheck source=tests/cli/support/cases.bash
 source "$(dirname "$0")/../support/cases.bash"

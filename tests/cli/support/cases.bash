@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # For tests/cli/cases/*.sh: inputs that go wrong, kept outside of the project, each with what is right. Where they are missing
 # the test says so and is skipped.
 #

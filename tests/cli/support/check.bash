@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # For the scripts of this folder: a scratch folder ($scratch, removed at the end) and checks that count their failures.
 #
 #     source "$(dirname "$0")/check.bash"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Compares the normals of two result folders from outside of the command: normals_differ A B prints the mean angle in
  * degrees over the pixels that both masks hold, in two decimals. Normals are 16-bit, (n + 1)/2. */
 #include <stdio.h>

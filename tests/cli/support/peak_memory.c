@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Runs a command and prints, behind all it prints, the most memory that it held, in MB (10^6 bytes): peak_memory
  * COMMAND... exits as the command does. */
 #include <stdio.h>

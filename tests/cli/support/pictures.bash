@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # For the scripts about photographs, beside check.bash: input made from nothing, what must or must not lie in a folder, and
 # what stands in the way of writing there.
 

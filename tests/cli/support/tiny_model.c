@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* tiny_model FILE: weights of a tiny network of both decoders, as random as training begins with. */
 #include <stdio.h>
 #include <stdlib.h>

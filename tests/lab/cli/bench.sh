@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # merlin-lab bench: one quick measurement as JSON, and one line for each kind of bad input.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What is not there is told before weights are read, in what trains, renders, measures and evaluates, too.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Lack of memory and of threads is one line in training and rendering, too.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"

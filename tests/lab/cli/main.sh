@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # merlin-lab itself: help, version, and what is no command.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # merlin-lab train --mpi: ranks train as one process does, with the same bits in every run, killed or not.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A sphere as a sample in closed form: what a test needs of the renderer without the renderer. */
 #ifndef MERLIN_TESTS_EVAL_SPHERE_H
 #define MERLIN_TESTS_EVAL_SPHERE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Relighting by an environment against the path tracer: an object that cannot shade itself, and some that do. */
 #include <math.h>
 #include <string.h>

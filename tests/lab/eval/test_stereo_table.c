@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The evaluation of photometric stereo: frames, objects, draws. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lights that nobody measured: near and distant ones about rendered objects, what is doubted and what is refused. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Objects and materials simple enough for closed forms. */
 #ifndef MERLIN_TESTS_RENDER_SHAPES_H
 #define MERLIN_TESTS_RENDER_SHAPES_H

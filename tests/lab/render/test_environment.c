@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Environment maps: sampling, coefficients, and light from all around. */
 #include "lab/render/render.h"
 #include "optics/latlong.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* --env-dir: environments from a folder of the user's. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Data sets: the same whatever the threads, continued where they stopped, never mixed; and what the samples promise. */
 #include "lab/render/generate.h"
 #include "lab/render/lamps.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Light transport against closed forms. */
 #include "lab/render/lamps.h"
 #include "lab/render/paths.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Samples on disk: what is written is read back, and what is not a sample is refused. */
 #include "lab/render/sample.h"
 

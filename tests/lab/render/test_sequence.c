@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Paths' numbers: every square block of pixels covers the unit square evenly. */
 #include "lab/render/sequence.h"
 

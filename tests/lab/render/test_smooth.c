@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The filter of path-traced layers. */
 #include "lab/render/smooth.h"
 

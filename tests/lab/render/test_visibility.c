@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Few rays where pixels agree, all of them at edges, and the same coverage as with all of them everywhere. */
 #include "lab/render/visibility.h"
 

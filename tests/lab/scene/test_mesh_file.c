@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meshes from files: OBJ, PLY and glTF load, are posed like generated objects, and broken files are refused in words.
  */
 #include <math.h>

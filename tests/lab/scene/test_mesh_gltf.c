@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* glTF by hand: what each of its features means for the surface, and what is refused. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* OBJ files as people and programs write them, by the surface that comes of them. */
 #include <math.h>
 #include <setjmp.h>

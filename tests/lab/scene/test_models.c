@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Meshes of a folder as objects: drawn and deformed from (seed, index) alone, whatever else lies in the folder. */
 #include "lab/scene/model_folder.h"
 

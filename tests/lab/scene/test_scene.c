@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Generated objects keep the promises of scene.h: deterministic, closed, finite, in frame, materials in range. */
 #include <math.h>
 #include <setjmp.h>

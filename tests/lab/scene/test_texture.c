@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographed materials: which files make which, and that the surface wears what the pictures say. */
 #include "lab/scene/texture.h"
 

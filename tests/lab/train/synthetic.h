@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Samples of a few pixels for tests of training: a sphere with a two-coloured albedo under the flash, lit by the
  * project's own physics, written as sample files. */
 #ifndef MERLIN_TESTS_SYNTHETIC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Photographs under mixtures of light: sums of what was rendered, with the truth that goes with them. */
 #include "lab/train/mixture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The files of configs/: what each run trains is written down in a mark, as a base that is edited would change runs of
  * years ago with it, whose checkpoints then refuse to go on and whose cards tell what is no longer so. */
 #include <glob.h>
