@@ -149,7 +149,7 @@ static void eight_files_stand_on_one_another_and_no_nine(void **unused)
     (void)unused;
     put("1.json", "{\"seed\": 7}");
     for (int i = 2; i <= JSON_FILES_DEEP + 1; i++) {
-        char name[16], text[40];
+        char name[24], text[48];
         snprintf(name, sizeof name, "%d.json", i);
         snprintf(text, sizeof text, "{\"base\": \"%d.json\"}", i - 1);
         put(name, text);
