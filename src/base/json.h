@@ -22,7 +22,7 @@ typedef struct json_object json_object;
 /* The text must be one JSON object and nothing behind it. `where` is put in front of messages. */
 status json_parse(const char *text, size_t size, const char *where, json_object **out);
 void json_free(json_object *o);
-/* What is put in front of messages, for those about what was read. */
+/* Returns the words that stand in front of messages about what was read. */
 const char *json_where(const json_object *o);
 
 bool json_has(const json_object *o, const char *key);

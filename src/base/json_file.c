@@ -57,7 +57,7 @@ static status open_file(const link *at, json_object **out)
     return s == OK ? check_once(*out, (*out)->root) : s;
 }
 
-/* What base has and over has not. */
+/* Moves into over what base has and over lacks. */
 static void merge(cJSON *base, cJSON *over)
 {
     cJSON *next;

@@ -13,7 +13,7 @@
 
 #include "base/json.h"
 
-/* How many files may stand on one another, the first among them. */
+/* Number of files that may stand on one another, the first among them. */
 enum { JSON_FILES_DEEP = 8 };
 
 /* A file with all that it names put in; messages about what is read of it say when there are other files to look in.

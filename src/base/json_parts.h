@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a json_object is, for those who put one together. */
+/* Layout of a json_object, for those who put one together. */
 #ifndef MERLIN_BASE_JSON_PARTS_H
 #define MERLIN_BASE_JSON_PARTS_H
 

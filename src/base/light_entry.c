@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One light of a list: its numbers, its name, and what should be known of how they were understood. */
+/* Reads one light of a list: its numbers, its name, and what should be known of how they were understood. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What stands before the lights of a list, and what the list is as a whole; base/light_table.h has its columns. */
+/* Reads lists of lights: the lines before the lights, and the list as a whole; base/light_table.h has its columns. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

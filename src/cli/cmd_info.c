@@ -32,7 +32,7 @@ typedef struct weights_info {
     st_file *file;
 } weights_info;
 
-/* What merlin-lab train writes beside the configuration. */
+/* Metadata that merlin-lab train writes beside the configuration. */
 static const char *const provenance[] = {"presentations",   "samples", "size",    "generator_version",
                                          "validation_loss", "note",    "training"};
 enum { PROVENANCE = sizeof provenance / sizeof provenance[0] };

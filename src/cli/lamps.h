@@ -32,8 +32,8 @@ typedef struct lamp_options {
 lamp_options lamp_options_new(void);
 void lamp_options_free(lamp_options *lamps);
 
-/* For rows of command/options.h; into is a lamp_options. A place or a direction, "x,y,z"; a factor; "r,g,b", "#rrggbb"
- * or "2700K". */
+/* Take an option's value, for rows of command/options.h; into is a lamp_options. A place or a direction, "x,y,z"; a
+ * factor; "r,g,b", "#rrggbb" or "2700K". */
 status lamp_take_light(const char *text, void *into);
 status lamp_take_direction(const char *text, void *into);
 status lamp_take_power(const char *text, void *into);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What merlin relight is to make, and what came of it. */
+/* The job of merlin relight: the pictures that are asked for, and the ones that were made. */
 #ifndef MERLIN_CLI_RELIGHT_JOB_H
 #define MERLIN_CLI_RELIGHT_JOB_H
 
@@ -63,7 +63,7 @@ typedef struct relight_result {
 
 #define RELIGHT_MUCH_BURNT_OUT 0.05
 
-/* How many pictures of the photograph's size it takes. */
+/* Returns how many pictures of the photograph's size the job takes. */
 size_t relight_count_whole(const relight_job *job);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What relight_output.h is made of beside single pictures: domes, orbits, and what an earlier run has left. */
+/* Parts of relight_output.h beside single pictures: domes, orbits, and what an earlier run has left. */
 #ifndef MERLIN_CLI_RELIGHT_PARTS_H
 #define MERLIN_CLI_RELIGHT_PARTS_H
 

@@ -23,7 +23,7 @@ status relight_check(const relight_work *w);
 bool relight_surroundings_turn(const relight_job *job);
 /* Returns the lamps that shine together in picture i, and how many: the found light's, else the user's i-th, if any. */
 const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
-/* How many pictures single lights take, or their surroundings alone. */
+/* Returns how many pictures single lights take, or their surroundings alone. */
 size_t relight_count_lights(const relight_job *job);
 /* Renders the stage's square under so many lamps together; counts what is burnt out. */
 status relight_square(relight_work *w, const lamp *lights, int count, img *out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What merlin stereo has found. */
+/* The result of merlin stereo. */
 #ifndef MERLIN_CLI_STEREO_RESULT_H
 #define MERLIN_CLI_STEREO_RESULT_H
 

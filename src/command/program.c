@@ -94,8 +94,8 @@ static void reuse_memory(void)
     mallopt(M_MMAP_THRESHOLD, 8 << 20);
 }
 
-/* Its matrices are too small for several threads to gain from, and the other work has them all. It asks when it is
- * loaded. */
+/* Leaves OpenBLAS one thread, before it is loaded, which is when it asks: its matrices are too small for several to
+ * gain from, and the other work has them all. */
 static void one_thread_for_blas(void)
 {
     setenv("OPENBLAS_NUM_THREADS", "1", 0);

@@ -4,7 +4,7 @@
 #include "image/resize.h"
 
 enum { FLASH, LIGHT, PLANES };
-/* What following the light is worth is in docs/notes/cast_shadows.md. */
+/* Scales of the light that is followed; docs/notes/cast_shadows.md has what that is worth. */
 static const int FRAME_BY_RADIUS = 32;
 static const float DARK = 1e-6f;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a network says of a photograph. */
+/* A network's answers about a photograph. */
 #ifndef MERLIN_ESTIMATE_ESTIMATION_H
 #define MERLIN_ESTIMATE_ESTIMATION_H
 

@@ -18,7 +18,7 @@
  * coarse shape badly (detail.h). */
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_SIZE = 256, NETWORK_LARGEST_SIZE = 512 };
 
-/* In how many orientations it sees a photograph unless told otherwise: beside one, four cost 55 ms on top of an
+/* Number of orientations in which it sees a photograph unless told otherwise: beside one, four cost 55 ms on top of an
  * estimate's 145, and leave five to ten per cent less error (docs/notes/several_views.md). */
 enum { NETWORK_VIEWS = 4 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where a picture's file, of whatever kind, keeps its EXIF. */
+/* Finds the EXIF of a picture's file, of whatever kind. */
 #ifndef MERLIN_IMAGE_EXIF_FIND_H
 #define MERLIN_IMAGE_EXIF_FIND_H
 

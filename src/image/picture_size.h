@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How large a picture may be, and how large it is read. */
+/* Limits of a picture's size, and the size at which it is read. */
 #ifndef MERLIN_IMAGE_PICTURE_SIZE_H
 #define MERLIN_IMAGE_PICTURE_SIZE_H
 

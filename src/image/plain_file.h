@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the readers of plain formats are and share: each tells a file's head and then its rows. Internal to
+/* Readers of plain formats, and the parts that they share: each tells a file's head and then its rows. Internal to
  * picture_plain.h. */
 #ifndef MERLIN_IMAGE_PLAIN_FILE_H
 #define MERLIN_IMAGE_PLAIN_FILE_H

@@ -82,9 +82,9 @@ typedef struct vips_functions {
 #undef VIPS_MEMBER
 #undef GLIB_MEMBER
 
-/* For vips_begin (image/start.h) alone: brings the functions, but starts nothing. */
+/* Brings the functions, but starts nothing: for vips_begin (image/start.h) alone. */
 status vips_load(void);
-/* After vips_begin. */
+/* Returns the functions; to be called after vips_begin. */
 const vips_functions *vips(void);
 
 #endif

@@ -29,11 +29,11 @@ typedef struct model_config {
     int material_blocks[MODEL_LEVELS - 1]; /* behind each stage of the material decoders */
 } model_config;
 
-/* From JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
+/* Parses JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
-/* A file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files that it
- * names (base/json_file.h). */
+/* Reads a file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files
+ * that it names (base/json_file.h). */
 status model_config_read(const char *path, model_config *out);
 /* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
 char *model_config_write(const model_config *config);

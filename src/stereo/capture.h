@@ -91,9 +91,9 @@ bool pst_is_of_data_set(const char *folder);
 enum { PST_MOST_PICTURES = 4096 };
 /* Room for count lights of intensity 1, names and pictures, 1 to PST_MOST_PICTURES; names and pictures are NULL. */
 status pst_capture_reserve(pst_capture *c, size_t count);
-/* Of picture i. */
+/* Keeps the name of picture i. */
 status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
-/* One more picture, of the capture's size and channels, clipped to [0, 1]. */
+/* Adds a picture, of the capture's size and channels, clipped to [0, 1]. */
 status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light);
 /* The mask: pixels that are above black in some picture and, where the pictures' edge is dark, brighter than that. */
 status pst_capture_find_mask(pst_capture *c);

@@ -18,7 +18,7 @@ typedef struct pst_field {
     pst_shading *shading;   /* count; with a lobe */
 } pst_field;
 
-/* What a shading must cost less than, beside another's cost, to be taken for the better one by far: by a third of an
+/* Share of another's cost that a shading must cost less than to be taken for the better one by far: by a third of an
  * outlier, or by half. */
 #define PST_FAR_LESS 0.3f
 static inline float pst_far_below(float cost)

@@ -10,7 +10,7 @@ enum { PASSES = 5, GRID = 12 };
 
 /* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
 #define FRONTAL 0.8
-/* What a surface costs that is nothing like the balloon, in costs of the most integrable one
+/* Cost of a surface that is nothing like the balloon, in costs of the most integrable one
  * (docs/notes/unknown_lights.md has what that is worth, and how the rest was measured). */
 static const double balloon_weight = 30;
 /* Of an object's width (the root of its pixels), one way, over which it is averaged, and pixels at least. Rendered

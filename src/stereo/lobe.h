@@ -12,7 +12,7 @@
 
 #include "stereo/pixel_fit.h"
 
-/* What all pixels share. */
+/* The lobe's parameters, which all pixels share. */
 typedef struct pst_lobe {
     int tail;         /* γ: 2, 4 or 8; 0: no lobe, Lambert's law alone */
     float width;      /* residuals far above this share of an ordinary value are outliers; 0.04 or more */

@@ -25,10 +25,10 @@ typedef struct poisson_graph {
     double *pull, *diagonal;  /* count */
 } poisson_graph;
 
-/* One node a pixel. */
+/* Makes the graph of a grid, one node a pixel. */
 status poisson_graph_of(const poisson_grid *g, poisson_graph *out);
 void poisson_graph_free(poisson_graph *g);
-/* Arrays of count entries, zero; links are another matter. */
+/* Allocates arrays of count entries, zero; links are another matter. */
 status poisson_graph_allocate(poisson_graph *g);
 status poisson_graph_allocate_links(poisson_graph *g, int links);
 

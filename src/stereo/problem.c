@@ -28,7 +28,7 @@ status pst_check_directions(const pst_light *light, int count)
     return OK;
 }
 
-/* From any point, lights on a line have their directions in a plane, too. */
+/* Refuses lights on one line: from any point their directions lie in a plane, too. */
 status pst_check_positions(const pst_light *light, int count)
 {
     double m[9] = {0}, eigenvalue[6], mean[3] = {0};

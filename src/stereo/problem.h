@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a solver is given: a capture with every choice of the options made, and what all of them ask of it. */
+/* The problem that a solver is given: a capture with every choice of the options made, and what all of them ask of it.
+ */
 #ifndef MERLIN_STEREO_PROBLEM_H
 #define MERLIN_STEREO_PROBLEM_H
 
@@ -31,7 +32,7 @@ typedef struct pst_problem {
 
 /* Directions are unit already. Fewer than 3 lights, or all in a plane through the origin, are refused. */
 status pst_check_directions(const pst_light *light, int count);
-/* All on one line are refused. */
+/* Refuses lights that are all on one line. */
 status pst_check_positions(const pst_light *light, int count);
 
 /* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */

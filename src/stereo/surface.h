@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What photometric stereo finds, and by which method. */
+/* The surface that photometric stereo finds, and the method that found it. */
 #ifndef MERLIN_STEREO_SURFACE_H
 #define MERLIN_STEREO_SURFACE_H
 

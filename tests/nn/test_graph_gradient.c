@@ -141,7 +141,7 @@ static void gradients_match_finite_differences(void **state)
     nn_params_free(params);
 }
 
-/* With a gradient through it, and as a step of its own. */
+/* It has each with a gradient through it, and as a step of its own. */
 static void the_net_has_every_operation(void **state)
 {
     (void)state;
@@ -175,7 +175,7 @@ static void backward_without(nn_step *step, void *nan)
     step->out.data = out;
 }
 
-/* What is not kept for it others may have overwritten, though in this net they may not. */
+/* Others may overwrite whatever is not kept for it, though in this net they do not. */
 static void backward_reads_only_what_is_kept_for_it(void **state)
 {
     (void)state;

@@ -5,7 +5,7 @@
 #include "lab/bench/bench.h"
 #include "lab/bench/bench_network.h"
 
-/* What docs/performance.md asks for. */
+/* Goals of docs/performance.md: shares of the peak, seconds and megabytes. */
 static const double least_inference_share = 0.55, least_training_share = 0.55, most_estimate_seconds = 0.25;
 static const double most_estimate_megabytes = 150;
 

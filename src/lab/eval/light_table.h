@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What an estimate is worth by the kind of light in the photograph, on samples that merlin-lab render made with
+/* Measures an estimate by the kind of light in the photograph, on samples that merlin-lab render made with
  * --lamps.
  *
  *     light_options options = {.data = "lit", .weights = "merlin-any.safetensors", .views = NETWORK_VIEWS};

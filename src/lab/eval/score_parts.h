@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the parts of a sample's score share. Internal to score.h. */
+/* Functions that the parts of a sample's score share. Internal to score.h. */
 #ifndef MERLIN_LAB_EVAL_SCORE_PARTS_H
 #define MERLIN_LAB_EVAL_SCORE_PARTS_H
 

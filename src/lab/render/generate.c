@@ -30,7 +30,7 @@ typedef struct run {
     char message[512];
 } run;
 
-/* What eight paths cost is in docs/notes/paths.md. */
+/* Returns what the command takes without options; docs/notes/paths.md has what eight paths cost. */
 render_options render_options_default(void)
 {
     return (render_options){.image = {.size = 128, .fov = 60, .strata = 4, .paths = 8}, .environment = true};

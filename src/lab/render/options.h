@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a data set is to be: see generate.h. */
+/* Options of a data set: see generate.h. */
 #ifndef MERLIN_LAB_RENDER_OPTIONS_H
 #define MERLIN_LAB_RENDER_OPTIONS_H
 

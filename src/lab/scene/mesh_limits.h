@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* How large a mesh's files may be. */
+/* Limits of a mesh and its files. */
 #ifndef MERLIN_LAB_SCENE_MESH_LIMITS_H
 #define MERLIN_LAB_SCENE_MESH_LIMITS_H
 
 #include <stddef.h>
 
-/* Of a mesh; of a file, or of all that make one mesh. */
+/* Triangles of a mesh at most; bytes at most of a file, or of all that make one mesh. */
 enum { MESH_TRIANGLES = 5000000, MESH_BYTES = 1 << 30 };
 
 /* Returns how many triangles a mesh of so many bytes may have: five million, and of a small file, which can only repeat

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What `merlin-lab train` is told: {"model": {...}, "training": {...}}, one file per stage in configs/runs. */
+/* Configuration of `merlin-lab train`: {"model": {...}, "training": {...}}, one file per stage in configs/runs. */
 #ifndef MERLIN_LAB_TRAIN_CONFIG_H
 #define MERLIN_LAB_TRAIN_CONFIG_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How the CPU computes each operation: a row of a table, and between it and the kernels of nn/cpu/kernels.h functions
- * that take a step apart. */
+/* Maps each operation to the CPU's way of computing it: a row of a table, and between it and the kernels of
+ * nn/cpu/kernels.h functions that take a step apart. */
 #include "nn/cpu/kernels.h"
 #include "nn/cpu/steps.h"
 #include "nn/cpu/tuning.h"

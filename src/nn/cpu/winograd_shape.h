@@ -17,7 +17,7 @@ typedef struct winograd {
     nn_type from, to; /* of input and output in memory */
 } winograd;
 
-/* What is done to the sums before they are stored. */
+/* Work on the sums before they are stored. */
 typedef struct winograd_after {
     const float *bias;  /* out, or NULL */
     const void *beside; /* of the output's shape and the input's type: added; or NULL */

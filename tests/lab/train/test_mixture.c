@@ -252,7 +252,7 @@ static void nobody_photographs_darkness(void **state)
     }
 }
 
-/* By so much that what is black would show, it once came out, and the lamp with a strength of 1e9. */
+/* It once exposed by so much that black would show, and the lamp came out with a strength of 1e9. */
 static void a_camera_exposes_for_what_is_lit(void **state)
 {
     fixture *f = *state;

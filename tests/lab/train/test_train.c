@@ -485,7 +485,7 @@ static void write_in_parts(const fixture *f)
     free(text);
 }
 
-/* What a checkpoint belongs to is what was trained, wherever that was written. */
+/* A checkpoint belongs to the run that was trained, wherever that was written. */
 static void a_run_goes_on_by_a_configuration_in_parts(void **state)
 {
     const fixture *f = *state;
