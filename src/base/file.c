@@ -109,6 +109,15 @@ const char *file_name_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
+bool file_program_folder(char folder[PATH_MAX])
+{
+    ssize_t length = readlink("/proc/self/exe", folder, PATH_MAX - 1);
+    if (length <= 0) return false;
+    folder[length] = 0;
+    *strrchr(folder, '/') = 0;
+    return true;
+}
+
 size_t file_text_mark(const char *text, size_t size)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};

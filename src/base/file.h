@@ -3,6 +3,7 @@
 #ifndef MERLIN_BASE_FILE_H
 #define MERLIN_BASE_FILE_H
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -23,6 +24,9 @@ status file_read(const char *path, size_t limit, char **data, size_t *size);
 char *file_folder_of(const char *path);
 /* What stands behind the last slash, in the path itself. */
 const char *file_name_of(const char *path);
+/* Fills in the folder that the running program lies in, without a slash behind it (what lies beside it is found by
+ * that); false where the system does not tell. */
+bool file_program_folder(char folder[PATH_MAX]);
 /* Bytes of the mark of UTF-8 that Windows puts before a text; 0 without one. */
 size_t file_text_mark(const char *text, size_t size);
 

@@ -6,19 +6,17 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/ranks.h"
 
 static void *find_plugin(void)
 {
     static const char *const places[] = {"", "../" MERLIN_PLUGINS "/"};
-    char program[PATH_MAX], path[PATH_MAX + 64];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length < 0) return NULL;
-    program[length] = 0;
-    int folder = (int)(strrchr(program, '/') + 1 - program);
+    char folder[PATH_MAX], path[PATH_MAX + 64];
+    if (!file_program_folder(folder)) return NULL;
     void *found = NULL;
     for (size_t i = 0; !found && i < sizeof places / sizeof *places; i++) {
-        snprintf(path, sizeof path, "%.*s%smerlin_mpi.so", folder, program, places[i]);
+        snprintf(path, sizeof path, "%s/%smerlin_mpi.so", folder, places[i]);
         if (access(path, F_OK) == 0) found = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
     }
     return found;

@@ -293,14 +293,11 @@ status photo_take_share(const char *text, void *into)
 static status find_shipped(const char *name, char **path)
 {
     static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
-    char program[PATH_MAX];
+    char folder[PATH_MAX];
     *path = NULL;
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length < 0) return OK;
-    program[length] = 0;
-    int folder = (int)(file_name_of(program) - program);
+    if (!file_program_folder(folder)) return OK;
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
-        if (asprintf(path, "%.*s%s/%s.safetensors", folder, program, places[i], name) < 0) return no_memory();
+        if (asprintf(path, "%s/%s/%s.safetensors", folder, places[i], name) < 0) return no_memory();
         if (file_exists(*path)) return OK;
         free(*path);
         *path = NULL;

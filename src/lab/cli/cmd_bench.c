@@ -151,20 +151,11 @@ static status run_stereo(const request *r)
     return OK;
 }
 
-/* merlin, which lies beside merlin-lab. */
-static void find_merlin(char path[PATH_MAX])
-{
-    static const char name[] = "merlin";
-    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - sizeof name);
-    path[length < 0 ? 0 : length] = 0;
-    char *end = strrchr(path, '/');
-    memcpy(end ? end + 1 : path, name, sizeof name);
-}
-
 int cmd_bench(int argc, char **argv)
 {
-    char merlin[PATH_MAX];
-    find_merlin(merlin);
+    char folder[PATH_MAX], merlin[PATH_MAX + 8];
+    bool known = file_program_folder(folder);
+    snprintf(merlin, sizeof merlin, "%s/merlin", known ? folder : "."); /* lies beside merlin-lab */
     request r = {.options = {.program = merlin, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("bench", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
