@@ -30,10 +30,10 @@ function(merlin_loads name macro library)
   target_include_directories(merlin_${name} SYSTEM PRIVATE ${ARGN})
 endfunction()
 
-# merlin_program(NAME FOLDER LINK targets...): src/FOLDER/*.c becomes the program NAME.
+# merlin_program(NAME FOLDER LINK targets...): src/FOLDER/**.c becomes the program NAME.
 function(merlin_program name folder)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
 endfunction()

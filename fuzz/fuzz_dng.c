@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw pictures of floats from arbitrary bytes; all others are LibRaw's. */
 #include "fuzz_picture.h"
-#include "image/picture_dng.h"
+#include "image/formats/picture_dng.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* EXIF from arbitrary bytes, and the walk to it through files of every kind. */
 #include "fuzz_picture.h"
-#include "image/box_file.h"
-#include "image/exif.h"
+#include "image/metadata/box_file.h"
+#include "image/metadata/exif.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

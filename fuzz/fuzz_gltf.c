@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* glTF and GLB files from arbitrary bytes. */
-#include "lab/scene/mesh_gltf.h"
+#include "mesh/read/mesh_gltf.h"
 
 #include "fuzz_mesh.h"
 

@@ -3,7 +3,7 @@
  * accepted must have no key twice, and its base put in. */
 #include <string.h>
 
-#include "base/json_file.h"
+#include "base/text/json_file.h"
 #include "base/status.h"
 #include "fuzz_file.h"
 

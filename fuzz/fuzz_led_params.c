@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "stereo/luces.h"
+#include "stereo/capture/luces.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

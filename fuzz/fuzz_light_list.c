@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "base/light_list.h"
+#include "base/lights/light_list.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* OBJ files from arbitrary bytes. */
-#include "lab/scene/mesh_obj.h"
+#include "mesh/read/mesh_obj.h"
 
 #include "fuzz_mesh.h"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "fuzz_file.h"
-#include "image/read.h"
+#include "image/read/read.h"
 
 static inline void fuzz_check_values(const img *image, float low, float high)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PLY files from arbitrary bytes. */
-#include "lab/scene/mesh_ply.h"
+#include "mesh/read/mesh_ply.h"
 
 #include "fuzz_mesh.h"
 

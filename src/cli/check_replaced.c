@@ -8,8 +8,8 @@
 #include <strings.h>
 
 #include "base/file.h"
-#include "stereo/calibrate.h"
-#include "stereo/capture.h"
+#include "stereo/calibrate/calibrate.h"
+#include "stereo/capture/capture.h"
 
 static status refuse(const char *folder, const char *name)
 {

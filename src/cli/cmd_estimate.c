@@ -25,8 +25,8 @@
 #include "command/photos.h"
 #include "command/standard_input.h"
 #include "estimate/api.h"
-#include "estimate/doubts.h"
-#include "estimate/light_words.h"
+#include "estimate/photo/doubts.h"
+#include "estimate/light/light_words.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"

@@ -9,7 +9,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "estimate/report.h"
+#include "estimate/files/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "stereo/mesh_write.h"
+#include "mesh/write/mesh_write.h"
 
 status mesh_take_name(const char *path, void *into)
 {

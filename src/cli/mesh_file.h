@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-#include "estimate/staging.h"
+#include "estimate/files/staging.h"
 
 enum { MESH_MOST_FILES = MAPS_MOST_ELSEWHERE };
 

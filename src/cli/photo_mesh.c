@@ -3,8 +3,8 @@
 
 #include "base/file.h"
 #include "estimate/api.h"
-#include "estimate/fill.h"
-#include "stereo/mesh_write.h"
+#include "estimate/surface/fill.h"
+#include "mesh/write/mesh_write.h"
 
 /* The network's shape has 256 points a side; the photograph adds none to it, but colour in more detail. */
 enum { SHAPE_SIDE = 512, TEXTURE_SIDE = 2048 };
@@ -29,7 +29,7 @@ status photo_mesh_write(const merlin_maps *maps, const char *path)
                               &shape.normal,
                               by_vertex ? &shape.albedo : &texture,
                               &shape.roughness,
-                              pst_camera_of(side, side, surface_lens(&shape).fov),
+                              pinhole_of(side, side, surface_lens(&shape).fov),
                               surface_lens(&shape).slant};
     if (s == OK) s = pst_mesh_write(path, &source);
     surface_free(&shape);

@@ -12,7 +12,7 @@
 #define MERLIN_COMMAND_JSON_LINE_H
 
 #include "base/status.h"
-#include "estimate/staging.h"
+#include "estimate/files/staging.h"
 #include <cJSON.h>
 
 /* A report's own text, of several lines, which is freed; NULL: memory ran out. */

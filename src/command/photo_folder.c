@@ -8,9 +8,9 @@
 
 #include "base/file.h"
 #include "command/standard_input.h"
-#include "image/folder.h"
-#include "image/mask_names.h"
-#include "image/read.h"
+#include "image/read/folder.h"
+#include "image/read/mask_names.h"
+#include "image/read/read.h"
 
 /* Tells whether estimate and stereo write it beside maps.exr. */
 static bool is_result_name(const char *name)

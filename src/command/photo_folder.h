@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Which files of a folder are photographs, and which masks are whose; photos.c makes lists of them. One photograph's
- * own mask is found here, too, by the same names (image/mask_names.h). */
+ * own mask is found here, too, by the same names (image/read/mask_names.h). */
 #ifndef MERLIN_COMMAND_PHOTO_FOLDER_H
 #define MERLIN_COMMAND_PHOTO_FOLDER_H
 

@@ -14,7 +14,7 @@
 #include "command/json_line.h"
 #include "command/photo_folder.h"
 #include "command/photo_hint.h"
-#include "estimate/network.h"
+#include "estimate/photo/network.h"
 
 /* ---- names ---- */
 

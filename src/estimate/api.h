@@ -4,16 +4,16 @@
 #define MERLIN_ESTIMATE_API_H
 
 #include "base/watch.h"
-#include "estimate/crop.h"
-#include "estimate/env_map.h"
-#include "estimate/horizon.h"
-#include "estimate/light_cues.h"
-#include "estimate/mask.h"
-#include "estimate/network.h"
-#include "estimate/shadow.h"
-#include "estimate/staging.h"
-#include "estimate/surface.h"
-#include "image/exr.h"
+#include "estimate/surface/crop.h"
+#include "estimate/light/env_map.h"
+#include "estimate/light/horizon.h"
+#include "estimate/photo/light_cues.h"
+#include "estimate/object/mask.h"
+#include "estimate/photo/network.h"
+#include "estimate/light/shadow.h"
+#include "estimate/files/staging.h"
+#include "estimate/surface/surface.h"
+#include "image/exr/exr.h"
 #include "image/public.h"
 
 struct merlin_model {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json_file.h"
+#include "base/text/json_file.h"
 
 /* Three times a width is the most that a layer takes in: what it shares, what comes up and what was there before. */
 enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };

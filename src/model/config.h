@@ -33,7 +33,7 @@ typedef struct model_config {
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
 /* Reads a file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files
- * that it names (base/json_file.h). */
+ * that it names (base/text/json_file.h). */
 status model_config_read(const char *path, model_config *out);
 /* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
 char *model_config_write(const model_config *config);

@@ -10,7 +10,7 @@
 #ifndef MERLIN_PHOTO_STEREO_DRAWS_H
 #define MERLIN_PHOTO_STEREO_DRAWS_H
 
-#include "stereo/solve.h"
+#include "stereo/methods/solve.h"
 
 enum { DRAW_MOST = 5, DRAW_PICTURES = 32 };
 

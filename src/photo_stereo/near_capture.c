@@ -16,7 +16,7 @@ status near_capture_new(const img *mask, const img *depth, float field_of_view, 
                          .channels = 3,
                          .lighting = PST_NEAR,
                          .intensities_known = true,
-                         .camera = pst_camera_of(side, mask->height, field_of_view)};
+                         .camera = pinhole_of(side, mask->height, field_of_view)};
     out->camera.mean_distance = (float)img_mean_within(depth, mask);
     status s = img_copy(&out->mask, mask);
     for (size_t i = 0, n = (size_t)side * (size_t)mask->height; s == OK && i < n; i++)

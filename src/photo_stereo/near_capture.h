@@ -9,7 +9,7 @@
 #ifndef MERLIN_PHOTO_STEREO_NEAR_CAPTURE_H
 #define MERLIN_PHOTO_STEREO_NEAR_CAPTURE_H
 
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 /* Radiance that becomes full scale: a white surface facing a light at half the usual distance is not clipped. */
 #define NEAR_CAPTURE_WHITE 8.0f

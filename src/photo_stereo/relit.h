@@ -9,9 +9,9 @@
 #ifndef MERLIN_PHOTO_STEREO_RELIT_H
 #define MERLIN_PHOTO_STEREO_RELIT_H
 
-#include "estimate/surface.h"
+#include "estimate/surface/surface.h"
 #include "merlin/merlin.h"
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 enum { RELIT_LIGHTS = 50 };
 

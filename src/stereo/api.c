@@ -7,10 +7,10 @@
 #include <stdlib.h>
 
 #include "image/public.h"
-#include "stereo/albedo_scale.h"
-#include "stereo/mesh_write.h"
-#include "stereo/place_lights.h"
-#include "stereo/solve.h"
+#include "stereo/fit/albedo_scale.h"
+#include "mesh/write/mesh_write.h"
+#include "stereo/methods/place_lights.h"
+#include "stereo/methods/solve.h"
 
 static_assert((int)MERLIN_DISTANT_LIGHTS == (int)PST_DISTANT && (int)MERLIN_NEAR_LIGHTS == (int)PST_NEAR &&
                   (int)MERLIN_UNKNOWN_LIGHTS == (int)PST_UNKNOWN_LIGHT,

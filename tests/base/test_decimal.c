@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Numbers as text against printf and strtod. */
-#include "base/decimal.h"
+#include "base/text/decimal.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
-#include "base/json_file.h"
+#include "base/text/json_file.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
 #include <setjmp.h>

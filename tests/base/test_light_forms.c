@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The forms in which people, spreadsheets and programs write lists of lights: all say the same four directions. */
-#include "base/light_list.h"
+#include "base/lights/light_list.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/light_list.h"
+#include "base/lights/light_list.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

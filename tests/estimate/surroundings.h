@@ -3,7 +3,7 @@
 #ifndef MERLIN_TESTS_ESTIMATE_SURROUNDINGS_H
 #define MERLIN_TESTS_ESTIMATE_SURROUNDINGS_H
 
-#include "estimate/env_map.h"
+#include "estimate/light/env_map.h"
 #include "optics/latlong.h"
 
 /* Radiance is taken in the middle of every texel of width × width / 2. Free it with env_map_free. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How unlike the border: even and shaded backgrounds, objects inside and cut off. */
-#include "estimate/border_distance.h"
+#include "estimate/object/border_distance.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Photographs in surroundings: models of both lights from estimate to relight, with random weights. */
 #include "image/image.h"
-#include "image/write.h"
+#include "image/write/write.h"
 #include "merlin/merlin.h"
 #include "scratch.h"
 #include "weights.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/bounce.h"
+#include "estimate/light/bounce.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

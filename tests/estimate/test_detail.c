@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Fine normals from a larger picture: what is taken from it, and when. */
-#include "estimate/detail.h"
+#include "estimate/photo/detail.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,7 @@
 /* Distant lights must send what the surroundings send that they stand for. */
 #include <math.h>
 
-#include "estimate/env_lights.h"
+#include "estimate/light/env_lights.h"
 #include "optics/octahedron.h"
 #include "optics/sh.h"
 #include "surroundings.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "estimate/api.h"
-#include "estimate/env_map.h"
+#include "estimate/light/env_map.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
 #include "scratch.h"

@@ -10,7 +10,7 @@
 
 #include "base/rng.h"
 #include "base/threads.h"
-#include "estimate/mask.h"
+#include "estimate/object/mask.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The light that a model of any light sees: from its code to a lamp, and a surface under it. */
-#include "estimate/found_light.h"
+#include "estimate/light/found_light.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "estimate/light_words.h"
+#include "estimate/light/light_words.h"
 #include "optics/camera.h"
 #include "optics/sh.h"
 

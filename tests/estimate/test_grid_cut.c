@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/rng.h"
-#include "estimate/grid_cut.h"
+#include "estimate/object/grid_cut.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "estimate/relight_env.h"
+#include "estimate/light/relight_env.h"
 #include "optics/camera.h"
 #include "optics/octahedron.h"
 #include "surroundings.h"

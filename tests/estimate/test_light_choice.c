@@ -5,7 +5,7 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "estimate/found_light.h"
+#include "estimate/light/found_light.h"
 #include "image/public.h"
 #include "scratch.h"
 #include "weights.h"

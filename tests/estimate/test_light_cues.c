@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests whether the light of a photograph is told to be at the lens or not: a sphere whose maps are true, under both.
  */
-#include "estimate/light_cues.h"
+#include "estimate/photo/light_cues.h"
 #include "optics/camera.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
-#include "estimate/doubts.h"
+#include "estimate/photo/doubts.h"
 #include "image/public.h"
 
 #include <setjmp.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Interpolated reflections against the lobe sampled at every pixel. */
-#include "estimate/reflections.h"
+#include "estimate/light/reflections.h"
 
 #include <math.h>
 
-#include "estimate/lobe.h"
+#include "estimate/light/lobe.h"
 #include "optics/camera.h"
 #include "surroundings.h"
 

@@ -2,7 +2,7 @@
 /* Surfaces under environments whose reflection is known in closed form or by quadrature. */
 #include <math.h>
 
-#include "estimate/relight_env.h"
+#include "estimate/light/relight_env.h"
 #include "optics/brdf.h"
 #include "optics/camera.h"
 #include "optics/latlong.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/rng.h"
-#include "estimate/fuse.h"
-#include "estimate/shadow.h"
+#include "estimate/surface/fuse.h"
+#include "estimate/light/shadow.h"
 #include "optics/camera.h"
 
 #include <setjmp.h>

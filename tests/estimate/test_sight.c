@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What is known of a photograph's lens, and what follows for the maps of its crop. */
-#include "estimate/sight.h"
+#include "estimate/surface/sight.h"
 
 #include <math.h>
 
-#include "estimate/surface.h"
+#include "estimate/surface/surface.h"
 
 /* last: it claims the word fail */
 #include <setjmp.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/crop.h"
-#include "estimate/exposure.h"
-#include "estimate/fill.h"
-#include "estimate/smooth.h"
-#include "estimate/surface.h"
+#include "estimate/surface/crop.h"
+#include "estimate/surface/exposure.h"
+#include "estimate/surface/fill.h"
+#include "estimate/surface/smooth.h"
+#include "estimate/surface/surface.h"
 #include "optics/light.h"
 
 #include <math.h>

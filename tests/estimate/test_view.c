@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The mean over all eight orientations turns with the photograph. */
-#include "estimate/network.h"
-#include "estimate/view.h"
+#include "estimate/photo/network.h"
+#include "estimate/photo/view.h"
 
 #include <math.h>
 #include <stdlib.h>

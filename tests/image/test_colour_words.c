@@ -4,8 +4,8 @@
 #include <vips/vips.h>
 
 #include "image/color.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/read/read.h"
+#include "image/write/write.h"
 
 #include "writes.h"
 

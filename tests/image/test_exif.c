@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "image/exif.h"
+#include "image/metadata/exif.h"
 
 #include <libdeflate.h>
 #include <setjmp.h>

@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "image/exr.h"
-#include "image/read.h"
+#include "image/exr/exr.h"
+#include "image/read/read.h"
 
 #include "writes.h"
 

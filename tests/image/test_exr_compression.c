@@ -3,7 +3,7 @@
 #include <OpenEXR/openexr.h>
 
 #include "base/rng.h"
-#include "image/exr.h"
+#include "image/exr/exr.h"
 
 #include "writes.h"
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/folder.h"
+#include "image/read/folder.h"
 /* after the project's headers, for it brings cmocka */
 #include "flat.h"
 

@@ -7,7 +7,7 @@
 #include <vips/vips.h>
 
 #include "image/color.h"
-#include "image/read.h"
+#include "image/read/read.h"
 #include "image/start.h"
 
 #include "writes.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "image/read.h"
+#include "image/read/read.h"
 #include "scratch.h"
 
 /* last: it claims the word fail */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "image/jpeg.h"
+#include "image/write/jpeg.h"
 
 #include <stdlib.h>
 #include <string.h>

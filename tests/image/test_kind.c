@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Files are told by their content. */
-#include "image/kind.h"
+#include "image/formats/kind.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/write.h"
+#include "image/write/write.h"
 
 #include "scratch.h"
 #include <cmocka.h> /* after the project's own headers: it has a macro named fail */

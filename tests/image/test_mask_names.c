@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "image/mask_names.h"
+#include "image/read/mask_names.h"
 
 #include <cmocka.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <vips/vips.h>
 
-#include "image/exr.h"
-#include "image/read.h"
+#include "image/exr/exr.h"
+#include "image/read/read.h"
 
 #include "writes.h"
 

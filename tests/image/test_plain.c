@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "image/color.h"
-#include "image/read.h"
+#include "image/read/read.h"
 
 #include "writes.h"
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/icc.h"
-#include "image/read.h"
+#include "image/metadata/icc.h"
+#include "image/read/read.h"
 
 /* last: it claims the word fail */
 #include "scratch.h"

@@ -2,7 +2,7 @@
 /* Raw pictures, which most cameras write in a TIFF's frame. */
 #include <math.h>
 
-#include "image/read.h"
+#include "image/read/read.h"
 
 #include "dng.h"
 #include "writes.h"

@@ -6,9 +6,9 @@
 #include <vips/vips.h>
 
 #include "image/color.h"
-#include "image/exr.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/exr/exr.h"
+#include "image/read/read.h"
+#include "image/write/write.h"
 
 #include "writes.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "image/read.h"
+#include "image/read/read.h"
 
 /* last, for it brings cmocka */
 #include "flat.h"

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "image/resize.h"
-#include "image/write.h"
+#include "image/write/write.h"
 
 #include "writes.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "image/read.h"
+#include "image/read/read.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,8 +4,8 @@
 #include <png.h>
 #include <stdio.h>
 
-#include "image/picture_rows.h"
-#include "image/read.h"
+#include "image/formats/picture_rows.h"
+#include "image/read/read.h"
 
 #include "writes.h"
 

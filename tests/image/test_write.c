@@ -6,11 +6,11 @@
 #include <sys/stat.h>
 #include <vips/vips.h>
 
-#include "image/animation.h"
+#include "image/write/animation.h"
 #include "image/color.h"
-#include "image/figure.h"
-#include "image/read.h"
-#include "image/write.h"
+#include "image/write/figure.h"
+#include "image/read/read.h"
+#include "image/write/write.h"
 
 #include "writes.h"
 

@@ -16,7 +16,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/threads.h"
-#include "nn/cpu/kernels.h"
+#include "nn/cpu/kernels/kernels.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */
 

@@ -12,7 +12,7 @@
 
 #include "base/half.h"
 #include "base/rng.h"
-#include "nn/cpu/winograd.h"
+#include "nn/cpu/winograd/winograd.h"
 #include "nn/nn.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */

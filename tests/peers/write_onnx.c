@@ -11,7 +11,7 @@
 #include "base/half.h"
 #include "base/progress.h"
 #include "base/rng.h"
-#include "estimate/view.h"
+#include "estimate/photo/view.h"
 #include "model/model.h"
 #include "nn/graph.h"
 #include "protobuf.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/albedo_scale.h"
+#include "stereo/fit/albedo_scale.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,11 +2,11 @@
 #include <unistd.h>
 
 /* Balls rendered here under known lights, and the real ones where they are at hand. */
-#include "base/light_list.h"
+#include "base/lights/light_list.h"
 #include "base/rng.h"
 #include "capture_files.h"
-#include "stereo/calibrate.h"
-#include "stereo/solve.h"
+#include "stereo/calibrate/calibrate.h"
+#include "stereo/methods/solve.h"
 
 enum { SIZE = 160, LIGHTS = 7 };
 static const float CENTER_X = 83.3f, CENTER_Y = 76.8f, RADIUS = 58.6f;
@@ -151,7 +151,7 @@ static void what_one_channel_clips_is_no_shading(void **state)
 }
 
 /* A matte ball in the corner of a wide picture, where it looks like an egg: 1.06 times as long as wide. */
-static float corner_pixel(const pst_camera *camera, float x, float y, vec3 l)
+static float corner_pixel(const pinhole *camera, float x, float y, vec3 l)
 {
     vec3 center = vec3_scale(vec3_normalize(vec3_make(-0.29f, 0.26f, -1)), 8);
     vec3 ray =
@@ -166,7 +166,7 @@ static void a_ball_beside_the_axis_tells_its_lights(void **state)
 {
     (void)state;
     enum { SIDE = 300 };
-    const pst_camera camera = pst_camera_of(SIDE, SIDE, 50);
+    const pinhole camera = pinhole_of(SIDE, SIDE, 50);
     img p;
     assert_int_equal(img_new(&p, SIDE, SIDE, 1), OK);
     for (int i = 0; i < LIGHTS; i++) {

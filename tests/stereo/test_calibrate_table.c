@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Balls on a table, which a mirror ball's rim mirrors: the circle that is seen best is not always the outline. */
 #include "capture_files.h"
-#include "stereo/calibrate.h"
+#include "stereo/calibrate/calibrate.h"
 
 enum { WIDTH = 200, HEIGHT = 150, LIGHTS = 8 };
 

@@ -3,8 +3,8 @@
 
 #include "capture_files.h"
 #include "image/color.h"
-#include "image/exr.h"
-#include "stereo/capture.h"
+#include "image/exr/exr.h"
+#include "stereo/capture/capture.h"
 
 static const pst_read_options PLAIN = {0};
 

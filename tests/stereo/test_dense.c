@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/rng.h"
-#include "stereo/dense.h"
+#include "stereo/algebra/dense.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 

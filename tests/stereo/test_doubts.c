@@ -15,7 +15,7 @@
 #include "base/rng.h"
 #include "image/color.h"
 #include "relief.h"
-#include "stereo/doubts.h"
+#include "stereo/doubts/doubts.h"
 
 enum { SIZE = 72, LIGHTS = 12 };
 
@@ -258,7 +258,7 @@ static void places_in_another_unit_or_behind_the_camera_are_told(void **state)
     warnings doubts = {0};
     take(BALL, 0, &c);
     c.lighting = PST_NEAR;
-    c.camera = pst_camera_of(SIZE, SIZE, 30);
+    c.camera = pinhole_of(SIZE, SIZE, 30);
     c.camera.mean_distance = 0.6f;   /* metres */
     for (int k = 0; k < LIGHTS; k++) /* millimetres */
         c.light[k].position = vec3_add(vec3_scale(light_at(k), 400), vec3_make(0, 0, -600));
@@ -324,7 +324,7 @@ static void take_near(pst_capture *c)
     const float radius = 0.45f;
     capture_new(c, SIZE, LIGHTS, 1);
     c->lighting = PST_NEAR;
-    c->camera = pst_camera_of(SIZE, SIZE, 30);
+    c->camera = pinhole_of(SIZE, SIZE, 30);
     c->camera.mean_distance = 1.65f;
     for (int k = 0; k < LIGHTS; k++) {
         float phi = 2.4f * (float)k, r = 0.9f * sqrtf(((float)k + 0.7f) / LIGHTS);
@@ -372,7 +372,7 @@ static void another_distance_or_lens_is_named(void **state)
         assert_int_equal(sscanf(strstr(w->message, "about ") + 6, "%f", &told), 1);
         assert_float_equal(told, 1.65f, 0.2f);
     }
-    c.camera = pst_camera_of(SIZE, SIZE, 60);
+    c.camera = pinhole_of(SIZE, SIZE, 60);
     c.camera.mean_distance = 1.65f;
     doubts = near_doubts_of(&c);
     assert_non_null(warnings_find(&doubts, "other_lens"));

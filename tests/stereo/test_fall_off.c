@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#include "stereo/fall_off.h"
+#include "stereo/fit/fall_off.h"
 
 enum { LIGHTS = 32 };
 static const pst_lobe matte = {.width = 0.04f, .shadow = PST_SHADOW_COST, .masking = 0.28f};

@@ -10,7 +10,7 @@
 
 #include "base/rng.h"
 #include "relief.h"
-#include "stereo/field_fit.h"
+#include "stereo/fit/field_fit.h"
 
 enum { SIZE = 24, LIGHTS = 48, CREASE = 16, GROOVE = 7 };
 

@@ -11,7 +11,7 @@
 
 #include "base/rng.h"
 #include "relief.h"
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 enum { SIZE = 64, PICTURES = 8 };
 

@@ -6,14 +6,14 @@
 #include <stdint.h>
 
 #include "optics/camera.h"
-#include "stereo/integrate.h"
+#include "stereo/integrate/integrate.h"
 
 #include <cmocka.h>
 
 /* Normals of a scene, its mask and its true depth. */
 typedef struct scene {
     img normal, mask, depth;
-    pst_camera camera;
+    pinhole camera;
 } scene;
 
 static scene scene_new(int width, int height)
@@ -43,9 +43,9 @@ static void put(scene *s, int x, int y, vec3 n, float depth)
     *img_at(&s->depth, x, y) = depth;
 }
 
-static pst_camera camera_of(int width, int height)
+static pinhole camera_of(int width, int height)
 {
-    return (pst_camera){.perspective = true,
+    return (pinhole){.perspective = true,
                         .focal = (float)width / (2 * tanf(0.5235988f)),
                         .center_x = (float)width / 2,
                         .center_y = (float)height / 2};

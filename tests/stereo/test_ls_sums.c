@@ -10,7 +10,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "base/rng.h"
-#include "stereo/ls_sums.h"
+#include "stereo/methods/ls_sums.h"
 
 /* More lights than a word has bits, their number odd; a picture whose end fills neither a block nor a register. */
 enum { LIGHTS = 37, PIXELS = LS_BLOCK + 77 };

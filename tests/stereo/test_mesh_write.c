@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/read.h"
+#include "image/read/read.h"
 #include "image/resize.h"
 #include "scratch.h"
-#include "stereo/mesh_write.h"
+#include "mesh/write/mesh_write.h"
 
 #include <cmocka.h>
 

@@ -9,7 +9,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
-#include "stereo/place_lights.h"
+#include "stereo/methods/place_lights.h"
 
 enum { SIZE = 40, LIGHTS = 8 };
 /* A ball about the middle of a dome, in millimetres, which the camera sees 30 degrees wide. */
@@ -50,7 +50,7 @@ static void ball_capture(pst_capture *c, bool far, bool asked, float unit)
 {
     capture_new(c, SIZE, LIGHTS, 1);
     c->lighting = asked ? PST_NEAR : PST_DISTANT;
-    c->camera = pst_camera_of(SIZE, SIZE, view);
+    c->camera = pinhole_of(SIZE, SIZE, view);
     c->about_object = true;
     c->name = calloc(LIGHTS, sizeof *c->name);
     for (int k = 0; k < LIGHTS; k++) {
@@ -114,7 +114,7 @@ static void another_camera_does_nearly_as_well(void **state)
     (void)state;
     pst_capture c;
     ball_capture(&c, false, true, 1);
-    c.camera = pst_camera_of(SIZE, SIZE, 60);
+    c.camera = pinhole_of(SIZE, SIZE, 60);
     assert_int_equal(pst_place_lights(&c, NULL), OK);
     assert_int_equal(c.noticed.count, 0);
     assert_true(solved_angle(&c, PST_NEAR_LIGHTS) < 1);
@@ -126,7 +126,7 @@ static void lights_from_afar_stay_directions(void **state)
     (void)state;
     pst_capture c;
     ball_capture(&c, true, false, 1);
-    pst_camera before = c.camera;
+    pinhole before = c.camera;
     assert_int_equal(pst_place_lights(&c, NULL), OK);
     assert_int_equal(c.lighting, PST_DISTANT);
     assert_memory_equal(&c.camera, &before, sizeof before);

@@ -4,9 +4,9 @@
 
 #include "capture_files.h"
 #include "comma.h"
-#include "stereo/array_file.h"
-#include "stereo/capture.h"
-#include "stereo/luces.h"
+#include "stereo/capture/array_file.h"
+#include "stereo/capture/capture.h"
+#include "stereo/capture/luces.h"
 
 typedef struct bytes {
     unsigned char at[8192];

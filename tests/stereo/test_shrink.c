@@ -9,7 +9,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
-#include "stereo/shrink.h"
+#include "stereo/capture/shrink.h"
 
 enum { SIZE = 10, FACTOR = 4, SMALL_SIZE = 3 };
 
@@ -65,7 +65,7 @@ static void blocks_of_a_part_keep_the_camera_s_rays_and_the_objects_inside(void 
     capture_new(&c, SIZE, 1, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         c.mask.data[i] = i % SIZE < 8 ? 1 : 0;
-    c.camera = (pst_camera){.perspective = true, .focal = 20, .center_x = 5, .center_y = 5};
+    c.camera = (pinhole){.perspective = true, .focal = 20, .center_x = 5, .center_y = 5};
     pst_blocks part = {.x = -1, .y = 1, .columns = 4, .rows = 2, .factor = 3, .whole = true};
     assert_int_equal(pst_shrink(&c, part, PST_SATURATED, &small), OK);
     assert_int_equal(small.width, 4);

@@ -9,9 +9,9 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
-#include "stereo/matrix3.h"
-#include "stereo/pixel_fit.h"
-#include "stereo/solve.h"
+#include "stereo/algebra/matrix3.h"
+#include "stereo/fit/pixel_fit.h"
+#include "stereo/methods/solve.h"
 
 static const relief lambert = {.size = 48, .lights = 24, .channels = 1, .exposure = 1.8f};
 static const relief glossy = {.size = 64,

@@ -9,7 +9,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "relief.h"
-#include "stereo/field_fit.h"
+#include "stereo/fit/field_fit.h"
 
 /* enough pixels to be searched small */
 enum { SIZE = 128, LIGHTS = 32 };
@@ -53,7 +53,7 @@ static float ball_capture(pst_capture *c, float specular)
     capture_new(c, SIZE, LIGHTS, 1);
     c->lighting = PST_NEAR;
     c->camera =
-        (pst_camera){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
+        (pinhole){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
     for (int k = 0; k < LIGHTS; k++) {
         c->light[k].position = led_position(k);
         c->light[k].direction = vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k)));

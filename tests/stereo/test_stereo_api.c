@@ -6,7 +6,7 @@
 
 #include "capture_files.h"
 #include "image/image.h"
-#include "image/write.h"
+#include "image/write/write.h"
 
 enum { SIZE = 64, LIGHTS = 12, PIXELS = SIZE * SIZE };
 static const float RADIUS = 28, ALBEDO[3] = {0.6f, 0.4f, 0.2f};

@@ -10,7 +10,7 @@
 
 #include "base/rng.h"
 #include "relief.h"
-#include "stereo/unlit.h"
+#include "stereo/methods/unlit.h"
 
 enum { SIZE = 96, LIGHTS = 50, INK_LEFT = 40, INK_RIGHT = 60 };
 static const float noise = 0.004f;

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "image/write.h"
+#include "image/write/write.h"
 #include "scratch.h"
 
 /* after the project's headers: its macro fail() would break the declaration of ours */

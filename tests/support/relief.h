@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "optics/brdf.h"
-#include "stereo/solve.h"
+#include "stereo/methods/solve.h"
 
 typedef struct relief {
     int size, lights, channels;

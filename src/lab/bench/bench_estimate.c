@@ -19,7 +19,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "image/write.h"
+#include "image/write/write.h"
 #include "lab/bench/bench_ball.h"
 
 extern char **environ;

@@ -7,10 +7,10 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "estimate/report.h"
+#include "estimate/files/report.h"
 #include "lab/bench/bench_estimate.h"
 #include "lab/bench/bench_time.h"
-#include "stereo/solve.h"
+#include "stereo/methods/solve.h"
 
 static const bench_stereo_run cases[BENCH_STEREO_RUNS] = {
     {.pictures = 8}, {.pictures = 32}, {.pictures = 32, .shadows = true}};

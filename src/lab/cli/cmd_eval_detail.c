@@ -8,7 +8,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "estimate/network.h"
+#include "estimate/photo/network.h"
 #include "lab/cli/eval_commands.h"
 #include "lab/eval/detail_table.h"
 

@@ -10,7 +10,7 @@
 #include "command/cli.h"
 #include "command/options.h"
 #include "command/photo_ahead.h"
-#include "estimate/overview.h"
+#include "estimate/files/overview.h"
 #include "image/resize.h"
 #include "lab/cli/eval_commands.h"
 

@@ -9,7 +9,7 @@
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "estimate/report.h"
+#include "estimate/files/report.h"
 #include "lab/cli/commands.h"
 #include "lab/render/generate.h"
 

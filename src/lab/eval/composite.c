@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "image/color.h"
 #include "image/resize.h"
-#include "lab/scene/noise.h"
+#include "lab/scene/shape/noise.h"
 #include "optics/light.h"
 
 enum { STREAM = 0x3a5c, MOST_THINGS = 9, TABLE_BITS = 8 };

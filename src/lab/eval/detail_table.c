@@ -5,8 +5,8 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "estimate/detail.h"
-#include "estimate/input.h"
+#include "estimate/photo/detail.h"
+#include "estimate/photo/input.h"
 #include "lab/eval/maps.h"
 #include "lab/eval/metrics.h"
 

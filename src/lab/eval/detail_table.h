@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a larger picture adds to an estimate's shape (estimate/detail.h), on samples of more than NETWORK_SIZE pixels.
+/* What a larger picture adds to an estimate's shape (estimate/photo/detail.h), on samples of more than NETWORK_SIZE pixels.
  *
  *     detail_options options = {.data = "large", .weights = "merlin-point.safetensors", .views = NETWORK_VIEWS};
  *     detail_table table;

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "estimate/network.h"
+#include "estimate/photo/network.h"
 #include "lab/eval/score.h"
 
 typedef struct evaluation {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/inflate.h"
+#include "stereo/uncalibrated/inflate.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/trivial.h"
 #include "optics/camera.h"

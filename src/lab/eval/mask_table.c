@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "estimate/mask.h"
+#include "estimate/object/mask.h"
 #include "lab/eval/metrics.h"
 
 static const double SURE = 0.8;

@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "image/exr.h"
+#include "image/exr/exr.h"
 #include "image/resize.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/trivial.h"

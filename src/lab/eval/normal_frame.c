@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/normal_frame.h"
 
-#include "stereo/field_fit.h"
+#include "stereo/fit/field_fit.h"
 
-static vec3 sight(const pst_camera *camera, int x, int y)
+static vec3 sight(const pinhole *camera, int x, int y)
 {
     return camera->perspective ? vec3_normalize(pst_ray(camera, x, y)) : vec3_make(0, 0, -1);
 }
@@ -15,7 +15,7 @@ static vec3 turn(vec3 v, vec3 a, vec3 b)
     return vec3_fma(vec3_add(v, once), 1 / (1 + vec3_dot(a, b)), vec3_cross(axis, once));
 }
 
-void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *to)
+void normal_frame_change(img *normal, const pinhole *from, const pinhole *to)
 {
     for (int y = 0; y < normal->height; y++)
         for (int x = 0; x < normal->width; x++) {

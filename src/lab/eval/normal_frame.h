@@ -7,9 +7,9 @@
 #ifndef MERLIN_LAB_EVAL_NORMAL_FRAME_H
 #define MERLIN_LAB_EVAL_NORMAL_FRAME_H
 
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 /* Turns each pixel's normal by the least rotation that takes the first camera's ray to the second's. Pixels without a
  * normal stay so. */
-void normal_frame_change(img *normal, const pst_camera *from, const pst_camera *to);
+void normal_frame_change(img *normal, const pinhole *from, const pinhole *to);
 #endif

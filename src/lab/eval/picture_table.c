@@ -11,8 +11,8 @@
 #include "lab/eval/normal_frame.h"
 #include "lab/eval/stereo_frame.h"
 #include "lab/eval/stereo_object.h"
-#include "stereo/solve.h"
-#include "stereo/surface_error.h"
+#include "stereo/methods/solve.h"
+#include "stereo/integrate/surface_error.h"
 
 typedef struct run {
     const picture_options *options;
@@ -43,7 +43,7 @@ static status judge(const pst_capture *c, const merlin_maps *maps, picture_score
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
     const bool by_sight = !maps->light.known;
     const img from = img_of(&maps->normal);
-    const pst_camera assumed = pst_camera_of(c->width, c->height, SURFACE_FOV);
+    const pinhole assumed = pinhole_of(c->width, c->height, SURFACE_FOV);
     status s = stereo_frame_check(c, maps);
     if (s == OK) s = img_copy(&normal, &from);
     if (s != OK) return s;

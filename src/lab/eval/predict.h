@@ -14,7 +14,7 @@
 #ifndef MERLIN_LAB_EVAL_PREDICT_H
 #define MERLIN_LAB_EVAL_PREDICT_H
 
-#include "estimate/view.h"
+#include "estimate/photo/view.h"
 #include "lab/eval/maps.h"
 #include "model/model.h"
 #include "optics/orientation.h"
@@ -24,7 +24,7 @@ enum { EVAL_LIGHTS = 4 };
 typedef struct eval_model eval_model;
 
 /* size: side of the square pictures, a multiple of MODEL_SIZE_MULTIPLE. Maps are the mean over `views` orientations of
- * the picture, 1 to 8 (estimate/view.h), and so is what the relighting decoder gives. */
+ * the picture, 1 to 8 (estimate/photo/view.h), and so is what the relighting decoder gives. */
 status eval_model_open(const char *weights, int size, nn_type type, int views, eval_model **out);
 void eval_model_close(eval_model *m);
 const model_config *eval_model_config(const eval_model *m);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "estimate/network.h"
-#include "estimate/view.h"
+#include "estimate/photo/network.h"
+#include "estimate/photo/view.h"
 #include "lab/eval/predict.h"
 #include "lab/eval/predict_parts.h"
 
@@ -85,7 +85,7 @@ static status bounces_of_mean(eval_model *m, const img *mask, const img *lit, co
 }
 
 /* Means of several views are rendered over again, and so are bounces: what the network adds makes up for the false
- * highlights of the view's own maps (estimate/estimate.c). */
+ * highlights of the view's own maps (estimate/photo/estimate.c). */
 static status show_by_rendering(eval_model *m, const img *mask, eval_prediction *out)
 {
     const illumination flash = {{0, 0, 0}, NULL}, both = {{0, 0, 0}, (const float(*)[3])out->sh};

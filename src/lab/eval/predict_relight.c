@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "estimate/bounce.h"
-#include "estimate/shadow.h"
-#include "estimate/smooth.h"
-#include "estimate/view.h"
+#include "estimate/light/bounce.h"
+#include "estimate/light/shadow.h"
+#include "estimate/surface/smooth.h"
+#include "estimate/photo/view.h"
 #include "lab/eval/predict.h"
 #include "lab/eval/predict_parts.h"
 

@@ -257,7 +257,7 @@ status rendered_capture(const rendered *how, const scn_object *object, pst_captu
                          .channels = how->grey ? 1 : 3,
                          .lighting = is_near(how) ? PST_NEAR : PST_DISTANT,
                          .intensities_known = true,
-                         .camera = is_near(how) ? pst_camera_of(how->size, how->size, how->fov) : (pst_camera){0}};
+                         .camera = is_near(how) ? pinhole_of(how->size, how->size, how->fov) : (pinhole){0}};
     job all = {.how = how, .object = object, .capture = out, .result = OK};
     status s = allocate(how, out);
     if (s == OK) s = trace_device_new(&all.device);

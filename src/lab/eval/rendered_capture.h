@@ -14,7 +14,7 @@
 #define MERLIN_LAB_EVAL_RENDERED_CAPTURE_H
 
 #include "lab/scene/scene.h"
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 typedef struct rendered {
     int size, lights, strata,

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "estimate/report.h"
+#include "estimate/files/report.h"
 #include "lab/eval/maps.h"
 
 typedef struct row_text {

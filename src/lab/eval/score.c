@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/score.h"
 
-#include "estimate/shadow.h"
+#include "estimate/light/shadow.h"
 #include "lab/eval/metrics.h"
 
 static void score_maps(eval_subject *on, const eval_maps *maps, eval_answer answer)

@@ -2,8 +2,8 @@
 /* Relighting by an environment: that of the next sample, in which the object is rendered again for its truth. */
 #include <math.h>
 
-#include "estimate/relight_env.h"
-#include "estimate/smooth.h"
+#include "estimate/light/relight_env.h"
+#include "estimate/surface/smooth.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/score_parts.h"
 #include "lab/render/generate.h"

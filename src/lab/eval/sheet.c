@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/sheet.h"
 
-#include "image/figure.h"
+#include "image/write/figure.h"
 
 enum { COLUMNS = 13 };
 

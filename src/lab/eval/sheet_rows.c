@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "image/figure.h"
+#include "image/write/figure.h"
 
 enum { TILE = 128 };
 

@@ -6,9 +6,9 @@
 
 #include "base/progress.h"
 #include "lab/eval/rendered_capture.h"
-#include "lab/scene/material.h"
-#include "stereo/solve.h"
-#include "stereo/surface_error.h"
+#include "lab/scene/material/material.h"
+#include "stereo/methods/solve.h"
+#include "stereo/integrate/surface_error.h"
 
 enum { CAPTURES = 4, TIMED_RUNS = 3 };
 static const float field_of_view = 60;

@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-#include "estimate/crop.h"
+#include "estimate/surface/crop.h"
 #include "image/resize.h"
-#include "stereo/shrink.h"
+#include "stereo/capture/shrink.h"
 
 /* The mean of each block, in place. */
 static status shrink_image(const pst_blocks *b, img *image)

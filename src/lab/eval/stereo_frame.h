@@ -4,10 +4,10 @@
 #define MERLIN_LAB_EVAL_STEREO_FRAME_H
 
 #include "merlin/merlin.h"
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 /* Cuts and shrinks pictures, mask, truth and camera in place, and photo (3 channels of the capture's size, or NULL)
- * with them. A pixel of the result belongs to the object if all it is made of does (stereo/shrink.h). */
+ * with them. A pixel of the result belongs to the object if all it is made of does (stereo/capture/shrink.h). */
 status stereo_frame(pst_capture *c, img *photo, int most_side);
 
 /* Refuses maps of such a capture whose crop is not all of it: normals are compared pixel by pixel. An object of thin

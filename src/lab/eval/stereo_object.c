@@ -14,7 +14,7 @@
 #include "photo_stereo/near_capture.h"
 
 enum { MOST_OBJECTS = 1000 };
-/* What a camera would record as white: the middle of the training data's sensors (estimate/exposure.h). */
+/* What a camera would record as white: the middle of the training data's sensors (estimate/surface/exposure.h). */
 static const float PHOTO_WHITE = 1.568f;
 
 /* ---- which ---- */

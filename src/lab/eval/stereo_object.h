@@ -16,7 +16,7 @@
 #ifndef MERLIN_LAB_EVAL_STEREO_OBJECT_H
 #define MERLIN_LAB_EVAL_STEREO_OBJECT_H
 
-#include "stereo/capture.h"
+#include "stereo/capture/capture.h"
 
 enum { STEREO_OBJECT_SIDE = 256 };
 

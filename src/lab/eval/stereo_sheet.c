@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "image/figure.h"
-#include "stereo/surface_error.h"
+#include "image/write/figure.h"
+#include "stereo/integrate/surface_error.h"
 
 enum { COLUMNS = 2 + 2 * STEREO_ROWS };
 static const float WHITE = 45;

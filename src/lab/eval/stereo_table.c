@@ -13,7 +13,7 @@
 #include "lab/eval/stereo_sheet.h"
 #include "photo_stereo/draws.h"
 #include "photo_stereo/relit.h"
-#include "stereo/surface_error.h"
+#include "stereo/integrate/surface_error.h"
 
 typedef struct evaluation {
     const stereo_options *options;

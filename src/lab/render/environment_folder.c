@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
-#include "image/folder.h"
-#include "image/read.h"
+#include "image/read/folder.h"
+#include "image/read/read.h"
 #include "image/resize.h"
 #include "lab/render/environment.h"
 

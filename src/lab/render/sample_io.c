@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/exr.h"
+#include "image/exr/exr.h"
 
 enum {
     MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS + 7 * SAMPLE_MAX_LAMPS,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "lab/scene/noise.h"
+#include "lab/scene/shape/noise.h"
 #include "optics/latlong.h"
 
 static vec3 grey(float value)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/rng.h"
-#include "lab/scene/number.h"
+#include "base/number.h"
 
 enum { ROWS = 3 }; /* of probes kept: a pixel's own and those around it */
 

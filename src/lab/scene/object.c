@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/scene/material.h"
-#include "lab/scene/mesh_deform.h"
-#include "lab/scene/mesh_file.h"
+#include "lab/scene/material/material.h"
+#include "lab/scene/shape/mesh_deform.h"
+#include "mesh/read/mesh_file.h"
 #include "lab/scene/pose.h"
 #include "lab/scene/scene.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/scene/number.h"
+#include "base/number.h"
 
 enum { RASTER = 64, ATTEMPTS = 4, STEPS = 9 };
 

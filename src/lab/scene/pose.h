@@ -3,7 +3,7 @@
 #ifndef MERLIN_LAB_SCENE_POSE_H
 #define MERLIN_LAB_SCENE_POSE_H
 
-#include "lab/scene/shape.h"
+#include "lab/scene/shape/shape.h"
 
 /* Moves a normalized mesh's positions (and normals, if it has them) into camera space near (0, 0, -1), so that its
  * silhouette covers 25 to 75 % of the square frame of a camera with this field of view (degrees), within the frame but

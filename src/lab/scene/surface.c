@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What rays see on an object: place, normals and material of points on its triangles. */
-#include "lab/scene/material.h"
+#include "lab/scene/material/material.h"
 #include "lab/scene/scene.h"
 
 /* Triangles' corners, in camera space and in the material's space, and a point on each. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json_file.h"
+#include "base/text/json_file.h"
 
 static const char *const type_words[] = {"f32", "bf16", "auto"};
 

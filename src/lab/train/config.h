@@ -44,7 +44,7 @@ typedef struct train_config {
 /* Every key is required but those said to be optional, unknown ones are refused; messages name the key. */
 status train_config_parse(const char *json, size_t size, const char *where, model_config *model,
                           train_config *training);
-/* The same from a file, with those that it names (base/json_file.h); "model" may be a path. */
+/* The same from a file, with those that it names (base/text/json_file.h); "model" may be a path. */
 status train_config_read(const char *path, model_config *model, train_config *training);
 /* The "training" object as JSON, malloc'ed: equal text means equal training; optional keys are in it unless they are as
  * if left out. NULL if memory ran out. */

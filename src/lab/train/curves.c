@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/figure.h"
+#include "image/write/figure.h"
 
 enum { MAX_CSV_BYTES = 1 << 28, FIRST_LOSS = 4, COLUMNS = FIRST_LOSS + 1 + MODEL_LOSSES };
 

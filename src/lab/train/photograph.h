@@ -5,7 +5,7 @@
 #define MERLIN_LAB_TRAIN_PHOTOGRAPH_H
 
 #include "base/rng.h"
-#include "image/jpeg.h"
+#include "image/write/jpeg.h"
 #include "lab/train/config.h"
 #include "lab/train/dataset.h"
 

@@ -5,9 +5,9 @@
 #endif
 
 #include "base/memory.h"
-#include "nn/cpu/dnn.h"
-#include "nn/cpu/kernels.h"
-#include "nn/cpu/steps.h"
+#include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/kernels/kernels.h"
+#include "nn/cpu/kernels/steps.h"
 #include "nn/cpu/tuning.h"
 
 /* Denormal numbers cost a hundred times their worth: every compute thread takes them for zero during a run. */

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "nn/cpu/norm.h"
-#include "nn/cpu/steps.h"
+#include "nn/cpu/kernels/norm.h"
+#include "nn/cpu/kernels/steps.h"
 
 typedef struct norm {
     float *mean, *variance, *inverse_deviation, *scale, *shift; /* per channel, in one block */

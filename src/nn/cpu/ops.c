@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Maps each operation to the CPU's way of computing it: a row of a table, and between it and the kernels of
- * nn/cpu/kernels.h functions that take a step apart. */
-#include "nn/cpu/kernels.h"
-#include "nn/cpu/steps.h"
+ * nn/cpu/kernels/kernels.h functions that take a step apart. */
+#include "nn/cpu/kernels/kernels.h"
+#include "nn/cpu/kernels/steps.h"
 #include "nn/cpu/tuning.h"
 
 static status cast_forward(nn_step *step)

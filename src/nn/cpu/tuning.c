@@ -4,9 +4,9 @@
 #include <limits.h>
 #include <stdint.h>
 
-#include "nn/cpu/dnn.h"
-#include "nn/cpu/steps.h"
-#include "nn/cpu/winograd.h"
+#include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/kernels/steps.h"
+#include "nn/cpu/winograd/winograd.h"
 
 static bool has_isa(dnnl_cpu_isa_t wanted)
 {

@@ -3,8 +3,8 @@
  * degrees over the pixels that both masks hold, in two decimals. Normals are 16-bit, (n + 1)/2. */
 #include <stdio.h>
 
-#include "image/read.h"
-#include "stereo/surface_error.h"
+#include "image/read/read.h"
+#include "stereo/integrate/surface_error.h"
 
 typedef struct result {
     img normal, mask;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "estimate/relight_env.h"
+#include "estimate/light/relight_env.h"
 #include "lab/eval/metrics.h"
 #include "lab/render/generate.h"
 #include "lab/render/render.h"

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "estimate/network.h"
+#include "estimate/photo/network.h"
 #include "lab/eval/evaluate.h"
 #include "lab/eval/maps.h"
 #include "lab/eval/report.h"

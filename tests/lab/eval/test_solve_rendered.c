@@ -11,9 +11,9 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "lab/eval/rendered_capture.h"
-#include "lab/scene/material.h"
+#include "lab/scene/material/material.h"
 #include "relief.h"
-#include "stereo/surface_error.h"
+#include "stereo/integrate/surface_error.h"
 
 /* degrees */
 static const double robust_bound = 2.5;

@@ -17,7 +17,7 @@
 #include "photo_stereo/near_capture.h"
 #include "scratch.h"
 #include "sphere.h"
-#include "stereo/surface_error.h"
+#include "stereo/integrate/surface_error.h"
 
 /* after the project's headers: its macro fail() would break the declaration of ours */
 #include <cmocka.h>
@@ -25,7 +25,7 @@
 static const sphere ball = {.centre = {0, 0, -1}, .radius = 0.28f, .albedo = {0.6f, 0.5f, 0.4f}, .roughness = 1};
 
 /* Through the middle of a pixel, z = -1. */
-static vec3 ray_of(const pst_camera *c, int x, int y)
+static vec3 ray_of(const pinhole *c, int x, int y)
 {
     return vec3_make(((float)x + 0.5f - c->center_x) / c->focal, (c->center_y - (float)y - 0.5f) / c->focal, -1);
 }
@@ -119,7 +119,7 @@ static void real_pictures_of_a_sample_give_its_normals(void **state)
 static pst_capture make_wide_capture(void)
 {
     pst_capture c = {.width = 40, .height = 24, .channels = 1, .count = 1, .lighting = PST_DISTANT};
-    c.camera = (pst_camera){.perspective = true, .focal = 60, .center_x = 20, .center_y = 12};
+    c.camera = (pinhole){.perspective = true, .focal = 60, .center_x = 20, .center_y = 12};
     c.picture = calloc(1, sizeof *c.picture);
     c.light = calloc(1, sizeof *c.light);
     c.name = calloc(1, sizeof *c.name);
@@ -161,7 +161,7 @@ static void a_wide_capture_is_cut_and_shrunk_with_its_camera(void **state)
 static void normals_keep_their_angle_to_the_line_of_sight(void **state)
 {
     (void)state;
-    pst_camera from = {.perspective = true, .focal = 8, .center_x = 4, .center_y = 4}, to = {.perspective = false};
+    pinhole from = {.perspective = true, .focal = 8, .center_x = 4, .center_y = 4}, to = {.perspective = false};
     img n;
     assert_int_equal(img_new(&n, 8, 8, 3), OK);
     for (int i = 0; i < 64; i++) {

@@ -11,11 +11,11 @@
 
 #include "base/rng.h"
 #include "lab/eval/rendered_capture.h"
-#include "lab/scene/material.h"
+#include "lab/scene/material/material.h"
 #include "relief.h"
-#include "stereo/inflate.h"
-#include "stereo/surface_error.h"
-#include "stereo/uncalibrated_parts.h"
+#include "stereo/uncalibrated/inflate.h"
+#include "stereo/integrate/surface_error.h"
+#include "stereo/uncalibrated/uncalibrated_parts.h"
 
 static void an_inflated_disc_is_a_hemisphere(void **state)
 {
@@ -113,7 +113,7 @@ static void solve_bare(uint64_t index, bool camera_known, double *normals, doubl
     render(&bare, 1, index, &c);
     c.lighting = PST_UNKNOWN_LIGHT;
     float distance = c.camera.mean_distance;
-    if (!camera_known) c.camera = (pst_camera){0};
+    if (!camera_known) c.camera = (pinhole){0};
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
     assert_int_equal(s.method, PST_UNCALIBRATED);
     *normals = mean_angle(&c, &s.normal);
@@ -217,7 +217,7 @@ static double bare_angle_said(pst_capture *c, bool *unsure)
 {
     pst_surface s;
     c->lighting = PST_UNKNOWN_LIGHT;
-    c->camera = (pst_camera){0};
+    c->camera = (pinhole){0};
     assert_int_equal(pst_solve(c, &(pst_options){.method = PST_AUTO}, &s), OK);
     double angle = mean_angle(c, &s.normal);
     *unsure = s.lights_unsure;

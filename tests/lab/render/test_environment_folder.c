@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/exr.h"
+#include "image/exr/exr.h"
 #include "lab/render/environment.h"
 
 /* last, for it brings cmocka */

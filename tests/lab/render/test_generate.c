@@ -11,7 +11,7 @@
 
 #include "base/file.h"
 #include "base/threads.h"
-#include "image/write.h"
+#include "image/write/write.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "scratch.h"

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/exr.h"
+#include "image/exr/exr.h"
 #include "scratch.h"
 
 /* last: it claims the word fail */

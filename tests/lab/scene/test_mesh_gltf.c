@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "lab/scene/mesh_file.h"
-#include "lab/scene/mesh_gltf.h"
-#include "lab/scene/mesh_limits.h"
+#include "mesh/read/mesh_file.h"
+#include "mesh/read/mesh_gltf.h"
+#include "mesh/read/mesh_limits.h"
 #include "scratch.h"
 
 /* last: it defines a macro named fail */

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "lab/scene/mesh_file.h"
-#include "lab/scene/mesh_obj.h"
+#include "mesh/read/mesh_file.h"
+#include "mesh/read/mesh_obj.h"
 #include "scratch.h"
 
 /* last: it defines a macro named fail */

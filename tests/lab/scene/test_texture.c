@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Photographed materials: which files make which, and that the surface wears what the pictures say. */
-#include "lab/scene/texture.h"
+#include "lab/scene/material/texture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/write.h"
+#include "image/write/write.h"
 #include "scratch.h"
 
 /* last: it claims the word fail */

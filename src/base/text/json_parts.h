@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Layout of a json_object, for those who put one together. */
+#ifndef MERLIN_BASE_TEXT_JSON_PARTS_H
+#define MERLIN_BASE_TEXT_JSON_PARTS_H
+
+#include <cjson/cJSON.h>
+
+enum { JSON_KEYS = 64, JSON_WHERE = 256 };
+
+struct json_object {
+    cJSON *root;
+    char where[JSON_WHERE];
+    const cJSON *asked[JSON_KEYS];
+    int asked_count;
+};
+
+#endif

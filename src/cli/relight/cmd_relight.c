@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin relight: the object of a photograph under other light. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "base/warnings.h"
+#include "cli/commands.h"
+#include "cli/expect.h"
+#include "cli/relight/lamps.h"
+#include "cli/relight/relight_output.h"
+#include "cli/stage_bar.h"
+#include "cli/stereo/stereo_maps.h"
+#include "cli/written.h"
+#include "command/check_files.h"
+#include "command/cli.h"
+#include "command/json_line.h"
+#include "command/options.h"
+#include "command/photo_ahead.h"
+#include "command/photo_hint.h"
+#include "command/photos.h"
+#include "command/standard_input.h"
+#include "estimate/api.h"
+#include "estimate/photo/doubts.h"
+#include "estimate/files/report.h"
+
+static const char help[] =
+    "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
+    "       merlin relight PHOTO|DIR --direction x,y,z [options]\n"
+    "       merlin relight PHOTO|DIR --lights FILE [options]\n"
+    "       merlin relight PHOTO|DIR --orbit N [options]\n"
+    "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
+    "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n"
+    "       merlin relight PHOTO|DIR --found-light [--rotate DEG] [--orbit N] [options]\n\n"
+    "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
+    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO (or -,\n"
+    "which is standard input and wants -o) is estimated first.\n"
+    "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
+    "counts as a frame 60 degrees wide.\n\n";
+
+/* Apart, since compilers need not take texts of more than 4095 characters. */
+static const char help_on_options[] =
+    "      --light x,y,z    a lamp's place; may be given again, for another picture\n"
+    "      --direction x,y,z\n"
+    "                       a lamp far away, toward which x,y,z points; as bright as one at distance 1; likewise\n"
+    "      --lights FILE    lamps from a file: places, x y z a line, or the directions of an .lp file (far away, but\n"
+    "                       with --near)\n"
+    "      --orbit N        N frames (2 to 240) with the lamp on a circle in front of the object, also as orbit.webp\n"
+    "                       and orbit.gif\n"
+    "      --dome N         N pictures (3 to 999), dome_000.png and on, under far lights spread evenly over the "
+    "frontal\n"
+    "                       hemisphere, for RTI tools and merlin stereo, and mask.webp; all of one exposure\n"
+    "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo; that of an\n"
+    "                       earlier dome in the same folder is renewed without it, too\n"
+    "      --near           the dome's lamps stand beside the object, and lights.txt lists their places, x y z from\n"
+    "                       the camera, as merlin stereo --near reads them\n"
+    "      --radius R       with --near: how far from 0,0,-1 (default 1)\n"
+    "      --power P        lamps P times as strong (default 1); behind a --light or --direction this one alone,\n"
+    "                       before the first all that have no power of their own; the same holds of\n"
+    "      --color C        linear r,g,b, or #rrggbb as in sRGB, or a temperature such as 2700K\n"
+    "      --exposure EV|auto\n"
+    "                       brighter by EV stops than the photograph, or than a lamp at distance 1 makes a white "
+    "matte\n"
+    "                       surface white; auto: what is brightest just stays below white, as do white matte\n"
+    "                       surfaces (default: auto for --dome, and for a surface of merlin stereo; else 0)\n"
+    "      --format F       png (default) or jpg, of high quality, for pictures of the photograph's size\n"
+    "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each lamp;\n"
+    "                       with --orbit they go round once, and the lamp stays\n"
+    "      --found-light    the light that a model of any light found in the photograph, put back or turned: with\n"
+    "                       --rotate, or once round with --orbit; its flash stays at the lens\n"
+    "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
+    "      --env-exposure EV\n"
+    "                       makes them brighter or darker by EV stops (default 0: mean luminance 1)\n"
+    "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
+    "                       network: the relighting decoder, made for lamps at distance 1 from 0,0,-1 with z >= -1\n"
+    "      --no-shadows     brdf without cast shadows (lamps and surroundings), as in the paper\n"
+    "      --matte          brdf without gloss: what least squares, as of RTI tools, finds normals in\n"
+    "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin); - writes\n"
+    "                       one picture to standard output\n"
+    "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
+    "      --mask FILE, --point X,Y, --box X,Y,W,H, --size N, --views N\n"
+    "                       for a PHOTO, as in merlin estimate\n"
+    "      --photo-exposure EV|auto\n"
+    "                       for a PHOTO, --exposure of merlin estimate\n"
+    "      --model W        weights: merlin-any (any light), merlin-point (flash alone), merlin-env (flash in a "
+    "room),\n"
+    "                       or a file (default: $MERLIN_MODEL, else merlin-any, and merlin-point for photographs\n"
+    "                       that it sees lit by a flash alone)\n"
+    "      --json           a report as JSON on standard output\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
+    "  -h, --help           this text\n\n"
+    "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
+    "them;\n"
+    "for an orbit frame_000.png and on, and orbit.png.\n";
+
+/* --exposure */
+typedef struct exposing {
+    bool given, automatic;
+    float ev;
+} exposing;
+
+typedef struct request {
+    const char *input, *list, *mask, *model, *output, *env;
+    char *weights, *flash; /* files; flash: NULL for none */
+    float rotate, env_exposure, radius;
+    lamp_options lamps;
+    merlin_params params;
+    merlin_relighting how;
+    exposing exposing;
+    img_file_kind format;
+    int orbit, frame;
+    relight_dome dome;
+    bool found, near, no_shadows, matte, json, quiet, help;
+} request;
+
+static status take_exposing(const char *text, void *into)
+{
+    exposing *e = into;
+    double ev = 0;
+    *e = (exposing){.given = true, .automatic = strcmp(text, "auto") == 0};
+    status s = e->automatic ? OK : cli_float("--exposure", text, -20, 20, &ev);
+    e->ev = (float)ev;
+    return s;
+}
+
+static status take_format(const char *text, void *into)
+{
+    img_file_kind *format = into;
+    if (strcmp(text, "png") == 0)
+        *format = IMG_PNG;
+    else if (strcmp(text, "jpg") == 0 || strcmp(text, "jpeg") == 0)
+        *format = IMG_JPEG;
+    else
+        return fail(ERROR_USAGE, "--format wants png or jpg, not \"%s\"", text);
+    return OK;
+}
+
+static status take_radius(const char *text, void *into)
+{
+    double radius = 0;
+    status s = cli_float("--radius", text, 0.1, 1000, &radius);
+    *(float *)into = (float)radius;
+    return s;
+}
+
+static status take_way(const char *text, void *into)
+{
+    merlin_relighting *how = into;
+    if (strcmp(text, "brdf") == 0)
+        *how = MERLIN_BY_BRDF;
+    else if (strcmp(text, "network") == 0)
+        *how = MERLIN_BY_NETWORK;
+    else
+        return fail(ERROR_USAGE, "--by wants brdf or network, not \"%s\"", text);
+    return OK;
+}
+
+static bool to_standard_output(const request *r)
+{
+    return r->output && strcmp(r->output, "-") == 0;
+}
+
+static status check_dome(request *r)
+{
+    int count = r->dome.count;
+    if (r->dome.lp && count == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
+    if (r->near && count == 0 && !r->list)
+        return fail(ERROR_USAGE, "--near is of the lamps of a --dome or an .lp file");
+    if (r->radius > 0 && !r->near) return fail(ERROR_USAGE, "--radius is of --near lamps");
+    if (r->near && r->dome.lp)
+        return fail(ERROR_USAGE, "--lp lists distant lights, and --near has none: their places go to lights.txt");
+    if (r->how == MERLIN_BY_NETWORK && count && !r->near)
+        return fail(ERROR_USAGE, "the relighting decoder knows no distant lights: give --near, too");
+    if (r->env && count) return fail(ERROR_USAGE, "--dome is of lamps alone, without --env");
+    r->dome.near = r->near ? r->radius > 0 ? r->radius : 1 : 0;
+    return OK;
+}
+
+static status check_standard_output(const request *r)
+{
+    if (!to_standard_output(r)) return OK;
+    if (r->orbit || r->dome.count || r->lamps.count > 1)
+        return fail(ERROR_USAGE, "-o - writes one picture to standard output; for several name a folder");
+    if (r->json) return fail(ERROR_USAGE, "-o - leaves standard output to the picture; there is no room for --json");
+    return OK;
+}
+
+static status check_way(request *r)
+{
+    bool by_network = r->how == MERLIN_BY_NETWORK;
+    if (r->no_shadows && by_network)
+        return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
+    if (r->matte && by_network)
+        return fail(ERROR_USAGE, "--matte is of --by brdf; the relighting decoder paints gloss");
+    if (r->found && by_network)
+        return fail(ERROR_USAGE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
+    if (by_network && stereo_maps_in(r->input))
+        return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
+    if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
+    return OK;
+}
+
+static status check_photo(const request *r)
+{
+    if (!file_is_folder(r->input)) return photo_check_hint(&r->params.hint, r->mask, false);
+    if (!r->mask && !photo_params_given(&r->params)) return OK;
+    return fail(ERROR_USAGE,
+                "--mask, --point, --box, --size, --views and --photo-exposure are for a photograph; %s holds maps "
+                "already",
+                r->input);
+}
+
+static status check(request *r)
+{
+    if (r->lamps.count == 0 && !r->list && r->orbit == 0 && r->dome.count == 0 && !r->env && !r->found)
+        return fail(ERROR_USAGE,
+                    "no light: give --light, --direction, --lights, --orbit, --dome, --env or --found-light");
+    if (!r->env && r->env_exposure != 0) return fail(ERROR_USAGE, "--env-exposure wants an --env");
+    if (!r->env && !r->found && r->rotate != 0)
+        return fail(ERROR_USAGE, "--rotate wants an --env or the --found-light to turn");
+    if (r->found && (r->lamps.count || r->list || r->dome.count || r->env))
+        return fail(ERROR_USAGE, "--found-light comes alone: without --light, --direction, --lights, --dome and --env");
+    if (r->found && r->exposing.automatic)
+        return fail(ERROR_USAGE, "--found-light is exposed as the photograph is, or brighter by --exposure EV");
+    if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
+    status s = check_dome(r);
+    if (s == OK) s = check_standard_output(r);
+    if (s == OK) s = check_photo(r);
+    return s == OK ? check_way(r) : s;
+}
+
+static status parse(int *argc, char ***argv, request *r)
+{
+    const cli_option options[] = {
+        {"light", .take = lamp_take_light, .into = &r->lamps, .many = true},
+        {"direction", .take = lamp_take_direction, .into = &r->lamps, .many = true},
+        {"lights", .text = &r->list},
+        {"orbit", .integer = &r->orbit, .low = 2, .high = RELIGHT_MOST_FRAMES},
+        {"dome", .integer = &r->dome.count, .low = 3, .high = RELIGHT_MOST_DOME},
+        {"lp", .flag = &r->dome.lp},
+        {"near", .flag = &r->near},
+        {"radius", .take = take_radius, .into = &r->radius},
+        {"power", .take = lamp_take_power, .into = &r->lamps, .many = true},
+        {"color", .take = lamp_take_color, .into = &r->lamps, .many = true},
+        {"exposure", .take = take_exposing, .into = &r->exposing},
+        {"format", .take = take_format, .into = &r->format},
+        {"env", .text = &r->env},
+        {"found-light", .flag = &r->found},
+        {"rotate", .real = &r->rotate, .low = -1000000, .high = 1000000},
+        {"env-exposure", .real = &r->env_exposure, .low = -20, .high = 20},
+        {"by", .take = take_way, .into = &r->how},
+        {"no-shadows", .flag = &r->no_shadows},
+        {"matte", .flag = &r->matte},
+        {"frame", .integer = &r->frame, .low = 32, .high = 1024},
+        {"mask", .text = &r->mask},
+        {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
+        {"box", .take = photo_take_box, .into = &r->params.hint},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"photo-exposure", .take = photo_take_exposure, .into = &r->params},
+        {"model", .text = &r->model},
+        {"output", 'o', .folder = &r->output, .printed = true},
+        {"json", .flag = &r->json},
+        {"quiet", 'q', .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
+    if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
+    s = standard_input_take(*argv);
+    if (s != OK) return s;
+    r->input = photo_without_maps_name((*argv)[0]);
+    if (standard_input_is(r->input) && !r->output)
+        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+    return check(r);
+}
+
+/* Checks the lamps of options and of a list alike. */
+static status check_lamps(const request *r)
+{
+    status s = OK;
+    if (r->env && r->orbit && r->lamps.count > 1)
+        return fail(ERROR_USAGE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
+    for (size_t i = 0; i < r->lamps.count && s == OK; i++)
+        s = stage_check(r->how, &r->lamps.at[i], r->env);
+    if (s == OK && r->env && r->lamps.count == 0) s = stage_check(r->how, NULL, true);
+    return s == OK ? check_standard_output(r) : s;
+}
+
+static status read_lamps(request *r)
+{
+    status s = r->list ? lamp_read_list(r->list, r->dome.near, &r->lamps) : OK;
+    return s == OK ? check_lamps(r) : s;
+}
+
+/* From a folder of estimate's or stereo's, or by estimating now. */
+static status get_maps(const request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
+{
+    *maps = (merlin_maps){0};
+    if (file_is_folder(r->input))
+        return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
+    return photo_maps(model, r->input, r->mask, &r->params, shown, maps);
+}
+
+/* ---- what is said of it ---- */
+
+static void doubt_environment(const merlin_environment *e, warnings *doubts)
+{
+    if (e && e->negative > 0)
+        warnings_add(doubts, "environment_values",
+                     "%.3g %% of the surroundings' values are negative, and were taken for black", 100 * e->negative);
+}
+
+static void doubt_darkness(const relight_result *result, warnings *doubts)
+{
+    char which[64] = "the picture";
+    if (result->dark == 0) return;
+    if (result->pictures > 1) snprintf(which, sizeof which, "%zu of %zu pictures", result->dark, result->pictures);
+    warnings_add(doubts, "nothing_lit",
+                 "the object is black in %s: lamps light what faces them, from in front of 0,0,-1, where it is; or the "
+                 "exposure is too low",
+                 which);
+}
+
+/* Lists the doubts of the photograph first, if the maps are made of one now. */
+static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
+{
+    doubts_list(job->maps, doubts);
+    for (size_t i = 0; i < job->lamps.noticed.count; i++)
+        warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
+    doubt_environment(job->environment, doubts);
+    doubt_darkness(result, doubts);
+    if (result->left > 0)
+        warnings_add(doubts, "pictures_left", "%zu picture%s of an earlier run %s still beside these, %s first",
+                     result->left, result->left == 1 ? "" : "s", result->left == 1 ? "is" : "are", result->left_name);
+    if (result->burnt == 0) return;
+    char of_several[96] = "";
+    if (result->pictures > 1)
+        snprintf(of_several, sizeof of_several, " at most, %zu of %zu pictures more than %.0f %%", result->burnt,
+                 result->pictures, 100 * RELIGHT_MUCH_BURNT_OUT);
+    warnings_add(doubts, "relit_burnt_out", "%.0f %% of the object is burnt out when relit%s: darken it by %s",
+                 100 * result->burnt_out, of_several,
+                 job->exposing == RELIGHT_AS_SOURCE ? "--exposure auto or an EV below 0" : "--exposure EV");
+}
+
+static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
+{
+    warnings doubts = {0};
+    find_doubts(job, result, &doubts);
+    cJSON *report = report_begin(&doubts);
+    json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
+    json_line_files(report, job->output, &result->files);
+    cJSON_AddNumberToObject(report, "lights", (double)job->lamps.count);
+    cJSON_AddNumberToObject(report, "orbit", job->orbit);
+    cJSON_AddNumberToObject(report, "dome", job->dome.count);
+    cJSON_AddStringToObject(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
+    cJSON_AddStringToObject(report, "model", merlin_model_name(job->model));
+    cJSON_AddNumberToObject(report, "exposure", round(100 * (double)result->ev) / 100);
+    cJSON_AddNumberToObject(report, "burnt_out", round(1e4 * result->burnt_out) / 1e4);
+    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    status s = json_line_print(report);
+    cJSON_Delete(report);
+    return s;
+}
+
+static status announce(const request *r, const relight_job *job, const relight_result *result, double seconds)
+{
+    warnings doubts = {0};
+    find_doubts(job, result, &doubts);
+    if (!r->quiet) warnings_print(&doubts, "relight", standard_input_name(r->input), WARNINGS_MOST);
+    if (r->json) return print_json(r, job, result, seconds);
+    if (r->quiet || to_standard_output(r)) return OK;
+    char amount[WRITTEN_WORDS];
+    printf("%s: %s (%.2f s", standard_input_name(r->input), job->output, seconds);
+    if (fabsf(result->ev) >= 0.005f) printf(", exposure %+.2f EV", (double)result->ev);
+    printf(", %s)\n", written_words(&result->files, amount));
+    return OK;
+}
+
+/* ---- the work ---- */
+
+static relight_job job_of(const request *r, const char *output)
+{
+    bool captured = stereo_maps_in(r->input);
+    relight_job job = {.output = output,
+                       .lamps = r->lamps,
+                       .how = r->how,
+                       .matte = r->matte || captured,
+                       .format = r->format,
+                       .ev = r->exposing.ev,
+                       .dome = r->dome,
+                       .found = r->found,
+                       .turn = r->rotate,
+                       .orbit = r->orbit,
+                       .frame = r->frame,
+                       .stop = cli_interrupted};
+    if (r->exposing.automatic || (!r->exposing.given && r->dome.count))
+        job.exposing = RELIGHT_AUTO;
+    else if (!r->exposing.given && captured)
+        job.exposing = RELIGHT_BY_LAMPS;
+    return job;
+}
+
+/* By the sizes of files, since the plan is made before they are read. */
+static void plan(const request *r, stage_bar *bar)
+{
+    stage_cost stages[STAGE_BAR_MOST];
+    double pixels = expect_pixels(r->input), lamps = (double)r->lamps.count + r->dome.count;
+    size_t count = expect_estimate(pixels, stages, 0);
+    expect_relight how = {.pixels = pixels,
+                          .pictures = (r->env || r->found) && r->lamps.count == 0 ? lamps + 1 : lamps,
+                          .frames = r->orbit,
+                          .environment = r->env || r->found};
+    if (file_is_folder(r->input)) count = expect_maps(pixels, stages, 0);
+    stage_bar_plan(bar, stages, expect_relit(&how, stages, count));
+}
+
+static status relight(const request *r, const char *output)
+{
+    double began = clock_seconds();
+    relight_result result = {0};
+    relight_job job = job_of(r, output);
+    job.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list};
+    merlin_maps maps = {0};
+    merlin_environment *environment = NULL;
+    stage_bar bar;
+    status s = OK;
+    stage_bar_begin(&bar, r->quiet);
+    plan(r, &bar);
+    const watch shown = stage_bar_watch(&bar);
+    job.watch = &shown;
+    watch_tell(&shown, "reading", 0);
+    if (r->env) s = (status)merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
+    job.environment = environment;
+    if (s == OK) s = model_open_pair(r->weights, r->flash, &job.model);
+    if (s == OK) s = get_maps(r, job.model, &shown, &maps);
+    job.maps = &maps;
+    if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
+    stage_bar_end(&bar);
+    if (s == OK) s = announce(r, &job, &result, clock_seconds() - began);
+    staged_files_free(&result.files);
+    merlin_maps_free(&maps);
+    merlin_model_close(job.model);
+    merlin_environment_free(environment);
+    return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
+}
+
+static status run(request *r)
+{
+    char *output = photo_output_inside(r->input, "relit", r->output);
+    status s = output ? read_lamps(r) : fail(ERROR_MEMORY, "no memory for a file name");
+    if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
+    if (s == OK) s = check_photo_and_mask(r->input, r->mask);
+    if (s == OK && !to_standard_output(r)) s = check_output(output);
+    if (s == OK) s = photo_find_models(r->model, &r->weights, &r->flash);
+    if (s == OK) s = relight(r, output);
+    free(r->weights);
+    free(r->flash);
+    free(output);
+    return s;
+}
+
+int cmd_relight(int argc, char **argv)
+{
+    request r = {.params = merlin_params_default(), .lamps = lamp_options_new()};
+    r.params.stop = cli_interrupted;
+    int code = 0;
+    status s = parse(&argc, &argv, &r);
+    if (s != OK) {
+        code = cli_refuse("relight", s);
+    } else if (r.help) {
+        fputs(help, stdout);
+        fputs(help_on_options, stdout);
+    } else {
+        cli_catch_interrupts();
+        s = run(&r);
+        if (s != OK) code = cli_fail("relight", s);
+    }
+    lamp_options_free(&r.lamps);
+    return code;
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/* A dome: pictures under lights spread evenly over the frontal hemisphere, for RTI tools and for merlin stereo. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/lights/light_list.h"
+#include "cli/check_replaced.h"
+#include "cli/relight/relight_parts.h"
+
+/* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
+static vec3 dome_direction(int i, int count)
+{
+    real cosine = 1 - ((real)i + (real)0.5) / (real)count, sine = sqrt(1 - cosine * cosine);
+    real phi = (real)2.39996322972865332 * (real)i;
+    return vec3_make(sine * cos(phi), sine * sin(phi), cosine);
+}
+
+lamp relight_dome_lamp(const relight_job *job, int i)
+{
+    const relight_dome *d = &job->dome;
+    vec3 direction = dome_direction(i, d->count);
+    lamp l = d->near > 0 ? lamp_at(vec3_fma(vec3_make(0, 0, -1), d->near, direction)) : lamp_toward(direction);
+    l.tint = lamp_tint(&job->lamps.common);
+    return l;
+}
+
+/* ---- lists ---- */
+
+/* The directions to distant lights, which is what an .lp file knows. */
+static void print_lp(FILE *f, const void *context)
+{
+    const relight_job *job = context;
+    fprintf(f, "%d\n", job->dome.count);
+    for (int i = 0; i < job->dome.count; i++) {
+        vec3 l = dome_direction(i, job->dome.count);
+        fprintf(f, "dome_%03d%s %.6f %.6f %.6f\n", i, relight_ending(job), (double)l.x, (double)l.y, (double)l.z);
+    }
+}
+
+/* Returns how wide the whole photograph is; where that is not known, if the crop counts as 60 degrees. */
+static double field_of_view(const merlin_maps *maps)
+{
+    const double right = (double)maps->slant[0], up = (double)maps->slant[1];
+    double wide = maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV, forward = sqrt(1 - right * right - up * up);
+    double half = tan(wide / 2 * M_PI / 180) / forward * maps->mask.width / maps->crop.side;
+    return 2 * atan(half) * 180 / M_PI;
+}
+
+/* From the space of the maps, whose camera looks at the object, to that of the lens. */
+static vec3 in_lens_space(const merlin_maps *maps, vec3 v)
+{
+    const camera_plane plane = camera_plane_of((camera_slant){maps->slant[0], maps->slant[1]});
+    return vec3_make(vec3_dot(v, plane.right), vec3_dot(v, plane.up), vec3_dot(v, vec3_cross(plane.right, plane.up)));
+}
+
+static void print_places(FILE *f, const void *context)
+{
+    const relight_job *job = context;
+    fprintf(f, LIST_OF_PLACES "%s and on, x y z from the camera: for merlin stereo --near --fov %.2f\n",
+            relight_ending(job), field_of_view(job->maps));
+    for (int i = 0; i < job->dome.count; i++) {
+        vec3 l = in_lens_space(job->maps, relight_dome_lamp(job, i).at);
+        fprintf(f, "%.6f %.6f %.6f\n", (double)l.x, (double)l.y, (double)l.z);
+    }
+}
+
+/* ---- an earlier dome in the same folder ---- */
+
+/* An earlier dome's list, whose lights these pictures of the same names would be believed to have. */
+static bool has_directions(const char *folder)
+{
+    char *path = file_join(folder, "dome.lp");
+    light_list list = {0};
+    bool has = path && file_exists(path) && light_list_read(path, &list) == OK && list.name &&
+               strncmp(list.name[0], "dome_000.", 9) == 0;
+    light_list_free(&list);
+    free(path);
+    return has;
+}
+
+/* A picture of a dome, that this one does not replace. */
+static bool is_left_over(const relight_job *job, const char *name)
+{
+    if (!relight_is_numbered(name, "dome_")) return false;
+    return strcmp(name + 8, relight_ending(job)) != 0 || atoi(name + 5) >= job->dome.count;
+}
+
+static status refuse(const relight_job *job, const char *name)
+{
+    return fail(ERROR_OUTPUT,
+                "%s/%s is of another dome and would be taken with this one's pictures: choose another folder, or "
+                "remove it",
+                job->output, name);
+}
+
+status relight_dome_check(const relight_job *job)
+{
+    static const char *const endings[] = {".png", ".jpg", NULL};
+    char **names;
+    size_t count;
+    if (!file_is_folder(job->output)) return OK;
+    status s = file_list(job->output, endings, &names, &count);
+    if (s != OK) return s;
+    for (size_t i = 0; i < count && s == OK; i++)
+        if (is_left_over(job, file_name_of(names[i]))) s = refuse(job, file_name_of(names[i]));
+    file_list_free(names, count);
+    if (s == OK && job->dome.near > 0 && has_directions(job->output)) s = refuse(job, "dome.lp");
+    if (s == OK && job->dome.near > 0) s = check_list_replaced(job->output);
+    if (s == OK && job->dome.near == 0 && list_begins_with(job->output, LIST_OF_PLACES)) s = refuse(job, "lights.txt");
+    return s;
+}
+
+/* ---- all of it ---- */
+
+static status write_lists(const relight_work *w)
+{
+    const relight_job *job = w->job;
+    char path[PATH_MAX];
+    if (job->dome.near > 0) return file_print(staging_path(w->staging, "lights.txt", path), print_places, job);
+    if (!job->dome.lp && !has_directions(job->output)) return OK;
+    return file_print(staging_path(w->staging, "dome.lp", path), print_lp, job);
+}
+
+/* As WebP, which RTI tools do not take for a picture under a light, and merlin stereo takes for the mask. */
+static status write_mask(const relight_work *w)
+{
+    char path[PATH_MAX];
+    img mask = img_of(&w->job->maps->mask);
+    return img_write_webp(staging_path(w->staging, "mask.webp", path), &mask);
+}
+
+status relight_write_dome(relight_work *w)
+{
+    status s = OK;
+    for (int i = 0; i < w->job->dome.count && s == OK; i++) {
+        lamp light = relight_dome_lamp(w->job, i);
+        s = relight_check(w);
+        if (s == OK) s = relight_write(w, &(relight_picture){"dome", (size_t)i, &light, 1, NULL, false});
+    }
+    if (s == OK) s = write_mask(w);
+    return s == OK ? write_lists(w) : s;
+}

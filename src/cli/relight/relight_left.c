@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* Pictures that an earlier run left beside these: they are not removed, for this run has not made them, but told of. */
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "cli/relight/relight_parts.h"
+
+bool relight_is_numbered(const char *name, const char *kind)
+{
+    size_t length = strlen(kind);
+    if (strncmp(name, kind, length) != 0) return false;
+    for (size_t i = length; i < length + 3; i++)
+        if (!isdigit((unsigned char)name[i])) return false;
+    return strcmp(name + length + 3, ".png") == 0 || strcmp(name + length + 3, ".jpg") == 0;
+}
+
+static bool was_written(const staged_files *files, const char *path)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (strcmp(file_name_of(files->at[i]), file_name_of(path)) == 0) return true;
+    return false;
+}
+
+void relight_find_left(const relight_job *job, relight_result *result)
+{
+    static const char *const endings[] = {".png", ".jpg", NULL};
+    char **paths;
+    size_t count;
+    if (file_list(job->output, endings, &paths, &count) != OK) return; /* the pictures are there all the same */
+    for (size_t i = 0; i < count; i++) {
+        const char *name = file_name_of(paths[i]);
+        const bool beside = (relight_count_whole(job) > 0 && relight_is_numbered(name, "relit_")) ||
+                            (job->orbit > 0 && relight_is_numbered(name, "frame_"));
+        if (!beside || was_written(&result->files, paths[i])) continue;
+        if (result->left++ == 0) snprintf(result->left_name, sizeof result->left_name, "%s", name);
+    }
+    file_list_free(paths, count);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/relight/relight_output.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/relight/relight_parts.h"
+
+enum { USUAL_FRAME = 512 };
+
+/* ---- single lights, in the photograph's frame ---- */
+
+/* Writes relit.png: one light's picture itself, or a sheet of several lights' pictures. */
+static status write_lights(relight_work *w)
+{
+    const relight_job *job = w->job;
+    size_t count = relight_count_lights(job);
+    relight_sheet all = {.count = 0};
+    char path[PATH_MAX];
+    status s = OK;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        relight_picture p = {.name = "relit", .number = i, .sheet = count > 1 ? &all : NULL, .alone = count == 1};
+        p.lights = relight_lamps(w, i, &p.count);
+        s = relight_check(w);
+        if (s == OK) s = relight_write(w, &p);
+    }
+    if (s == OK && count > 1) s = relight_sheet_write(&all, staging_path(w->staging, "relit.png", path));
+    relight_sheet_free(&all);
+    return s;
+}
+
+/* ---- exposure ---- */
+
+static size_t count_lamps(const relight_job *job)
+{
+    return job->lamps.count + (size_t)job->dome.count + (relight_surroundings_turn(job) ? 0 : (size_t)job->orbit);
+}
+
+/* All lamps of all pictures: one exposure for them, so that they can be compared. */
+static void gather(const relight_job *job, lamp *all)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < job->lamps.count; i++)
+        all[count++] = job->lamps.at[i];
+    for (int i = 0; i < job->dome.count; i++)
+        all[count++] = relight_dome_lamp(job, i);
+    for (int i = 0; !relight_surroundings_turn(job) && i < job->orbit; i++)
+        all[count++] = relight_orbit_lamp(job, i);
+    for (size_t i = 0; job->exposing == RELIGHT_BY_LAMPS && i < count; i++)
+        all[i].tint = vec3_make(1, 1, 1);
+}
+
+static status expose(relight_work *w)
+{
+    const relight_job *job = w->job;
+    float white = w->stage.white, as_source = white;
+    size_t count = count_lamps(job);
+    bool metered = job->exposing == RELIGHT_AUTO || (job->exposing == RELIGHT_BY_LAMPS && count > 0);
+    lamp *all = malloc((count + 1) * sizeof *all);
+    if (!all) return fail(ERROR_MEMORY, "no memory for %zu lamps", count);
+    gather(job, all);
+    status s = metered ? stage_meter(&w->stage, all, count, &white) : OK;
+    w->stage.white = white / exp2f(job->ev);
+    w->result->ev = log2f(as_source / w->stage.white);
+    free(all);
+    return s;
+}
+
+/* ---- all of them ---- */
+
+static int frame_side(const relight_job *job)
+{
+    int crop = job->maps->crop.side;
+    return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
+}
+
+/* What the stage has taken over. */
+static void let_go(merlin_maps *m)
+{
+    merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
+    for (size_t i = 0; i < sizeof spent / sizeof spent[0]; i++)
+        merlin_image_free(spent[i]);
+}
+
+static status set_stage(relight_work *w, int side)
+{
+    const relight_job *job = w->job;
+    watch_tell(job->watch, "preparing", 0);
+    status s = stage_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->stage);
+    if (s == OK && job->matte) s = stage_make_matte(&w->stage);
+    if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
+    if (s == OK && job->found) s = found_light_stand(&job->maps->light, job->turn, &w->found);
+    if (s == OK && job->found) s = stage_surround(&w->stage, found_lights_rest(&w->found));
+    return s == OK ? expose(w) : s;
+}
+
+static status write_all(relight_work *w)
+{
+    const relight_job *job = w->job;
+    bool whole = relight_count_whole(job) > 0, both = whole && job->orbit > 0;
+    status s = set_stage(w, whole ? 0 : frame_side(job));
+    if (s == OK && !both) let_go(job->maps);
+    if (s == OK) s = write_lights(w);
+    if (s == OK && job->dome.count) s = relight_write_dome(w);
+    if (s == OK && both) s = stage_resize(&w->stage, job->maps, frame_side(job));
+    if (both) let_go(job->maps);
+    if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
+    stage_free(&w->stage);
+    env_map_free(&w->found.rest);
+    return s;
+}
+
+status relight_output(const relight_job *job, relight_result *result)
+{
+    relight_work w = {.job = job, .result = result};
+    *result = (relight_result){0};
+    status s = job->dome.count ? relight_dome_check(job) : OK;
+    if (s == OK) s = staging_begin(job->output, job->inputs, &w.staging);
+    if (s != OK) return s;
+    s = write_all(&w);
+    if (s == OK) s = relight_check(&w);
+    if (s != OK) return staging_abort(w.staging, s);
+    s = staging_commit(w.staging, &result->files);
+    if (s == OK) relight_find_left(job, result);
+    return s;
+}
+
+/* ---- to standard output ---- */
+
+static status print(const uint8_t *data, size_t size)
+{
+    bool done = fwrite(data, 1, size, stdout) == size && fflush(stdout) == 0;
+    return done ? OK : fail(ERROR_OUTPUT, "cannot write to standard output: %s", strerror(errno));
+}
+
+status relight_print(const relight_job *job, relight_result *result)
+{
+    relight_work w = {.job = job, .result = result};
+    *result = (relight_result){0};
+    img square = {0}, whole = {0};
+    uint8_t *data = NULL;
+    size_t size = 0;
+    status s = set_stage(&w, 0);
+    watch_tell(job->watch, "relighting", 0);
+    int count;
+    const lamp *lights = relight_lamps(&w, 0, &count);
+    if (s == OK) s = relight_square(&w, lights, count, &square);
+    if (s == OK) s = relight_frame(&w, &square, &whole);
+    if (s == OK) s = img_encode_picture("standard output", &whole, job->format, &data, &size);
+    if (s == OK) s = relight_check(&w);
+    if (s == OK) s = print(data, size);
+    free(data);
+    img_free(&square);
+    img_free(&whole);
+    stage_free(&w.stage);
+    env_map_free(&w.found.rest);
+    return s;
+}

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin stereo: surfaces from many lights, and from one photograph. */
+#include <cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "cli/check_replaced.h"
+#include "cli/commands.h"
+#include "cli/stage_bar.h"
+#include "cli/stereo/stereo_commands.h"
+#include "cli/stereo/stereo_folder.h"
+#include "cli/stereo/stereo_photo.h"
+#include "cli/written.h"
+#include "command/check_files.h"
+#include "command/cli.h"
+#include "command/json_line.h"
+#include "command/options.h"
+#include "command/photo_hint.h"
+#include "command/photos.h"
+#include "command/standard_input.h"
+#include "estimate/files/report.h"
+#include "stereo/fit/albedo_scale.h"
+
+static const char help[] =
+    "usage: merlin stereo DIR [options]\n"
+    "       merlin stereo PHOTO|MAPS [options]\n"
+    "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
+    "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
+    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
+    "under 50 lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
+    "again. A PHOTO may be -, standard input. calibrate finds light directions from pictures of a ball.\n\n"
+    "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
+    "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
+    "                       unless DIR, or what FILE is in, has a light_intensities.txt (or .csv) with one or three\n"
+    "                       numbers a line\n"
+    "      --near           the lights are positions, not directions: with the camera at 0,0,0 looking along -z, or "
+    "in\n"
+    "                       an .lp file about the object, z toward the camera, whose places are heeded\n"
+    "                       without --near, too, where they explain the pictures better than directions\n"
+    "      --fov DEG        the camera's horizontal field of view (default: 60 with --near, else as seen from afar)\n"
+    "      --distance D     from the camera to the object, on average, in the unit of the lights' positions (default:\n"
+    "                       with --near as the lights tell, else 1); depth is in it. Wants --near or --fov\n"
+    "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
+    "                       near for positions, uncalibrated without lights; auto (default): near with --near,\n"
+    "                       else robust; of one photograph near (default) or uncalibrated\n"
+    "      --mask FILE      white on the object (default: mask.png, NAME.mask.png, NAME_mask.png or the like in DIR, "
+    "of\n"
+    "                       any picture's kind, else what is brighter than a dark background)\n"
+    "      --ambient FILE   a picture without the lights, to subtract (default: ambient.* in DIR)\n"
+    "      --linear         8-bit pictures hold linear values, not sRGB\n"
+    "      --integrate HOW  ls (default) or edges: depth may jump\n"
+    "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
+    "output)\n"
+    "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
+    "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
+    "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
+    "      --json           the report on standard output\n"
+    "  -t, --threads N      how many threads work (default: one a processor)\n"
+    "  -q, --quiet          no other output than errors\n"
+    "  -h, --help           this text\n\n"
+    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
+    "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (mesh.glb is\n"
+    "scaled to a picture one unit large).\n";
+
+typedef struct request {
+    const char *input, *output, *weights;
+    stereo_folder folder;
+    merlin_params params;
+    stereo_files files;
+    bool maps; /* input is a folder of merlin estimate's */
+    bool json, quiet, help;
+} request;
+
+/* ---- options ---- */
+
+static status take_method(const char *name, void *into)
+{
+    pst_method *method = into;
+    int m = pst_method_from_name(name);
+    if (m < 0)
+        return fail(ERROR_USAGE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
+    *method = (pst_method)m;
+    return OK;
+}
+
+static status take_distance(const char *text, void *into)
+{
+    double distance;
+    status s = cli_float("--distance", text, 0, 1e9, &distance);
+    if (s == OK && !(distance > 0)) s = fail(ERROR_USAGE, "--distance wants a number above 0, not \"%s\"", text);
+    if (s == OK) *(float *)into = (float)distance;
+    return s;
+}
+
+static status take_integration(const char *name, void *into)
+{
+    stereo_folder *f = into;
+    f->integrate = true;
+    f->preserve_edges = strcmp(name, "edges") == 0;
+    if (!f->preserve_edges && strcmp(name, "ls") != 0)
+        return fail(ERROR_USAGE, "--integrate wants ls or edges, not \"%s\"", name);
+    return OK;
+}
+
+/* Without lights beside them: relight --dome may have written its pictures there too. */
+static bool holds_maps(const char *folder)
+{
+    static const char *const lights[] = {".txt", ".lp", NULL};
+    char **names = NULL;
+    size_t count = 0;
+    bool alone = file_is_in(folder, "maps.exr") && file_list(folder, lights, &names, &count) == OK && count == 0;
+    file_list_free(names, count);
+    return alone;
+}
+
+static bool is_capture(const request *r)
+{
+    return file_is_folder(r->input) && !r->maps;
+}
+
+static status check(request *r)
+{
+    const pst_read_options *o = &r->folder.read;
+    if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
+    if ((o->lights || o->near) && o->unknown_lights)
+        return fail(ERROR_USAGE,
+                    "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
+    r->maps = !o->lights && holds_maps(r->input);
+    bool is_one_photo = file_exists(r->input) && !is_capture(r);
+    if (is_one_photo && (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
+        return fail(ERROR_USAGE,
+                    "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
+    bool is_distant = r->folder.method == PST_LS || r->folder.method == PST_ROBUST || r->folder.method == PST_SEMI;
+    if (is_one_photo && is_distant)
+        return fail(ERROR_USAGE,
+                    "--method %s is for distant lights, and one photograph is relit by near ones: use near",
+                    pst_method_name(r->folder.method));
+    if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
+    if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
+        return fail(ERROR_USAGE,
+                    "--model, --size, --views, --exposure, --point and --box are for one photograph, not for a folder");
+    return photo_check_hint(&r->params.hint, o->mask, false);
+}
+
+static status parse(int *argc, char ***argv, request *r)
+{
+    const cli_option options[] = {
+        {"lights", .text = &r->folder.read.lights},
+        {"near", .flag = &r->folder.read.near},
+        {"fov", .real = &r->folder.read.field_of_view, .low = 1, .high = 170},
+        {"distance", .take = take_distance, .into = &r->folder.read.distance},
+        {"method", .take = take_method, .into = &r->folder.method},
+        {"mask", .text = &r->folder.read.mask},
+        {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
+        {"box", .take = photo_take_box, .into = &r->params.hint},
+        {"ambient", .text = &r->folder.read.ambient},
+        {"linear", .flag = &r->folder.read.linear},
+        {"integrate", .take = take_integration, .into = &r->folder},
+        {"mesh", .take = mesh_take_name, .into = &r->files.mesh, .many = true},
+        {"model", .text = &r->weights},
+        {"size", .take = photo_take_size, .into = &r->params},
+        {"views", .integer = &r->params.views, .low = 1, .high = 8},
+        {"exposure", .take = photo_take_exposure, .into = &r->params},
+        {"output", 'o', .folder = &r->output},
+        {"json", .flag = &r->json},
+        {"quiet", 'q', .flag = &r->quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(argc, argv, options);
+    if (s != OK || r->help) return s;
+    if (*argc == 0) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
+    if (*argc > 1) return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", (*argv)[1]);
+    s = standard_input_take(*argv);
+    if (s != OK) return s;
+    r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
+    if (standard_input_is(r->input) && !r->output)
+        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+    return check(r);
+}
+
+/* ---- the work ---- */
+
+static status from_photo(const request *r, stereo_result *out, cJSON *report)
+{
+    char *weights, *flash;
+    status s = photo_find_models(r->weights, &weights, &flash);
+    if (s != OK) return s;
+    stereo_photo p = {.photo = r->input,
+                      .mask = r->folder.read.mask,
+                      .weights = weights,
+                      .flash = flash,
+                      .params = r->params,
+                      .method = r->folder.method,
+                      .preserve_edges = r->folder.preserve_edges,
+                      .watch = r->folder.watch};
+    s = stereo_from_photo(&p, out, report);
+    free(weights);
+    free(flash);
+    return s;
+}
+
+static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
+                       const staged_files *written, double seconds)
+{
+    char amount[WRITTEN_WORDS];
+    status s = OK;
+    if (r->json)
+        s = json_line_print(report);
+    else if (!r->quiet)
+        printf("%s: %s (%.2f s, %s)\n", standard_input_name(r->input), output, seconds, written_words(written, amount));
+    enum { TOLD = 3 };
+    if (!r->quiet) warnings_print(&result->doubts, "stereo", standard_input_name(r->input), TOLD);
+    if (!r->quiet) skipped_print(&result->skipped, "stereo", r->input);
+    return s;
+}
+
+static void put_words(cJSON *report, const char *input, const stereo_result *result)
+{
+    warnings all = result->doubts;
+    skipped_warn(&result->skipped, &all);
+    cJSON_AddItemToObject(report, "warnings", warnings_json(&all));
+    if (result->skipped.count) skipped_json(&result->skipped, input, cJSON_AddArrayToObject(report, "skipped"));
+}
+
+/* What the stages cost beside one another is about the same for pictures of any number and size: seconds that twenty of
+ * 2048×2048 took two processors. Of one photograph the draws are what is solved. */
+static void plan(const request *r, stage_bar *bar)
+{
+    static const double solving[] = {
+        [PST_LS] = 0.2, [PST_ROBUST] = 4.4, [PST_NEAR_LIGHTS] = 9, [PST_SEMI] = 4.5, [PST_UNCALIBRATED] = 11.5};
+    bool edges = r->folder.preserve_edges;
+    pst_method method = r->folder.method;
+    if (method == PST_AUTO) method = r->folder.read.near ? PST_NEAR_LIGHTS : PST_ROBUST;
+    const stage_cost folder[] = {{"reading", 1.4},
+                                 {"solving", solving[method]},
+                                 {"integrating", method == PST_NEAR_LIGHTS ? 29
+                                                 : edges                   ? 60
+                                                                           : 0.9},
+                                 {"writing", 1.3}};
+    const stage_cost photo[] = {{"relighting", 1.3},
+                                {"solving", method == PST_UNCALIBRATED ? 10 : 3},
+                                {"integrating", edges ? 3 : 0.2},
+                                {"writing", 0.3}};
+    stage_bar_plan(bar, is_capture(r) ? folder : photo, sizeof folder / sizeof *folder);
+}
+
+static status work(request *r, const char *output, cJSON *report)
+{
+    double began = clock_seconds();
+    stereo_result result = {0};
+    staged_files written = {0};
+    const pst_read_options *read = &r->folder.read;
+    stage_bar bar;
+    stage_bar_begin(&bar, r->quiet);
+    plan(r, &bar);
+    const watch shown = stage_bar_watch(&bar);
+    r->folder.watch = r->folder.read.watch = &shown;
+    json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
+    status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
+    r->folder.watch = r->folder.read.watch = NULL; /* it ends with this function */
+    float scale = 1;
+    if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
+    if (s == OK) {
+        cJSON_AddNumberToObject(report, "albedo_scale", (double)scale);
+        cJSON_AddStringToObject(report, "error_map", result.error_name);
+        cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
+        cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
+        put_words(report, r->input, &result);
+        cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
+        stereo_files files = r->files;
+        files.folder = output;
+        files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
+        files.stop = cli_interrupted;
+        watch_tell(&shown, "writing", 0);
+        s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
+        json_line_files(report, output, &written);
+    }
+    stage_bar_end(&bar);
+    if (s == OK) s = announce(r, output, &result, report, &written, clock_seconds() - began);
+    staged_files_free(&written);
+    stereo_result_free(&result);
+    return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
+}
+
+static status run(request *r)
+{
+    if (!file_exists(r->input)) return fail(ERROR_INPUT, "there is no folder or photograph %s", r->input);
+    if (r->output && file_is_same(r->input, r->output))
+        return fail(ERROR_USAGE,
+                    "-o %s is the folder of the pictures, where results would be taken for pictures the next "
+                    "time; without it they go to stereo inside it",
+                    r->output);
+    char *output = photo_output_inside(r->input, "stereo", r->output);
+    cJSON *report = report_begin(NULL);
+    status s = output && report ? OK : fail(ERROR_MEMORY, "no memory for a report");
+    if (s == OK) s = check_photo_and_mask(r->input, r->folder.read.mask);
+    if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
+    if (s == OK) s = check_output(output);
+    if (s == OK) s = work(r, output, report);
+    cJSON_Delete(report);
+    free(output);
+    return s;
+}
+
+int cmd_stereo(int argc, char **argv)
+{
+    if (argc > 1 && strcmp(argv[1], "calibrate") == 0) return stereo_calibrate(argc - 1, argv + 1);
+    request r = {.params = merlin_params_default()};
+    r.params.stop = cli_interrupted;
+    status s = parse(&argc, &argv, &r);
+    if (s != OK) return cli_refuse("stereo", s);
+    if (r.help) return fputs(help, stdout) < 0;
+    cli_catch_interrupts();
+    s = run(&r);
+    return s == OK ? 0 : cli_fail("stereo", s);
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/stereo/stereo_folder.h"
+
+#include <stdlib.h>
+
+#include "base/progress.h"
+#include "command/json_line.h"
+#include "stereo/doubts/doubts.h"
+#include "stereo/methods/place_lights.h"
+#include "stereo/integrate/surface_error.h"
+
+static const float RESIDUAL_WHITE = 0.25f;
+
+static void exchange(double *a, double *b)
+{
+    double old = *a;
+    *a = *b;
+    *b = old;
+}
+
+/* The value that would stand at place k if they were sorted, which they become a little (Hoare's selection). */
+static double of_rank(double *values, size_t count, size_t k)
+{
+    size_t low = 0, end = count;
+    for (;;) {
+        double pivot = values[low + (end - low) / 2];
+        size_t less = low, more = end;
+        for (size_t i = low; i < more;) {
+            if (values[i] < pivot)
+                exchange(&values[i++], &values[less++]);
+            else if (values[i] > pivot)
+                exchange(&values[i], &values[--more]);
+            else
+                i++;
+        }
+        if (k >= less && k < more) return pivot;
+        low = k < less ? low : more;
+        end = k < less ? less : end;
+    }
+}
+
+/* The values change places. */
+static void put_statistics(cJSON *report, const char *name, double *values, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i];
+    cJSON *o = cJSON_AddObjectToObject(report, name);
+    cJSON_AddNumberToObject(o, "mean", count ? sum / (double)count : 0);
+    cJSON_AddNumberToObject(o, "median", count ? of_rank(values, count, count / 2) : 0);
+    cJSON_AddNumberToObject(o, "pixels", (double)count);
+}
+
+static size_t take_errors(const stereo_result *r, double *values)
+{
+    size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
+    for (size_t i = 0; i < pixels; i++)
+        if (r->mask.data[i] > 0.5f) values[count++] = (double)r->error.data[i];
+    return count;
+}
+
+/* Angles to the true normals in degrees, where both are known. */
+static size_t take_angles(const stereo_result *r, const img *truth, double *values)
+{
+    size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
+    for (size_t i = 0; i < pixels; i++) {
+        vec3 n = vec3_of(r->normal.data + 3 * i), t = vec3_of(truth->data + 3 * i);
+        if (r->mask.data[i] <= 0.5f || !(vec3_dot(t, t) > (real)0.25)) continue;
+        values[count++] = normal_angle(n, t);
+    }
+    return count;
+}
+
+/* Positions in the unit of the camera's mean distance, which is 1 if unknown. */
+static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s)
+{
+    const pst_light *light = s->light;
+    cJSON *list = cJSON_AddArrayToObject(report, "lights_found");
+    for (int i = 0; i < c->count; i++) {
+        cJSON *o = cJSON_CreateObject();
+        cJSON_AddItemToArray(list, o);
+        json_line_text(o, "name", c->name[i]);
+        const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
+        cJSON_AddItemToObject(o, "direction", cJSON_CreateFloatArray(d, 3));
+        const float at[3] = {light[i].position.x, light[i].position.y, light[i].position.z};
+        if (s->lights_near) cJSON_AddItemToObject(o, "position", cJSON_CreateFloatArray(at, 3));
+        cJSON_AddItemToObject(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
+    }
+}
+
+static status put_report(cJSON *report, const pst_capture *c, const pst_surface *s, const stereo_result *r)
+{
+    double *values = malloc((size_t)c->width * (size_t)c->height * sizeof *values);
+    if (!values) return fail(ERROR_MEMORY, "no memory for a report");
+    cJSON_AddStringToObject(report, "method", pst_method_name(s->method));
+    cJSON_AddNumberToObject(report, "pictures", c->count);
+    cJSON_AddNumberToObject(report, "width", c->width);
+    cJSON_AddNumberToObject(report, "height", c->height);
+    cJSON_AddNumberToObject(report, "channels", c->channels);
+    put_statistics(report, "residual", values, take_errors(r, values));
+    if (c->normal_true.data)
+        put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
+    if (c->lights_in_order) cJSON_AddTrueToObject(report, "lights_in_order");
+    if (s->light) put_lights(report, c, s);
+    if (s->method == PST_SEMI) cJSON_AddBoolToObject(report, "strengths_unsure", s->strengths_unsure);
+    if (s->method == PST_NEAR_LIGHTS) cJSON_AddBoolToObject(report, "distance_unsure", s->distance_unsure);
+    if (s->method == PST_UNCALIBRATED) cJSON_AddBoolToObject(report, "lights_unsure", s->lights_unsure);
+    free(values);
+    return OK;
+}
+
+/* Takes normal, depth and residual over from the surface; a grey albedo becomes three channels. */
+static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *r)
+{
+    *r = (stereo_result){.error_name = "residual", .error_white = RESIDUAL_WHITE, .camera = c->camera};
+    status result = img_copy(&r->mask, &c->mask);
+    if (result == OK) result = img_new(&r->albedo, c->width, c->height, 3);
+    if (result != OK) return result;
+    size_t values = 3 * (size_t)c->width * (size_t)c->height, channels = (size_t)s->albedo.channels;
+    for (size_t i = 0; i < values; i++)
+        r->albedo.data[i] = s->albedo.data[i / 3 * channels + (channels == 3 ? i % 3 : 0)];
+    r->normal = s->normal;
+    r->depth = s->depth;
+    r->error = s->residual;
+    s->normal = s->depth = s->residual = (img){0};
+    return OK;
+}
+
+static status solve(const stereo_folder *f, const pst_capture *c, stereo_result *out, cJSON *report)
+{
+    pst_surface surface;
+    warnings doubts = {0};
+    double began = clock_seconds();
+    status s = pst_solve(c, &(pst_options){.method = f->method, .watch = f->watch}, &surface);
+    if (s != OK) return s;
+    double solved = clock_seconds();
+    s = pst_surface_integrate(c, f->integrate, f->preserve_edges, f->watch, &surface);
+    if (s == OK) s = pst_doubts(c, &surface, &doubts);
+    if (s == OK) s = take_surface(c, &surface, out);
+    if (s == OK) s = put_report(report, c, &surface, out);
+    out->doubts = doubts;
+    cJSON_AddNumberToObject(report, "seconds_solve", solved - began);
+    cJSON_AddNumberToObject(report, "seconds_integrate", clock_seconds() - solved);
+    pst_surface_free(&surface);
+    return s;
+}
+
+status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *report)
+{
+    *out = (stereo_result){0};
+    pst_capture c;
+    double began = clock_seconds();
+    status s = pst_capture_read(f->folder, &f->read, &c);
+    if (s != OK) return s;
+    cJSON_AddNumberToObject(report, "seconds_read", clock_seconds() - began);
+    bool any = f->method == PST_AUTO || f->method == PST_NEAR_LIGHTS;
+    if (c.about_object && any) s = pst_place_lights(&c, f->watch);
+    if (s == OK) s = solve(f, &c, out, report);
+    out->skipped = c.skipped;
+    c.skipped = (skipped_files){0};
+    pst_capture_free(&c);
+    return s;
+}

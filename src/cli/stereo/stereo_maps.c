@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/stereo/stereo_maps.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "estimate/api.h"
+#include "model/model.h"
+#include "optics/camera.h"
+#include "optics/light.h"
+
+enum { FRAME = 256 };
+/* Radiance of a white matte surface that faces a lamp at distance 1. */
+static const float WHITE = LIGHT_POWER / BRDF_PI;
+/* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
+static const float nearest = 0.25f, farthest = 20;
+
+bool stereo_maps_in(const char *folder)
+{
+    char *path = file_join(folder, "maps.exr");
+    exr_file *f = NULL;
+    bool theirs = path && exr_open(path, &f) == OK && exr_get_text(f, "merlinError");
+    if (f) exr_close(f);
+    free(path);
+    return theirs;
+}
+
+/* No lens is so wide that its focal length is less than a hundredth of the picture. */
+static status read_focal(const exr_file *f, const char *path, float *focal)
+{
+    const int side = exr_width(f) > exr_height(f) ? exr_width(f) : exr_height(f);
+    if (!exr_get_numbers(f, "merlinFocal", focal, 1))
+        return fail(ERROR_INPUT, "%s says nothing of the camera (merlinFocal)", path);
+    if (*focal == 0 || *focal > 0.01f * (float)side) return OK;
+    return fail(ERROR_INPUT, "%s: no camera has a focal length of %g pixels (merlinFocal; 0: seen from afar)", path,
+                (double)*focal);
+}
+
+static bool is_object(const merlin_maps *maps, size_t i)
+{
+    return maps->mask.data[i] >= 0.5f;
+}
+
+/* The unit of a capture's albedo is that of its lights' strengths, which may be any: its bright parts are brought
+ * between a dark grey's and white's, if they are not there. */
+static const float BRIGHT_PART = 0.999f, LEAST_BRIGHT = 0.2f, MOST_BRIGHT = 1;
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static status normalize_albedo(merlin_maps *maps)
+{
+    size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0;
+    float *brightest = malloc(pixels * sizeof *brightest), *albedo = maps->albedo.data;
+    if (!brightest) return fail(ERROR_MEMORY, "no memory to look at the albedo");
+    for (size_t i = 0; i < pixels; i++) {
+        float most = fmaxf(fmaxf(albedo[3 * i], albedo[3 * i + 1]), albedo[3 * i + 2]);
+        if (is_object(maps, i) && most > 0) brightest[count++] = most;
+    }
+    qsort(brightest, count, sizeof *brightest, compare_floats);
+    float bright = count ? brightest[(size_t)(BRIGHT_PART * (float)(count - 1))] : MOST_BRIGHT;
+    free(brightest);
+    float scale = fminf(fmaxf(bright, LEAST_BRIGHT), MOST_BRIGHT) / bright;
+    for (size_t i = 0; i < 3 * pixels && scale != 1; i++)
+        albedo[i] *= scale;
+    return OK;
+}
+
+/* A surface that was solved badly may be deeper than the camera is far; some spikes are usual. */
+static const double DEPTH_WORTH_A_WORD = 0.01;
+
+static void doubt_depth(size_t clamped, size_t count, merlin_maps *maps)
+{
+    maps->mended.depth = (float)((double)clamped / (double)count);
+    if ((double)maps->mended.depth > DEPTH_WORTH_A_WORD) maps->doubts |= MERLIN_DOUBT_DEPTH_CLAMPED;
+}
+
+/* focal: pixels; 0: seen from afar, with depths in pixels. */
+static status place_depth(merlin_maps *maps, float focal, float pitch)
+{
+    size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0, clamped = 0;
+    double sum = 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (is_object(maps, i)) {
+            sum += (double)maps->depth.data[i];
+            count++;
+        }
+    float mean = (float)(sum / (double)count);
+    if (focal > 0 && !(mean > 0))
+        return fail(ERROR_INPUT, "depth.Z should be positive: the camera of merlinFocal sees nothing behind itself");
+    float scale = focal > 0 ? pitch * focal / mean : pitch;
+    for (size_t i = 0; i < pixels; i++) {
+        float placed = is_object(maps, i) ? 1 + scale * (maps->depth.data[i] - mean) : 1;
+        clamped += placed < nearest || placed > farthest;
+        maps->depth.data[i] = fminf(fmaxf(placed, nearest), farthest);
+    }
+    doubt_depth(clamped, count, maps);
+    return OK;
+}
+
+/* Into the camera of estimates, which sees it under 60 degrees. The shape stays what it is, and so do its normals:
+ * lights come from where they are said to. */
+static status place(merlin_maps *maps, float focal)
+{
+    img mask = img_of(&maps->mask);
+    crop_square c;
+    status s = crop_around(&mask, &c);
+    if (s != OK) return s;
+    maps->crop.x = c.x;
+    maps->crop.y = c.y;
+    maps->crop.side = c.side;
+    float pitch = camera_pixel_size(&(camera){.width = c.side, .height = c.side, .fov = MODEL_FOV});
+    s = place_depth(maps, focal, pitch);
+    if (s == OK) s = normalize_albedo(maps);
+    if (s != OK) return s;
+    for (size_t i = 0, pixels = img_value_count(&mask); i < pixels; i++)
+        maps->roughness.data[i] = 1;
+    maps_tidy(maps);
+    return OK;
+}
+
+status stereo_maps_read(const char *folder, merlin_maps *out)
+{
+    *out = (merlin_maps){.size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1};
+    snprintf(out->model, sizeof out->model, "merlin stereo");
+    char *path = file_join(folder, "maps.exr");
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    exr_file *f = NULL;
+    float focal = 0;
+    status s = exr_open(path, &f);
+    if (s == OK) s = read_focal(f, path, &focal);
+    if (s == OK) s = maps_read_layers(f, path, false, out);
+    if (f) exr_close(f);
+    if (s == OK && (s = place(out, focal)) != OK) s = fail_in(s, "%s", path);
+    free(path);
+    if (s != OK) merlin_maps_free(out);
+    return s;
+}

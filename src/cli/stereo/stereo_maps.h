@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* The maps of merlin stereo as merlin estimate's, so that a surface can be relit.
+ *
+ *     if (stereo_maps_in("surface")) s = stereo_maps_read("surface", &maps);
+ */
+#ifndef MERLIN_CLI_STEREO_STEREO_MAPS_H
+#define MERLIN_CLI_STEREO_STEREO_MAPS_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "merlin/merlin.h"
+
+/* Whether the folder's maps.exr is one of merlin stereo's. */
+bool stereo_maps_in(const char *folder);
+
+/* The surface stands where a photograph's would: the crop around it is a frame 60 degrees wide, its mean depth is 1,
+ * its relief keeps its proportion to its width. Normals keep their angle to the lines of sight. Nothing was measured of
+ * its gloss: it is rough. There is no photograph: `photo` is black. ERROR_INPUT for a file that does not hold such
+ * maps; free with merlin_maps_free. */
+status stereo_maps_read(const char *folder, merlin_maps *out);
+
+#endif

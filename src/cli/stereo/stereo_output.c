@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/stereo/stereo_output.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "cli/stereo/stereo_view.h"
+#include "estimate/api.h"
+#include "estimate/files/map_png.h"
+#include "image/write/figure.h"
+#include "image/write/write.h"
+#include "mesh/write/mesh_write.h"
+
+enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
+
+static size_t pixel_count(const stereo_result *r)
+{
+    return (size_t)r->mask.width * (size_t)r->mask.height;
+}
+
+/* ---- one file each ---- */
+
+static status write_exr(const stereo_result *r, const char *path)
+{
+    const char *method = r->error_name;
+    const exr_channel channels[] = {
+        {"albedo.R", r->albedo.data, 3, false},     {"albedo.G", r->albedo.data + 1, 3, false},
+        {"albedo.B", r->albedo.data + 2, 3, false}, {"normal.X", r->normal.data, 3, false},
+        {"normal.Y", r->normal.data + 1, 3, false}, {"normal.Z", r->normal.data + 2, 3, false},
+        {"depth.Z", r->depth.data, 1, true},        {"mask.A", r->mask.data, 1, false},
+        {"error.Y", r->error.data, 1, false},
+    };
+    const exr_attribute attributes[] = {exr_text("merlinError", method),
+                                        exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0),
+                                        maps_picture_size(r->mask.width, r->mask.height)};
+    return exr_write(path, r->mask.width, r->mask.height, channels, sizeof channels / sizeof channels[0], attributes,
+                     sizeof attributes / sizeof attributes[0]);
+}
+
+static status write_normal(const stereo_result *r, const char *path)
+{
+    return map_write_normals(path, &r->normal, &r->mask);
+}
+
+static status write_albedo(const stereo_result *r, const char *path)
+{
+    return img_write_png(path, &r->albedo, IMG_SRGB8);
+}
+
+static status write_mask(const stereo_result *r, const char *path)
+{
+    return img_write_png(path, &r->mask, IMG_LINEAR8);
+}
+
+static status write_depth(const stereo_result *r, const char *path)
+{
+    return map_write_depths(path, &r->depth, &r->mask);
+}
+
+static status error_picture(const stereo_result *r, img *out)
+{
+    status s = img_copy(out, &r->error);
+    for (size_t i = 0; i < pixel_count(r) && s == OK; i++)
+        out->data[i] /= r->error_white;
+    return s;
+}
+
+static status write_error(const stereo_result *r, const char *path)
+{
+    img shown = {0};
+    status s = error_picture(r, &shown);
+    if (s == OK) s = img_write_png(path, &shown, IMG_LINEAR8);
+    img_free(&shown);
+    return s;
+}
+
+/* The part of a tile that shows the object; large photographs often show little of it. */
+static status crop_tile(crop_square c, img *tile)
+{
+    img part = {0};
+    status s = crop_take(tile, c, NULL, &part);
+    if (s != OK) return s;
+    img_free(tile);
+    *tile = part;
+    return OK;
+}
+
+static status write_overview(const stereo_result *r, const char *path)
+{
+    img tile[TILES] = {0};
+    crop_square c;
+    status s = crop_around(&r->mask, &c);
+    if (s != OK) c = (crop_square){0, 0, r->mask.width > r->mask.height ? r->mask.width : r->mask.height};
+    s = figure_normals(&r->normal, &r->mask, &tile[0]);
+    if (s == OK) s = crop_tile(c, &tile[0]);
+    if (s == OK) s = crop_take(&r->albedo, c, NULL, &tile[1]);
+    if (s == OK) s = figure_depth(&r->depth, &r->mask, &tile[2]);
+    if (s == OK) s = crop_tile(c, &tile[2]);
+    if (s == OK) s = crop_take(&r->mask, c, NULL, &tile[3]);
+    if (s == OK) s = error_picture(r, &tile[4]);
+    if (s == OK) s = crop_tile(c, &tile[4]);
+    if (s == OK) s = stereo_side_view(r, TILE_SIZE, &tile[5]);
+    const figure_tile tiles[TILES] = {{"normal", &tile[0]}, {"albedo", &tile[1]},      {"depth", &tile[2]},
+                                      {"mask", &tile[3]},   {r->error_name, &tile[4]}, {"from 45 degrees", &tile[5]}};
+    if (s == OK) s = figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
+    for (int k = 0; k < TILES; k++)
+        img_free(&tile[k]);
+    return s;
+}
+
+static status write_mesh(const stereo_result *r, const char *path)
+{
+    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera, {0, 0}};
+    return pst_mesh_write(path, &source);
+}
+
+static status write_report(const cJSON *report, const char *path)
+{
+    char *text = cJSON_Print(report);
+    if (!text) return fail(ERROR_MEMORY, "no memory for a report");
+    status s = file_write(path, text, strlen(text));
+    free(text);
+    return s;
+}
+
+/* ---- all of them ---- */
+
+typedef struct output {
+    const char *name;
+    status (*write)(const stereo_result *r, const char *path);
+} output;
+
+/* The slowest first, so that two processors end together; of these the meshes, which others replace if they are asked
+ * for by name. */
+static const output outputs[] = {
+    {"mesh.obj", write_mesh},     {"mesh.glb", write_mesh},         {"mesh.ply", write_mesh},
+    {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
+    {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
+    {"mask.png", write_mask},
+};
+enum { MESHES = 3, OUTPUTS = sizeof outputs / sizeof outputs[0] };
+
+typedef struct writing {
+    const stereo_files *files;
+    const staging *staging;
+    const stereo_result *result;
+    size_t first; /* output */
+} writing;
+
+static status write_one(void *context, size_t i)
+{
+    const writing *w = context;
+    char path[PATH_MAX];
+    if (w->files->stop && w->files->stop()) return fail(ERROR_STOPPED, "stopped");
+    const output *o = &outputs[w->first + i];
+    return o->write(w->result, staging_path(w->staging, o->name, path));
+}
+
+static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
+{
+    writing w = {files, t, r, files->mesh.count ? MESHES : 0};
+    status s = parallel_try(OUTPUTS - w.first, write_one, &w);
+    char path[PATH_MAX];
+    return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
+}
+
+static status write_named_mesh(const void *result, const char *path)
+{
+    return write_mesh(result, path);
+}
+
+static status stage_mesh(const stereo_files *files, const staging *maps, const char *path, const stereo_result *r,
+                         staging **out)
+{
+    mesh_file named = {path, files->folder, files->inputs, maps, write_named_mesh, r};
+    return mesh_file_stage(&named, out);
+}
+
+status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
+{
+    staging *t[1 + MESH_MOST_FILES] = {NULL};
+    int count = 1;
+    status s = staging_begin(files->folder, files->inputs, &t[0]);
+    if (s != OK) return s;
+    s = write_all(files, t[0], r, report);
+    for (int i = 0; i < files->mesh.count && s == OK; i++) {
+        s = stage_mesh(files, t[0], files->mesh.at[i], r, &t[count]);
+        count += t[count] != NULL;
+    }
+    if (s == OK) return staging_commit_all(t, count, written);
+    while (count > 0)
+        s = staging_abort(t[--count], s);
+    return s;
+}

@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: MIT */
+/* maps.exr, both ways. Beside the maps it holds the photograph, so that a folder can be relit by the network too. */
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/half.h"
+#include "estimate/api.h"
+#include "estimate/surface/exposure.h"
+#include "estimate/files/maps_examine.h"
+#include "image/exr/exr_place.h"
+#include "image/read/read.h"
+
+enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
+/* Sizes beyond NETWORK_SIZE stand in files of versions that let the network see so much. */
+enum { LARGEST_WRITTEN = 1024 };
+
+/* Name, image's place in maps_images, channel. */
+typedef struct layer {
+    const char *name;
+    int image, channel;
+} layer;
+
+static const layer layers[CHANNELS] = {
+    {"albedo.R", 0, 0}, {"albedo.G", 0, 1},    {"albedo.B", 0, 2},    {"normal.X", 1, 0},
+    {"normal.Y", 1, 1}, {"normal.Z", 1, 2},    {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},
+    {"mask.A", 4, 0},   {"photo.R", PHOTO, 0}, {"photo.G", PHOTO, 1}, {"photo.B", PHOTO, 2},
+};
+
+static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
+/* What photometric stereo does not find. */
+static const bool of_photographs[IMAGES] = {[2] = true, [PHOTO] = true};
+
+/* A photograph of floats may be in a unit that half has no room or no digits for. */
+static bool outgrows_half(const merlin_image *photo)
+{
+    const float dim = 1.0f / 64; /* half's digits go below 2^-14 */
+    size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
+    float largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmaxf(largest, photo->data[i]);
+    return largest > HALF_LARGEST || largest < dim;
+}
+
+/* merlinLight, where a model knows the light: the fields of merlin_found_light behind `known`, in their order. */
+enum { LIGHT_NUMBERS = 36, LIGHT_BEGINS = offsetof(merlin_found_light, flash) };
+static_assert(LIGHT_BEGINS + LIGHT_NUMBERS * sizeof(float) == sizeof(merlin_found_light),
+              "what a file holds of a light is all that stands behind `known`");
+/* Attributes that every file has, and all of them. */
+enum { ALWAYS = 8, MOST_ATTRIBUTES = ALWAYS + 2 };
+/* More is no light that a photograph can show. */
+static const float MOST_LIGHT = 1e6f;
+
+static exr_attribute attribute_of_light(const merlin_found_light *l)
+{
+    exr_attribute a = {.name = "merlinLight", .count = LIGHT_NUMBERS};
+    memcpy(a.values, (const char *)l + LIGHT_BEGINS, LIGHT_NUMBERS * sizeof *a.values);
+    return a;
+}
+
+status maps_write_exr(const merlin_maps *maps, const char *path)
+{
+    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                          &maps->depth,  &maps->mask,   &maps->photo};
+    exr_channel channels[CHANNELS];
+    bool full = outgrows_half(&maps->photo);
+    for (int i = 0; i < CHANNELS; i++)
+        channels[i] = (exr_channel){layers[i].name, images[layers[i].image]->data + layers[i].channel,
+                                    images[layers[i].image]->channels, full && layers[i].image == PHOTO};
+    exr_attribute square = {.name = "merlinCrop", .count = 3};
+    square.values[0] = (float)maps->crop.x;
+    square.values[1] = (float)maps->crop.y;
+    square.values[2] = (float)maps->crop.side;
+    exr_attribute environment = {.name = "merlinEnvironment", .count = 27};
+    memcpy(environment.values, maps->environment, sizeof maps->environment);
+    exr_attribute lens = {.name = "merlinLens", .count = 3}; /* field of view and slant; 0: not known */
+    lens.values[0] = maps->fov;
+    lens.values[1] = maps->slant[0];
+    lens.values[2] = maps->slant[1];
+    exr_attribute attributes[MOST_ATTRIBUTES] = {
+        square,
+        lens,
+        maps_picture_size(maps->albedo.width, maps->albedo.height),
+        exr_number("merlinSize", (float)maps->size),
+        exr_number("merlinGain", maps->gain),
+        exr_number("merlinMaskFound", maps->mask_source == MERLIN_MASK_FOUND),
+        exr_number("merlinMaskConfidence", maps->mask_confidence),
+        exr_text("merlinModel", maps->model),
+    };
+    size_t count = ALWAYS;
+    if (maps->has_environment) attributes[count++] = environment;
+    if (maps->light.known) attributes[count++] = attribute_of_light(&maps->light);
+    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
+}
+
+/* ---- what a file says of its maps ---- */
+
+exr_attribute maps_picture_size(int width, int height)
+{
+    return (exr_attribute){.name = "merlinPicture", .values = {(float)width, (float)height}, .count = 2};
+}
+
+/* Takes numbers that must be there. */
+static status take_numbers(const exr_file *f, const char *path, const char *name, float *values, int count)
+{
+    if (exr_get_numbers(f, name, values, count)) return OK;
+    return exr_has_attribute(f, name)
+               ? fail(ERROR_INPUT, "%s: its attribute %s should be %d finite numbers", path, name, count)
+               : fail(ERROR_INPUT, "%s was not written by merlin estimate: its attribute %s is missing", path, name);
+}
+
+/* Takes numbers that files of older versions do not have. */
+static status take_if_there(const exr_file *f, const char *path, const char *name, float *values, int count)
+{
+    return exr_has_attribute(f, name) ? take_numbers(f, path, name, values, count) : OK;
+}
+
+static status read_lens(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    float lens[3] = {0};
+    status s = take_if_there(f, path, "merlinLens", lens, 3);
+    if (s != OK) return s;
+    bool sound = (lens[0] == 0 || (lens[0] >= 1 && lens[0] <= 150)) && lens[1] * lens[1] + lens[2] * lens[2] < 0.9f;
+    if (!sound)
+        return fail(ERROR_INPUT,
+                    "%s: no lens is as merlinLens says, %g degrees wide and slanted by %g, %g: the width is 1 to 150, "
+                    "or 0 for unknown",
+                    path, (double)lens[0], (double)lens[1], (double)lens[2]);
+    maps->fov = lens[0];
+    maps->slant[0] = lens[0] > 0 ? lens[1] : 0;
+    maps->slant[1] = lens[0] > 0 ? lens[2] : 0;
+    return OK;
+}
+
+static status read_crop(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    float square[3];
+    status s = take_numbers(f, path, "merlinCrop", square, 3);
+    if (s != OK) return s;
+    bool sound = fabsf(square[0]) < (float)CROP_FARTHEST && fabsf(square[1]) < (float)CROP_FARTHEST && square[2] >= 1 &&
+                 square[2] < (float)CROP_FARTHEST;
+    if (!sound)
+        return fail(ERROR_INPUT, "%s: merlinCrop, %g, %g and a side of %g, is out of range", path, (double)square[0],
+                    (double)square[1], (double)square[2]);
+    maps->crop.x = (int)square[0];
+    maps->crop.y = (int)square[1];
+    maps->crop.side = (int)square[2];
+    return OK;
+}
+
+static status read_exposure(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    float size;
+    status s = take_numbers(f, path, "merlinSize", &size, 1);
+    if (s == OK) s = take_numbers(f, path, "merlinGain", &maps->gain, 1);
+    if (s != OK) return s;
+    bool sound = size >= NETWORK_LEAST_SIZE && size <= LARGEST_WRITTEN && fmodf(size, MODEL_SIZE_MULTIPLE) == 0 &&
+                 exposure_is_sound(maps->gain);
+    if (!sound)
+        return fail(ERROR_INPUT, "%s: merlinSize %g or merlinGain %g is out of range", path, (double)size,
+                    (double)maps->gain);
+    maps->size = network_side((int)size);
+    return OK;
+}
+
+static status read_mask_source(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    float found, confidence;
+    status s = take_numbers(f, path, "merlinMaskFound", &found, 1);
+    if (s == OK) s = take_numbers(f, path, "merlinMaskConfidence", &confidence, 1);
+    if (s != OK) return s;
+    maps->mask_source = found != 0 ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
+    maps->mask_confidence = confidence >= 0 && confidence <= 1 ? confidence : 0;
+    return OK;
+}
+
+static status read_light(const exr_file *f, const char *path, merlin_found_light *l)
+{
+    float numbers[LIGHT_NUMBERS];
+    if (!exr_has_attribute(f, "merlinLight")) return OK;
+    status s = take_numbers(f, path, "merlinLight", numbers, LIGHT_NUMBERS);
+    if (s != OK) return s;
+    for (int i = 0; i < LIGHT_NUMBERS; i++)
+        if (!(fabsf(numbers[i]) <= MOST_LIGHT))
+            return fail(ERROR_INPUT, "%s: merlinLight's %g is out of range", path, (double)numbers[i]);
+    memcpy((char *)l + LIGHT_BEGINS, numbers, sizeof numbers);
+    l->flash = fmaxf(l->flash, 0);
+    l->lamp_distance = fmaxf(l->lamp_distance, 0);
+    l->known = 1;
+    return OK;
+}
+
+static status read_attributes(const exr_file *f, const char *path, merlin_maps *maps)
+{
+    status s = read_crop(f, path, maps);
+    if (s == OK) s = read_exposure(f, path, maps);
+    if (s == OK) s = read_mask_source(f, path, maps);
+    if (s == OK) s = read_lens(f, path, maps);
+    if (s == OK) s = read_light(f, path, &maps->light);
+    if (s == OK) s = take_if_there(f, path, "merlinEnvironment", &maps->environment[0][0], 27);
+    if (s != OK) return s;
+    const char *model = exr_get_text(f, "merlinModel");
+    if (!model)
+        return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attribute merlinModel is missing", path);
+    snprintf(maps->model, sizeof maps->model, "%s", model);
+    maps->has_environment = exr_has_attribute(f, "merlinEnvironment");
+    return OK;
+}
+
+/* ---- its pixels ---- */
+
+/* Refuses a file of another size than was written: the crop, focal lengths and depths in pixels are of that one. */
+static status check_picture(const exr_file *f, const char *path)
+{
+    const exr_frame seen = exr_display(f);
+    float size[2] = {(float)seen.width, (float)seen.height};
+    status s = take_if_there(f, path, "merlinPicture", size, 2);
+    if (s != OK) return s;
+    if (size[0] != (float)seen.width || size[1] != (float)seen.height)
+        return fail(ERROR_INPUT,
+                    "%s is %lld x %lld pixels now and was written with %.0f x %.0f: resize or crop the photographs, "
+                    "and make the maps of them",
+                    path, seen.width, seen.height, (double)size[0], (double)size[1]);
+    bool trimmed = seen.width != exr_width(f) || seen.height != exr_height(f);
+    bool fits = seen.width >= 1 && seen.height >= 1 && seen.width <= IMAGE_MAX_SIDE && seen.height <= IMAGE_MAX_SIDE &&
+                seen.width * seen.height <= IMAGE_MOST_PIXELS;
+    return !trimmed || fits ? OK : fail(ERROR_INPUT, "%s: no photograph is of its display window's size", path);
+}
+
+/* Some programs keep what is not black alone, and say where in the picture it was. */
+static status place_images(const exr_file *f, merlin_image *const images[IMAGES])
+{
+    const exr_frame seen = exr_display(f);
+    status s = OK;
+    bool whole = seen.left == 0 && seen.top == 0 && seen.width == exr_width(f) && seen.height == exr_height(f);
+    for (int i = 0; i < IMAGES && s == OK && !whole; i++) {
+        img m = img_of(images[i]);
+        s = exr_place(&seen, &m);
+        *images[i] = image_of(&m);
+    }
+    return s;
+}
+
+static status new_images(const exr_file *f, merlin_image *const images[IMAGES])
+{
+    status s = OK;
+    for (int i = 0; i < IMAGES && s == OK; i++) {
+        img m = {0};
+        s = img_new(&m, exr_width(f), exr_height(f), image_channels[i]);
+        if (s == OK) *images[i] = image_of(&m);
+    }
+    return s;
+}
+
+/* Lists the channels that are in the file. */
+static size_t aim(bool photographed, merlin_image *const images[IMAGES], exr_target targets[CHANNELS])
+{
+    size_t count = 0;
+    for (int i = 0; i < CHANNELS; i++)
+        if (photographed || !of_photographs[layers[i].image])
+            targets[count++] = (exr_target){layers[i].name, images[layers[i].image]->data + layers[i].channel,
+                                            image_channels[layers[i].image]};
+    return count;
+}
+
+status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps)
+{
+    merlin_image *const images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
+                                          &maps->depth,  &maps->mask,   &maps->photo};
+    exr_target targets[CHANNELS];
+    status s = check_picture(f, path);
+    if (s == OK) s = new_images(f, images);
+    if (s == OK) s = exr_read(f, targets, aim(photographed, images, targets));
+    if (s == OK) s = place_images(f, images);
+    if (s != OK) return s;
+    return maps_examine(path, targets, aim(photographed, images, targets), maps);
+}
+
+void maps_tidy(merlin_maps *maps)
+{
+    surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness),
+                   img_of(&maps->depth),  img_of(&maps->mask),   .matte = false};
+    surface_tidy(&all);
+    img photo = img_of(&maps->photo);
+    img_blacken_impossible(&photo);
+}
+
+merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
+{
+    if (maps) *maps = (merlin_maps){0};
+    status s = api_needs(__func__, folder && maps);
+    if (s != OK) return result_of(s);
+    char *path = file_join(folder, "maps.exr");
+    if (!path) return result_of(fail(ERROR_MEMORY, "no memory for a file name"));
+    exr_file *f = NULL;
+    s = file_exists(path) ? exr_open(path, &f)
+                          : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
+    if (s == OK) s = read_attributes(f, path, maps);
+    if (s == OK) s = maps_read_layers(f, path, true, maps);
+    if (s == OK) s = maps_check_crop(path, exr_has_attribute(f, "merlinPicture"), maps);
+    if (f) exr_close(f);
+    free(path);
+    if (s != OK) {
+        merlin_maps_free(maps);
+        return result_of(s);
+    }
+    maps_tidy(maps);
+    img photo = img_of(&maps->photo), mask = img_of(&maps->mask);
+    maps->burnt_out = exposure_burnt_out(&photo, &mask);
+    return MERLIN_OK;
+}

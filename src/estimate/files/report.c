@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+/* report.json: what was done to a photograph, and the maps' statistics. */
+#include <cJSON.h>
+#include <math.h>
+
+#include "estimate/api.h"
+#include "estimate/photo/doubts.h"
+#include "estimate/surface/exposure.h"
+#include "estimate/light/found_light.h"
+#include "estimate/light/light_words.h"
+#include "estimate/files/report.h"
+
+typedef struct range {
+    double low, high, sum;
+    size_t count;
+} range;
+
+static void add(range *r, double x)
+{
+    if (r->count == 0 || x < r->low) r->low = x;
+    if (r->count == 0 || x > r->high) r->high = x;
+    r->sum += x;
+    r->count++;
+}
+
+/* Of the pixels that are object, one channel of a map. */
+static range range_of(const merlin_maps *maps, const merlin_image *map, int channel)
+{
+    range r = {0};
+    size_t count = (size_t)map->width * (size_t)map->height;
+    for (size_t i = 0; i < count; i++)
+        if (maps->mask.data[i] >= 0.5f) add(&r, map->data[i * (size_t)map->channels + (size_t)channel]);
+    return r;
+}
+
+static double mean(const range *r)
+{
+    return r->count ? r->sum / (double)r->count : 0;
+}
+
+static void put_range(cJSON *to, const char *name, const range *r)
+{
+    cJSON *o = cJSON_AddObjectToObject(to, name);
+    cJSON_AddNumberToObject(o, "min", r->low);
+    cJSON_AddNumberToObject(o, "mean", mean(r));
+    cJSON_AddNumberToObject(o, "max", r->high);
+}
+
+static void put_statistics(cJSON *root, const merlin_maps *maps)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "statistics");
+    cJSON *albedo = cJSON_AddArrayToObject(o, "albedo_mean");
+    range roughness = range_of(maps, &maps->roughness, 0), depth = range_of(maps, &maps->depth, 0);
+    for (int c = 0; c < 3; c++) {
+        range r = range_of(maps, &maps->albedo, c);
+        cJSON_AddItemToArray(albedo, cJSON_CreateNumber(mean(&r)));
+    }
+    put_range(o, "roughness", &roughness);
+    put_range(o, "depth", &depth);
+    cJSON_AddNumberToObject(o, "object_pixels", (double)depth.count);
+}
+
+static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
+{
+    if (!maps->reconstruction.data) return;
+    range r = {0};
+    img photo = img_of(&maps->photo);
+    float scale = maps->gain / exposure_white(&photo, maps->gain);
+    size_t count = (size_t)maps->mask.width * (size_t)maps->mask.height;
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (maps->mask.data[i / 3] < 0.5f) continue;
+        double seen = fmin(scale * photo.data[i], 1), made = maps->reconstruction.data[i];
+        add(&r, (seen - made) * (seen - made));
+    }
+    cJSON_AddNumberToObject(root, "reconstruction_rmse", sqrt(mean(&r)));
+}
+
+static void put_timing(cJSON *root, const merlin_timing *t)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "seconds");
+    cJSON_AddNumberToObject(o, "mask", t->mask);
+    cJSON_AddNumberToObject(o, "compile", t->compile);
+    cJSON_AddNumberToObject(o, "prepare", t->prepare);
+    cJSON_AddNumberToObject(o, "choose", t->choose);
+    cJSON_AddNumberToObject(o, "network", t->network);
+    cJSON_AddNumberToObject(o, "upsample", t->upsample);
+}
+
+/* Nine coefficients of three channels. */
+static void put_environment(cJSON *root, const merlin_maps *maps)
+{
+    if (!maps->has_environment) return;
+    cJSON *all = cJSON_AddArrayToObject(root, "environment");
+    for (int i = 0; i < 9; i++) {
+        cJSON *channels = cJSON_CreateArray();
+        for (int c = 0; c < 3; c++)
+            cJSON_AddItemToArray(channels, cJSON_CreateNumber((double)maps->environment[i][c]));
+        cJSON_AddItemToArray(all, channels);
+    }
+}
+
+/* The lens of the crop, and where the lens's axis is. */
+static void put_lens(cJSON *root, const merlin_maps *maps)
+{
+    cJSON_AddStringToObject(root, "lens", maps->fov > 0 ? "known" : "assumed");
+    cJSON_AddNumberToObject(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV);
+    cJSON *slant = cJSON_AddArrayToObject(root, "slant");
+    for (int i = 0; i < 2; i++)
+        cJSON_AddItemToArray(slant, cJSON_CreateNumber((double)maps->slant[i]));
+}
+
+static void put_numbers(cJSON *to, const char *name, const float *values, int count)
+{
+    cJSON *all = cJSON_AddArrayToObject(to, name);
+    for (int i = 0; i < count; i++)
+        cJSON_AddItemToArray(all, cJSON_CreateNumber((double)values[i]));
+}
+
+/* What a model of any light sees. */
+static void put_light(cJSON *root, const merlin_found_light *l)
+{
+    char words[LIGHT_WORDS];
+    if (!l->known) return;
+    cJSON *light = cJSON_AddObjectToObject(root, "light");
+    const found_light_shares share = found_light_share(l);
+    light_words(l, words);
+    cJSON_AddStringToObject(light, "words", words);
+    put_numbers(light, "shares", (const float[]){share.flash, share.lamp, share.rest}, 3);
+    cJSON_AddNumberToObject(light, "flash", (double)l->flash);
+    cJSON_AddNumberToObject(light, "lamp_sure", (double)l->lamp_sure);
+    if (l->lamp[0] != 0 || l->lamp[1] != 0 || l->lamp[2] != 0) {
+        put_numbers(light, "lamp", l->lamp, 3);
+        cJSON_AddNumberToObject(light, "lamp_distance", (double)l->lamp_distance);
+        put_numbers(light, "lamp_strength", l->lamp_strength, 3);
+    }
+    put_numbers(light, "rest", &l->rest[0][0], 27);
+}
+
+/* A camera gives a flash the strength that the distance asks for; how strong other light is, how bright an object looks
+ * in it does not tell. */
+static bool is_scale_known(const merlin_maps *maps)
+{
+    return !maps->light.known || found_light_share(&maps->light).flash >= 0.5f;
+}
+
+cJSON *report_begin(const warnings *doubts)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "version", merlin_version());
+    cJSON_AddNumberToObject(root, "schema", REPORT_SCHEMA);
+    if (doubts) cJSON_AddItemToObject(root, "warnings", warnings_json(doubts));
+    return root;
+}
+
+char *maps_report(const merlin_maps *maps)
+{
+    warnings doubts = {0};
+    doubts_list(maps, &doubts);
+    cJSON *root = report_begin(&doubts);
+    cJSON_AddStringToObject(root, "model", maps->model);
+    cJSON_AddNumberToObject(root, "width", maps->albedo.width);
+    cJSON_AddNumberToObject(root, "height", maps->albedo.height);
+    cJSON *square = cJSON_AddObjectToObject(root, "crop");
+    cJSON_AddNumberToObject(square, "x", maps->crop.x);
+    cJSON_AddNumberToObject(square, "y", maps->crop.y);
+    cJSON_AddNumberToObject(square, "side", maps->crop.side);
+    cJSON_AddNumberToObject(root, "network_size", maps->size);
+    cJSON_AddNumberToObject(root, "exposure_gain", maps->gain);
+    cJSON_AddNumberToObject(root, "burnt_out", maps->burnt_out);
+    cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
+    cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
+    cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
+    put_lens(root, maps);
+    put_light(root, &maps->light);
+    cJSON_AddStringToObject(root, "albedo_scale", is_scale_known(maps) ? "known" : "unsure");
+    put_environment(root, maps);
+    put_statistics(root, maps);
+    put_reconstruction_error(root, maps);
+    put_timing(root, &maps->timing);
+    char *text = cJSON_Print(root);
+    cJSON_Delete(root);
+    return text;
+}

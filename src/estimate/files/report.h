@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Begins every report of a command, on standard output and in report.json. docs/json.md lists all names. */
+#ifndef MERLIN_ESTIMATE_FILES_REPORT_H
+#define MERLIN_ESTIMATE_FILES_REPORT_H
+
+#include <cJSON.h>
+
+#include "base/warnings.h"
+
+/* Changes when a name goes or means something else; more names come without. */
+enum { REPORT_SCHEMA = 1 };
+
+/* Begins a report: "version", "schema" and "warnings"; without the latter if doubts is NULL, for who adds them later.
+ * NULL if memory ran out. */
+cJSON *report_begin(const warnings *doubts);
+
+#endif

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+#include "estimate/files/staging.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/leftovers.h"
+
+struct staging {
+    char *folder, *hidden;
+    size_t kept; /* length of the part of folder's path that was there before */
+    const char *inputs[STAGING_MOST_INPUTS];
+};
+
+static bool is_input(const staging *t, const char *path)
+{
+    for (int i = 0; i < STAGING_MOST_INPUTS; i++)
+        if (t->inputs[i] && file_is_same(t->inputs[i], path)) return true;
+    return false;
+}
+
+static void staging_free(staging *t)
+{
+    if (t->hidden) leftovers_forget(t->hidden);
+    free(t->folder);
+    free(t->hidden);
+    free(t);
+}
+
+static size_t existing_length(const char *folder)
+{
+    char path[PATH_MAX];
+    size_t length = strlen(folder);
+    if (length >= sizeof path) return length;
+    memcpy(path, folder, length + 1);
+    while (length > 0 && !file_exists(path)) {
+        while (length > 0 && path[length - 1] != '/')
+            length--;
+        while (length > 0 && path[length - 1] == '/')
+            length--;
+        path[length] = 0;
+    }
+    return length;
+}
+
+/* Removes the folders that were made, innermost first. */
+static void remove_made(const staging *t)
+{
+    char path[PATH_MAX];
+    size_t length = strlen(t->folder);
+    if (length >= sizeof path) return;
+    memcpy(path, t->folder, length + 1);
+    while (length > t->kept && rmdir(path) == 0) {
+        while (length > t->kept && path[length - 1] == '/')
+            length--;
+        while (length > t->kept && path[length - 1] != '/')
+            length--;
+        while (length > t->kept && path[length - 1] == '/')
+            length--;
+        path[length] = 0;
+    }
+}
+
+static status begin(staging *t)
+{
+    if (strlen(t->hidden) + 1 + NAME_MAX >= PATH_MAX)
+        return fail(ERROR_OUTPUT, "cannot write: a path of %zu bytes is too long: %s", strlen(t->folder), t->folder);
+    t->kept = existing_length(t->folder);
+    status s = file_make_folder(t->folder);
+    if (s == OK) leftovers_clear(t->folder);
+    if (s == OK && !mkdtemp(t->hidden)) s = fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    if (s != OK) remove_made(t);
+    if (s == OK) leftovers_note(t->hidden, t->kept ? t->kept : 1);
+    return s;
+}
+
+static char *hidden_in(const char *folder)
+{
+    char name[LEFTOVERS_NAME];
+    leftovers_folder_name(name);
+    return file_join(folder, name);
+}
+
+status staging_begin(const char *folder, const char *const *inputs, staging **out)
+{
+    *out = NULL;
+    staging *t = calloc(1, sizeof *t);
+    if (!t) return fail(ERROR_MEMORY, "no memory to write %s", folder);
+    t->folder = strdup(folder);
+    t->hidden = hidden_in(folder);
+    if (inputs) memcpy(t->inputs, inputs, sizeof t->inputs);
+    status s = t->folder && t->hidden ? begin(t) : fail(ERROR_MEMORY, "no memory to write %s", folder);
+    if (s != OK)
+        staging_free(t);
+    else
+        *out = t;
+    return s;
+}
+
+const char *staging_path(const staging *t, const char *name, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/%s", t->hidden, name);
+    return path;
+}
+
+static bool is_dots(const char *name)
+{
+    return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+}
+
+static void remove_hidden(const staging *t)
+{
+    DIR *d = opendir(t->hidden);
+    for (struct dirent *e; d && (e = readdir(d));)
+        if (!is_dots(e->d_name)) unlinkat(dirfd(d), e->d_name, 0);
+    if (d) closedir(d);
+    rmdir(t->hidden);
+}
+
+/* ---- what was written ---- */
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static status add_size(staged_files *files, const char *path)
+{
+    struct stat found;
+    if (stat(path, &found) != 0) return fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    files->bytes += (uint64_t)found.st_size;
+    return OK;
+}
+
+static status add_written(staged_files *files, const char *path)
+{
+    char **larger = realloc(files->at, (files->count + 1) * sizeof *larger);
+    if (larger) files->at = larger;
+    char *copy = larger ? strdup(path) : NULL;
+    if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
+    files->at[files->count++] = copy;
+    return OK;
+}
+
+void staged_files_free(staged_files *files)
+{
+    file_list_free(files->at, files->count);
+    *files = (staged_files){0};
+}
+
+/* ---- into place ---- */
+
+static status check(const staging *t, const char *from, const char *to, staged_files *written)
+{
+    if (file_is_folder(to)) return fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
+    if (is_input(t, to))
+        return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another name or folder", to);
+    if (!written) return OK;
+    status s = add_size(written, from);
+    return s == OK ? add_written(written, to) : s;
+}
+
+static status move(const char *from, const char *to)
+{
+    return rename(from, to) == 0 ? OK : fail(ERROR_OUTPUT, "cannot write %s: %s", to, strerror(errno));
+}
+
+static status check_or_move(const staging *t, const char *name, bool only_check, staged_files *written)
+{
+    char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
+    status s = !from || !to ? fail(ERROR_MEMORY, "no memory for a file name")
+               : only_check ? check(t, from, to, written)
+                            : move(from, to);
+    free(from);
+    free(to);
+    return s;
+}
+
+static status over_files(const staging *t, bool only_check, staged_files *written)
+{
+    DIR *d = opendir(t->hidden);
+    if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    status s = OK;
+    for (struct dirent *e; s == OK && (e = readdir(d));)
+        if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, only_check, written);
+    closedir(d);
+    return s;
+}
+
+/* Looks at all before moving any. */
+status staging_commit_all(staging *const *t, int count, staged_files *written)
+{
+    status s = OK;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < count && s == OK; i++)
+            s = over_files(t[i], pass == 0, written);
+    if (s == OK && written && written->count > 1)
+        qsort(written->at, written->count, sizeof *written->at, compare_names);
+    for (int i = count - 1; i >= 0; i--) {
+        if (s != OK) {
+            s = staging_abort(t[i], s);
+            continue;
+        }
+        rmdir(t[i]->hidden);
+        staging_free(t[i]);
+    }
+    return s;
+}
+
+status staging_commit(staging *t, staged_files *written)
+{
+    return staging_commit_all(&t, 1, written);
+}
+
+/* A message about the hidden folder would name a path that nobody can look at any more. */
+static status name_folder(const staging *t, status s)
+{
+    char message[1024];
+    snprintf(message, sizeof message, "%s", status_message());
+    char *at = strstr(message, t->hidden);
+    if (!at) return s;
+    *at = 0;
+    return fail(s, "%s%s%s", message, t->folder, at + strlen(t->hidden));
+}
+
+status staging_abort(staging *t, status s)
+{
+    s = name_folder(t, s);
+    remove_hidden(t);
+    remove_made(t);
+    staging_free(t);
+    return s;
+}

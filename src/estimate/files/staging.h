@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* A folder's files made aside and moved into place together: a full disk or an interrupt leaves nothing half done.
+ *
+ *     staging *t;
+ *     const char *const inputs[STAGING_MOST_INPUTS] = {"cup.jpg"};
+ *     staging_begin("cup.merlin", inputs, &t);
+ *     char path[PATH_MAX];
+ *     status s = img_write_png(staging_path(t, "albedo.png", path), &albedo, IMG_SRGB8);
+ *     s = s == OK ? staging_commit(t, NULL) : staging_abort(t, s);
+ */
+#ifndef MERLIN_ESTIMATE_FILES_STAGING_H
+#define MERLIN_ESTIMATE_FILES_STAGING_H
+
+#include <limits.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+typedef struct staging staging;
+
+/* Makes the folder if need be, and a hidden one inside it. inputs: STAGING_MOST_INPUTS files that are read for this and
+ * that a commit does not replace, each of which may be NULL, as may the whole; the names must outlive t. */
+enum { STAGING_MOST_INPUTS = 4 };
+status staging_begin(const char *folder, const char *const *inputs, staging **out);
+/* Where to write the file that will be folder/name: put into path, and returned. Any thread. */
+const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
+/* The paths of what was written, sorted; zero-initialized is none. */
+typedef struct staged_files {
+    char **at;
+    size_t count;
+    uint64_t bytes; /* their sizes' sum */
+} staged_files;
+void staged_files_free(staged_files *files);
+
+/* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
+ * and frees t. ERROR_OUTPUT, with nothing moved, if a folder or one of the inputs is in the way of one. */
+status staging_commit(staging *t, staged_files *written);
+/* Those of several folders at once: nothing is moved if anything is in the way of any. */
+status staging_commit_all(staging *const *t, int count, staged_files *written);
+/* Files beside a folder of maps that are committed with it: the first is the maps'. */
+enum { MAPS_MOST_ELSEWHERE = 8 };
+typedef struct maps_staging {
+    staging *at[1 + MAPS_MOST_ELSEWHERE];
+    int count;
+} maps_staging;
+
+/* Removes what was written, and the folders that staging_begin made; frees t. Returns s, its message naming the folder
+ * instead of the hidden one. */
+status staging_abort(staging *t, status s);
+
+#endif

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+#include "estimate/light/light_words.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "estimate/light/found_light.h"
+#include "optics/camera.h"
+
+static const float NAMED = 1 / 7.0f;
+enum { LAMP_WORDS = 96 }; /* leaves room for what else there is */
+
+/* Says where a lamp is as the camera sees it; one less than 5 degrees aside stands by the lens. */
+static void lamp_words(const merlin_found_light *light, char words[LAMP_WORDS])
+{
+    const float right = light->lamp[0], up = light->lamp[1], aside = hypotf(right, up);
+    const int degrees = (int)lrintf(atan2f(aside, light->lamp[2]) / CAMERA_RADIAN);
+    const bool upright = fabsf(up) > 0.38f * aside, sideways = fabsf(right) > 0.38f * aside; /* sine of 22.5 degrees */
+    const char *vertical = up > 0 ? sideways ? "upper " : "above" : sideways ? "lower " : "below";
+    if (degrees < 5)
+        snprintf(words, LAMP_WORDS, "a lamp by the lens");
+    else
+        snprintf(words, LAMP_WORDS, "a lamp from %s%s%s, %d degrees aside", sideways ? "the " : "",
+                 upright ? vertical : "", sideways ? right > 0 ? "right" : "left" : "", degrees);
+}
+
+void light_words(const merlin_found_light *light, char words[LIGHT_WORDS])
+{
+    const found_light_shares share = found_light_share(light);
+    char of_lamp[LAMP_WORDS] = "";
+    const bool flash = share.flash >= NAMED, beam = share.lamp >= NAMED, rest = share.rest >= NAMED;
+    if (beam) lamp_words(light, of_lamp);
+    snprintf(words, LIGHT_WORDS, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "", of_lamp,
+             !rest           ? ""
+             : flash || beam ? ", in a room"
+                             : "a room's light");
+}

@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin_estimate: photograph, mask, crop, network, and back to the photograph's resolution. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/progress.h"
+#include "estimate/api.h"
+#include "estimate/photo/detail.h"
+#include "estimate/photo/doubts.h"
+#include "estimate/surface/exposure.h"
+#include "estimate/light/found_light.h"
+#include "estimate/photo/input.h"
+#include "estimate/photo/light_choice.h"
+#include "estimate/light/relight_env.h"
+#include "image/read/read.h"
+
+enum { LEAST_SIDE = 16 };
+
+/* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's; the maps of `low` may
+ * have become larger (detail.h). */
+typedef struct work {
+    const merlin_params *params;
+    img photo, mask;     /* the photograph has no pixels any more once the object is taken out of it */
+    merlin_image *owned; /* the photograph, if it is ours to free; else NULL */
+    crop_square crop;
+    sight how;
+    img crop_photo, crop_mask;
+    img low_photo, low_mask;
+    network_estimation low;
+    surface full;
+    img reconstruction;
+    light_cues cues;
+    merlin_shot shot;
+    const watch *watch;
+    bool last;    /* as of photo_object */
+    double clock; /* when the current stage began */
+} work;
+
+static void work_free(work *w)
+{
+    img *images[] = {&w->mask, &w->crop_photo, &w->crop_mask, &w->low_photo, &w->low_mask, &w->reconstruction};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        img_free(images[i]);
+    network_estimation_free(&w->low);
+    surface_free(&w->full);
+}
+
+/* Adds the seconds since the last call; fails if the caller wants to stop. */
+static status lap(work *w, double *seconds)
+{
+    double now = clock_seconds();
+    *seconds += now - w->clock;
+    w->clock = now;
+    if (w->params->stop && w->params->stop()) return fail(ERROR_STOPPED, "stopped");
+    return OK;
+}
+
+static status check_photo(const img *photo)
+{
+    if (!photo->data) return fail(ERROR_USAGE, "the photograph has no pixels");
+    if (photo->channels != 3) return fail(ERROR_USAGE, "a photograph has 3 channels, not %d", photo->channels);
+    if (photo->width < LEAST_SIDE || photo->height < LEAST_SIDE)
+        return fail(ERROR_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
+                    photo->height, LEAST_SIDE, LEAST_SIDE);
+    if ((size_t)photo->width * (size_t)photo->height > IMAGE_MOST_PIXELS)
+        return fail(ERROR_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
+                    photo->width, photo->height);
+    size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(photo->data[i])) return fail(ERROR_INPUT, "the photograph has values that are not finite");
+    return OK;
+}
+
+static status check_params(const merlin_params *p)
+{
+    if (p->size < NETWORK_LEAST_SIZE || p->size > NETWORK_LARGEST_SIZE || p->size % MODEL_SIZE_MULTIPLE != 0)
+        return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
+                    MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, p->size);
+    if (p->fov != 0 && !(p->fov >= 1 && p->fov <= 150))
+        return fail(ERROR_USAGE, "a field of view must be from 1 to 150 degrees, not %g", (double)p->fov);
+    if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
+    return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
+}
+
+status photo_object_choose(const merlin_image *photo, const merlin_image *given, const merlin_hint *hint,
+                           photo_object *out)
+{
+    double began = clock_seconds();
+    img picture = img_of(photo), mask = {0};
+    *out = (photo_object){0};
+    if (given) mask = img_of(given);
+    status s = check_photo(&picture);
+    if (s == OK) s = mask_choose(&picture, &mask, hint, &out->mask, &out->choice);
+    if (s == OK) s = crop_around(&out->mask, &out->crop);
+    if (s != OK) photo_object_free(out);
+    out->seconds = clock_seconds() - began;
+    return s;
+}
+
+void photo_object_free(photo_object *object)
+{
+    img_free(&object->mask);
+}
+
+/* The object's mask becomes the run's. */
+static void take_object(work *w, photo_object *object, merlin_maps *maps)
+{
+    w->mask = object->mask;
+    w->crop = object->crop;
+    w->shot = object->shot;
+    w->watch = object->watch;
+    w->last = object->last;
+    object->mask = (img){0};
+    maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
+    maps->mask_confidence = object->choice.confidence;
+    maps->crop.x = w->crop.x;
+    maps->crop.y = w->crop.y;
+    maps->crop.side = w->crop.side;
+    maps->timing.mask = object->seconds;
+}
+
+/* The object alone. */
+static status place_photo(const work *w, merlin_image *to)
+{
+    img whole = {0};
+    crop_square c = w->crop;
+    status s = img_new(&whole, w->photo.width, w->photo.height, 3);
+    for (int y = 0; s == OK && y < c.side; y++)
+        for (int x = 0; x < c.side; x++) {
+            float cover = *img_at(&w->crop_mask, x, y);
+            if (!(cover > 0)) continue; /* what hangs over the frame is not covered */
+            const float *from = img_at(&w->photo, c.x + x, c.y + y);
+            float *out = img_at(&whole, c.x + x, c.y + y);
+            for (int k = 0; k < 3; k++)
+                out[k] = cover * from[k];
+        }
+    *to = image_of(&whole);
+    return s;
+}
+
+/* The crop of photograph and mask, and the object alone in the photograph's frame. */
+static status take_out(work *w, merlin_image *object)
+{
+    status s = crop_take(&w->photo, w->crop, &w->mask, &w->crop_photo);
+    if (s == OK) s = crop_take(&w->mask, w->crop, &w->mask, &w->crop_mask);
+    if (s == OK) s = place_photo(w, object);
+    img_free(&w->mask);
+    if (w->owned) merlin_image_free(w->owned);
+    w->photo.data = NULL;
+    return s;
+}
+
+/* Of what the network will see. */
+static status check_seen(const img *photo, const img *mask)
+{
+    if (mask_is_transparent(mask))
+        return fail(ERROR_INPUT,
+                    "the object is too thin or scattered: it covers half of no pixel of the %d×%d that the network "
+                    "sees; give a larger size or a mask of one part",
+                    mask->width, mask->height);
+    for (size_t i = 0; i < img_value_count(photo); i++)
+        if (photo->data[i] > 0) return OK;
+    return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
+}
+
+/* By what the caller says of the photograph, else by its EXIF. */
+static void find_lens(work *w, merlin_maps *maps)
+{
+    w->how = sight_of(w->params->fov, w->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
+    w->how.flash = w->params->flash != 0;
+    maps->fov = w->how.lens.fov;
+    maps->slant[0] = w->how.lens.slant.right;
+    maps->slant[1] = w->how.lens.slant.up;
+}
+
+/* The picture and mask that the network sees. */
+static status make_input(work *w, merlin_maps *maps)
+{
+    status s = take_out(w, &maps->photo);
+    if (s == OK) s = input_make(&w->crop_photo, &w->crop_mask, maps->size, &w->low_photo, &w->low_mask);
+    if (s == OK) s = check_seen(&w->low_photo, &w->low_mask);
+    if (s != OK) return s;
+    maps->gain =
+        w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
+    input_expose(&w->low_photo, maps->gain);
+    return OK;
+}
+
+/* What the network adds makes up for the false highlights of its own maps, view by view; in the mean of several views
+ * these are others. */
+static status follow_mean(network *n, work *w, bool in_environment)
+{
+    if (w->params->views == 1 || network_config(n)->lighting == MODEL_LIGHT_ANY) return OK;
+    const surface *maps = &w->low.maps;
+    img direct = {0}, ambient = {0}, indirect = {0};
+    status s = surface_shade(maps, vec3_make(0, 0, 0), &direct);
+    if (s == OK && in_environment) s = img_new(&ambient, direct.width, direct.height, 3);
+    if (s == OK && in_environment) surface_add_ambient(maps, (const float(*)[3])w->low.environment, &ambient);
+    if (s == OK) s = network_indirect(n, maps, &direct, in_environment ? &ambient : NULL, &indirect);
+    img_free(&direct);
+    img_free(&ambient);
+    if (s != OK) return s;
+    img_free(&w->low.indirect);
+    w->low.indirect = indirect;
+    return OK;
+}
+
+/* From a picture so wide; 0: from none. */
+static status add_detail(network *n, work *w, int side, float gain)
+{
+    const merlin_params *p = w->params;
+    detail_request r = {.photo = &w->crop_photo,
+                        .mask = &w->crop_mask,
+                        .gain = gain,
+                        .how = &w->how,
+                        .side = side,
+                        .views = detail_views(p->views),
+                        .stop = p->stop};
+    return side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
+}
+
+static void expose_picture(img *picture, float white)
+{
+    for (size_t i = 0; i < img_value_count(picture); i++)
+        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / white, 0), 1);
+}
+
+/* The maps at the crop's own resolution, and what they look like under the photograph's light. */
+static status refine(work *w, const merlin_found_light *light, float gain, float white, bool in_environment)
+{
+    surface_encode_guide(&w->crop_photo, gain);
+    status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
+    img_free(&w->crop_photo);
+    img *picture = &w->reconstruction;
+    const size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
+    if (light->known) {
+        if (s == OK) s = img_new(picture, w->crop.side, w->crop.side, 3);
+        if (s == OK) s = found_light_add(&w->full, light, &w->low.visibility, picture);
+        if (s == OK) expose_picture(picture, white);
+        return s;
+    }
+    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low_mask, &w->crop_mask, picture);
+    if (s != OK) return s;
+    for (size_t i = 0; i < count; i++)
+        if (picture->data[i] != 0) picture->data[i] *= w->crop_mask.data[i / 3];
+    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
+    if (in_environment) {
+        const float(*sh)[3] = (const float(*)[3])w->low.environment;
+        surface_add_ambient(&w->full, sh, picture);
+        surface_add_ambient_highlights(&w->full, sh, picture);
+    }
+    expose_picture(picture, white);
+    return OK;
+}
+
+static bool is_whole(const work *w)
+{
+    return w->crop.x == 0 && w->crop.y == 0 && w->crop.side == w->photo.width && w->crop.side == w->photo.height;
+}
+
+/* From the crop to the photograph's frame; frees the crop's. */
+static status place(const work *w, img *from, merlin_image *to)
+{
+    img whole = {0};
+    if (is_whole(w)) {
+        *to = image_of(from);
+        *from = whole;
+        return OK;
+    }
+    status s = img_new(&whole, w->photo.width, w->photo.height, from->channels);
+    if (s != OK) return s;
+    crop_put(from, w->crop, &w->crop_mask, &whole);
+    img_free(from);
+    *to = image_of(&whole);
+    return OK;
+}
+
+static status place_all(work *w, merlin_maps *maps)
+{
+    status s = place(w, &w->full.albedo, &maps->albedo);
+    if (s == OK) s = place(w, &w->full.normal, &maps->normal);
+    if (s == OK) s = place(w, &w->full.roughness, &maps->roughness);
+    if (s == OK) s = place(w, &w->full.depth, &maps->depth);
+    if (s == OK) s = place(w, &w->full.mask, &maps->mask);
+    return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
+}
+
+/* By the maps of the network's size, before normals of a larger one replace theirs. photo: its size in pixels. */
+static status judge_light(work *w, const merlin_image *photo, float gain)
+{
+    const crop_square c = w->crop;
+    float scale = (float)w->low_photo.width / (float)c.side;
+    light_frame frame = {.left = scale * (float)-c.x,
+                         .top = scale * (float)-c.y,
+                         .right = scale * (float)(photo->width - c.x),
+                         .bottom = scale * (float)(photo->height - c.y),
+                         .white = gain};
+    return light_cues_find(&w->low.maps, &w->low_photo, &frame, &w->cues);
+}
+
+/* Adds what compiling took: the caller may have had some of it done before, and the question which network it is more.
+ */
+static status lap_compile(const merlin_model *model, work *w, double *seconds)
+{
+    double passed = 0;
+    status s = lap(w, &passed);
+    *seconds += network_take_compile_seconds(model->network);
+    if (model->flash) *seconds += network_take_compile_seconds(model->flash);
+    return s;
+}
+
+/* Makes the networks of maps and bounces ready, or where no photograph follows that of maps alone. */
+static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+{
+    const int views = w->params->views;
+    status s = views > 1 && !w->last ? network_prepare_bounces(n, maps->size) : OK;
+    if (s == OK) s = network_prepare(n, maps->size, views);
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
+}
+
+/* Makes the network of bounces ready; that of maps makes room if nothing wants it any more. */
+static status prepare_bounces(const merlin_model *model, network *n, work *w, merlin_maps *maps)
+{
+    if (w->last) network_release_maps(n);
+    status s = w->params->views > 1 ? network_prepare_bounces(n, maps->size) : OK;
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
+}
+
+/* Makes the network of the finer normals ready; the one before makes room if nothing wants it any more. */
+static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
+{
+    if (w->last) network_release_maps(n);
+    status s = finer > 0 ? network_prepare_normals(n, finer) : OK;
+    return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
+}
+
+static status estimate(merlin_model *model, work *w, merlin_maps *maps)
+{
+    network *n = NULL;
+    merlin_timing *t = &maps->timing;
+    w->clock = clock_seconds();
+    watch_tell(w->watch, "estimating", 0);
+    const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
+    status s = make_input(w, maps);
+    if (s == OK) s = lap(w, &t->prepare);
+    const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->shot.flash};
+    if (s == OK) s = light_choice(model->network, model->flash, &asked, &n);
+    if (s != OK) return s;
+    snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
+    s = lap(w, &t->choose);
+    if (s == OK) s = lap_compile(model, w, &t->compile);
+    if (w->last) model_keep(model, n);
+    if (s == OK) s = prepare(model, n, w, maps);
+    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
+    if (s == OK) s = lap(w, &t->network);
+    if (s == OK) s = prepare_bounces(model, n, w, maps);
+    maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
+    if (s == OK) s = follow_mean(n, w, maps->has_environment);
+    if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
+    if (s == OK) s = lap(w, &t->network);
+    if (s == OK) s = prepare_finer(model, n, w, finer, maps);
+    if (s == OK) s = add_detail(n, w, finer, maps->gain);
+    if (w->last) network_release_maps(n);
+    if (s == OK) s = lap(w, &t->network);
+    watch_tell(w->watch, "refining", 0);
+    memcpy(maps->environment, w->low.environment, sizeof maps->environment);
+    if (network_config(n)->lighting == MODEL_LIGHT_ANY) found_light_take(w->low.lights, &maps->light);
+    img photo = img_of(&maps->photo);
+    if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
+    if (s == OK) s = refine(w, &maps->light, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
+    watch_tell(w->watch, "refining", 0.75);
+    if (s == OK) s = place_all(w, maps);
+    if (s == OK) doubts_find(&w->cues, &w->shot, maps);
+    if (s == OK) s = lap(w, &t->upsample);
+    return s;
+}
+
+/* owned: photo, if it is to be freed; or NULL. */
+static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, photo_object *object,
+                             const merlin_params *params, merlin_maps *maps)
+{
+    *maps = (merlin_maps){0};
+    merlin_params defaults = merlin_params_default();
+    work w = {.params = params ? params : &defaults, .photo = img_of(photo), .owned = owned};
+    maps->size = network_side(w.params->size);
+    take_object(&w, object, maps);
+    find_lens(&w, maps);
+    status s = check_params(w.params);
+    if (s == OK) s = estimate(model, &w, maps);
+    object->cues = w.cues;
+    work_free(&w);
+    if (owned) merlin_image_free(owned);
+    if (s != OK) merlin_maps_free(maps);
+    return s;
+}
+
+status estimate_object(merlin_model *model, merlin_image *photo, photo_object *object, const merlin_params *params,
+                       merlin_maps *maps)
+{
+    return estimate_photo(model, photo, photo, object, params, maps);
+}
+
+merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
+                              const merlin_params *params, merlin_maps *maps)
+{
+    if (maps) *maps = (merlin_maps){0};
+    status s = api_needs(__func__, model && photo && maps);
+    if (s != OK) return result_of(s);
+    photo_object object;
+    s = photo_object_choose(photo, mask, params ? &params->hint : NULL, &object);
+    if (params) object.shot = params->shot;
+    if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
+    photo_object_free(&object);
+    return result_of(s);
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin_relight, merlin_relight_environment and merlin_stage: maps under other light. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "estimate/api.h"
+#include "estimate/light/found_light.h"
+
+enum { LARGEST_SIDE = 8000 };
+
+struct merlin_stage {
+    network *network;
+    stage stage;
+};
+
+/* Copies the light, if there is one. */
+static status take_light(const float *light, lamp *place)
+{
+    if (!light) return OK;
+    *place = lamp_at(vec3_of(light));
+    if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
+    return fail(ERROR_USAGE, "the light's position is not finite");
+}
+
+/* Into the photograph's frame. */
+static status put_back(const merlin_maps *maps, const img *square, const img *mask, merlin_image *out)
+{
+    img whole = {0};
+    status s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
+    if (s == OK) crop_put(square, crop_of(maps), mask, &whole);
+    *out = image_of(&whole);
+    return s;
+}
+
+/* The light that maps are relit by: lamps together, and surroundings or NULL. */
+typedef struct lighting {
+    const lamp *lamps;
+    int count;
+    const env_map *environment;
+} lighting;
+
+static status relight_maps(merlin_model *model, const merlin_maps *maps, const lighting *by, merlin_relighting how,
+                           merlin_image *out)
+{
+    stage st;
+    network *n = model_network(model, maps, how);
+    img square = {0};
+    status s = stage_check(how, by->count ? by->lamps : NULL, by->environment);
+    if (s == OK) s = stage_new(n, maps, 0, how, &st);
+    if (s != OK) return s;
+    s = stage_surround(&st, by->environment);
+    if (s == OK) s = stage_relight(n, &st, by->lamps, by->count, &square);
+    img mask = st.full.mask;
+    st.full.mask = (img){0};
+    stage_free(&st); /* before a large photograph's frame is made */
+    if (s == OK) s = put_back(maps, &square, &mask, out);
+    img_free(&mask);
+    img_free(&square);
+    return s;
+}
+
+/* Relights by the point light, the environment, or both. */
+static status relight_by(merlin_model *model, const merlin_maps *maps, const float *light, const env_map *environment,
+                         merlin_relighting how, merlin_image *out)
+{
+    lamp place;
+    status s = take_light(light, &place);
+    const lighting by = {&place, light != NULL, environment};
+    return s == OK ? relight_maps(model, maps, &by, how, out) : s;
+}
+
+merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
+                             merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, model && maps && light && out);
+    return result_of(s == OK ? relight_by(model, maps, light, NULL, how, out) : s);
+}
+
+merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
+                                         const float *light, merlin_relighting how, merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, model && maps && env && out);
+    return result_of(s == OK ? relight_by(model, maps, light, &env->map, how, out) : s);
+}
+
+merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
+                                   merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    found_lights lights = {.count = 0};
+    status s = api_needs(__func__, model && maps && out);
+    if (s == OK && how == MERLIN_BY_NETWORK)
+        s = fail(ERROR_USAGE, "the relighting decoder knows one lamp alone; relight by BRDF");
+    if (s == OK && !isfinite(turn)) s = fail(ERROR_USAGE, "the light's turn must be finite");
+    if (s == OK) s = found_light_stand(&maps->light, turn, &lights);
+    const lighting by = {lights.lamps, lights.count, found_lights_rest(&lights)};
+    if (s == OK) s = relight_maps(model, maps, &by, how, out);
+    env_map_free(&lights.rest);
+    return result_of(s);
+}
+
+/* ---- many lights ---- */
+
+merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
+                               merlin_stage **out)
+{
+    if (out) *out = NULL;
+    status s = api_needs(__func__, model && maps && out);
+    const lamp flash = lamp_at(vec3_make(0, 0, 0));
+    if (s == OK) s = stage_check(how, &flash, false);
+    if (s == OK && (side < 0 || side > LARGEST_SIDE))
+        s = fail(ERROR_USAGE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE, side);
+    if (s != OK) return result_of(s);
+    merlin_stage *made = calloc(1, sizeof *made);
+    if (!made) return result_of(fail(ERROR_MEMORY, "no memory for a stage"));
+    made->network = model_network(model, maps, how);
+    s = stage_new(made->network, maps, side, how, &made->stage);
+    if (s != OK)
+        free(made);
+    else
+        *out = made;
+    return result_of(s);
+}
+
+merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const merlin_environment *environment,
+                                   merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, st && out);
+    if (s == OK && !light && !environment)
+        s = fail(ERROR_USAGE, "neither a light nor an environment to relight the stage by");
+    lamp place;
+    img square = {0};
+    if (s == OK) s = take_light(light, &place);
+    if (s == OK) s = stage_check(st->stage.how, light ? &place : NULL, environment);
+    if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
+    if (s == OK) s = stage_relight(st->network, &st->stage, &place, light != NULL, &square);
+    if (s != OK) return result_of(s);
+    *out = image_of(&square);
+    return MERLIN_OK;
+}
+
+void merlin_stage_free(merlin_stage *st)
+{
+    if (!st) return;
+    stage_free(&st->stage);
+    free(st);
+}

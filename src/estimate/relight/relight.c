@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+/* A stage under light. */
+#include <math.h>
+#include <stdbool.h>
+
+#include "estimate/api.h"
+#include "estimate/light/bounce.h"
+#include "estimate/light/relight_env.h"
+
+/* Shadows are looked for at most at this many points a side. */
+enum { SHADOW_SIDE = 512 };
+
+/* Here and below zeros are left alone (image.h). */
+static void multiply_mask(img *image, const img *mask)
+{
+    for (size_t i = 0; i < img_value_count(image); i++)
+        if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* From twice as many points a side as the caster has, as long as the picture shows them. */
+static status cast_shadows(const stage *s, const lamp *light, img *full, img *low)
+{
+    bool flash = !light->distant && vec3_dot(light->at, light->at) < 1e-12f;
+    if (flash) return OK; /* the camera sees nothing that its flash does not */
+    int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
+    img seen = {0};
+    status result = shadow_cast_lamp(&s->caster, light, side, side, &seen);
+    if (result != OK) return result;
+    shadow_darken(&seen, full);
+    shadow_darken(&seen, low);
+    img_free(&seen);
+    return OK;
+}
+
+/* Bounce 1 at both sizes. */
+static status light_by_brdf(const stage *s, const lamp *light, img *full, img *low)
+{
+    status result = surface_shade_lamp(&s->full, light, full);
+    if (result == OK) result = surface_shade_lamp(&s->low, light, low);
+    if (result == OK && s->how == MERLIN_BY_BRDF) result = cast_shadows(s, light, full, low);
+    return result;
+}
+
+static status light_by_network(network *n, const stage *s, const lamp *light, img *full, img *low)
+{
+    illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
+    status result = network_relight(n, s->look, &both, low);
+    if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
+    /* enlarged or not, it goes on beside the object */
+    if (result == OK) multiply_mask(full, &s->full.mask);
+    return result;
+}
+
+/* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
+ * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
+static status add_environment(const stage *s, img *low, img *full, img *ambient)
+{
+    const env_map *env = s->environment;
+    const float(*sh)[3] = (const float(*)[3])env->sh;
+    status result = img_new(ambient, low->width, low->height, 3);
+    if (result != OK) return result;
+    surface_add_ambient(&s->low, sh, ambient);
+    if (s->how == MERLIN_BY_NETWORK) {
+        for (size_t i = 0; i < img_value_count(low); i++)
+            low->data[i] -= ambient->data[i];
+    } else {
+        surface_add_ambient(&s->full, sh, full);
+    }
+    if (!s->full.matte) surface_add_reflections(&s->full, env, NULL, full);
+    return OK;
+}
+
+/* The network's bounces 2 and up for `low` and `ambient`, resized and added to `full`. */
+static status add_indirect(network *n, const stage *s, const img *low, const img *ambient, img *full)
+{
+    img indirect = {0}, large = {0};
+    const img *more = ambient->data ? ambient : NULL;
+    status result = network_indirect(n, &s->low, low, more, &indirect);
+    if (result == OK) result = bounce_follow(&s->flash, low, more, &indirect);
+    if (result == OK) result = surface_resize_indirect(&indirect, &s->low.mask, &s->full.mask, &large);
+    if (result == OK) {
+        multiply_mask(&large, &s->full.mask);
+        img_add(&large, full);
+    }
+    img_free(&indirect);
+    img_free(&large);
+    return result;
+}
+
+static void expose(img *radiance, float white)
+{
+    for (size_t i = 0; i < img_value_count(radiance); i++)
+        if (radiance->data[i] != 0) radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
+}
+
+static status light_by_lamp(network *n, const stage *s, const lamp *light, img *full, img *low)
+{
+    return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
+}
+
+/* All light is in proportion to the lamp's; the network is asked of a white one of the power it was taught by. */
+static void dye(vec3 tint, img *radiance)
+{
+    if (tint.x == 1 && tint.y == 1 && tint.z == 1) return;
+    for (size_t i = 0; i < img_value_count(radiance); i += 3) {
+        float *value = radiance->data + i;
+        if (value[0] != 0 || value[1] != 0 || value[2] != 0) vec3_put(vec3_mul(vec3_of(value), tint), value);
+    }
+}
+
+static bool is_plain(const lamp *light)
+{
+    return !light->distant && light->tint.x == 1 && light->tint.y == 1 && light->tint.z == 1;
+}
+
+static status dark(const stage *s, img *full, img *low)
+{
+    status result = img_new(full, s->full.mask.width, s->full.mask.height, 3);
+    return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
+}
+
+status stage_check(merlin_relighting how, const lamp *light, bool environment)
+{
+    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
+        return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
+    if (how != MERLIN_BY_NETWORK) return OK;
+    if (!light)
+        return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
+    if (light->distant) return fail(ERROR_USAGE, "the relighting decoder knows no distant lights; relight by BRDF");
+    if (environment && !is_plain(light))
+        return fail(ERROR_USAGE, "beside an environment the relighting decoder knows white light of power 1 alone; "
+                                 "relight by BRDF");
+    return OK;
+}
+
+/* By the lamp, bounces included, where these can be told from the environment's: in parts that can be dyed. */
+static status add_lamp(network *n, const stage *s, const lamp *light, bool alone, img *full, img *low)
+{
+    const img none = {0};
+    status result = light_by_lamp(n, s, light, full, low);
+    if (result == OK && alone) result = add_indirect(n, s, low, &none, full);
+    if (result != OK) return result;
+    dye(light->tint, full);
+    if (!alone) dye(light->tint, low);
+    return OK;
+}
+
+/* Light adds. Likewise. */
+static status add_lamps(network *n, const stage *s, const lamp *lights, int count, bool alone, img *full, img *low)
+{
+    status result = count ? add_lamp(n, s, &lights[0], alone, full, low) : dark(s, full, low);
+    for (int i = 1; i < count && result == OK; i++) {
+        img more = {0}, more_low = {0};
+        result = add_lamp(n, s, &lights[i], alone, &more, &more_low);
+        if (result == OK) img_add(&more, full);
+        if (result == OK) img_add(&more_low, low);
+        img_free(&more);
+        img_free(&more_low);
+    }
+    return result;
+}
+
+status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out)
+{
+    *out = (img){0};
+    img low = {0}, ambient = {0};
+    bool shadows = s->environment && s->how == MERLIN_BY_BRDF, joint = s->environment && !shadows;
+    status result = add_lamps(n, s, lights, count, !joint, out, &low);
+    if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
+    if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);
+    /* with its shadows and a bounce nothing of an environment's light is left to the network */
+    if (result == OK && shadows)
+        result = surface_add_shadowed_environment(&s->full, &s->low, &s->horizon, s->environment, out);
+    if (result == OK) expose(out, s->white);
+    img_free(&low);
+    img_free(&ambient);
+    if (result != OK) img_free(out);
+    return result;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* What a Radiance picture's head says and libvips passes over: colours in CIE XYZ, and rows that run another way than
+ * from the top left. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/formats/picture.h"
+
+enum { LINE_SIZE = 2048 };
+
+/* The next line without its end; false behind the last. */
+static bool next_line(FILE *f, char line[LINE_SIZE])
+{
+    if (!fgets(line, LINE_SIZE, f)) return false;
+    line[strcspn(line, "\r\n")] = 0;
+    return true;
+}
+
+/* A head that is damaged is left to libvips, which says so. */
+static status check_open(FILE *f, const char *path)
+{
+    char line[LINE_SIZE], first, second;
+    bool xyz = false;
+    while (next_line(f, line) && line[0])
+        xyz |= strcmp(line, "FORMAT=32-bit_rle_xyze") == 0;
+    if (xyz)
+        return fail(ERROR_INPUT, "cannot read %s: its colours are CIE XYZ; make it RGB first (ra_xyze -r -o)", path);
+    if (!next_line(f, line) || sscanf(line, "%*1[-+]%c %*d %*1[-+]%c", &first, &second) != 2) return OK;
+    if (line[0] == '-' && first == 'Y' && strstr(line, "+X")) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: its rows run another way (%.40s) than -Y and +X; turn it first", path,
+                line);
+}
+
+status picture_check_hdr(const char *path)
+{
+    FILE *f = file_open(path);
+    if (!f) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    status s = check_open(f, path);
+    fclose(f);
+    return s;
+}

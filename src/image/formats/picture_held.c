@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/* Pictures that decoders hold as a whole, however few of their pixels are kept: what a small file may make of memory.
+ */
+#include "base/file.h"
+#include "image/metadata/box_file.h"
+#include "image/formats/picture.h"
+
+/* Bytes a pixel that libwebp, libnsgif, libheif and libjpeg hold at most, measured, with what libvips adds. */
+enum { BYTES_WEBP = 12, BYTES_GIF = 12, BYTES_HEIC = 6, BYTES_SCANS = 5 };
+
+/* A JPEG whose pixels come in several scans is held as coefficients: a progressive one, or one of its components one
+ * after the other. */
+static bool comes_in_scans(FILE *file)
+{
+    enum { MARKERS = 4096, SCAN = 0xffda, FRAMES = 0xffc0, LAST_FRAME = 0xffcf, TABLES = 4, ARITHMETIC = 12 };
+    uint64_t at = 2, components = 0;
+    for (int i = 0; i < MARKERS; i++) {
+        uint64_t marker = box_number(file, at, 2), length = box_number(file, at + 2, 2);
+        if (marker == SCAN) return box_number(file, at + 4, 1) < components;
+        if (marker < 0xff01 || length < 2) return false;
+        uint64_t kind = marker - FRAMES;
+        bool frame =
+            marker >= FRAMES && marker <= LAST_FRAME && kind != TABLES && kind != 2 * TABLES && kind != ARITHMETIC;
+        if (frame && kind % 4 == 2) return true;
+        if (frame) components = box_number(file, at + 9, 1);
+        at += 2 + length;
+    }
+    return false;
+}
+
+status picture_check_held(const char *path, picture_kind kind, int width, int height)
+{
+    if (kind == PICTURE_WEBP) return picture_check_whole(path, width, height, BYTES_WEBP, "as PNG");
+    if (kind == PICTURE_GIF) return picture_check_whole(path, width, height, BYTES_GIF, "as PNG");
+    if (kind == PICTURE_HEIC) return picture_check_whole(path, width, height, BYTES_HEIC, "as PNG or TIFF");
+    FILE *file = kind == PICTURE_JPEG ? file_open(path) : NULL;
+    bool held = file && comes_in_scans(file);
+    if (file) fclose(file);
+    return held ? picture_check_whole(path, width, height, BYTES_SCANS, "without scans (not progressive)") : OK;
+}
+
+status picture_check_cut(const char *path, picture_kind kind)
+{
+    enum { HEAD = 8 }; /* RIFF, and the count of the bytes behind it, the lowest first */
+    FILE *file = kind == PICTURE_WEBP ? file_open(path) : NULL;
+    if (!file) return OK;
+    uint8_t head[HEAD] = {0};
+    bool known = fread(head, 1, HEAD, file) == HEAD && fseek(file, 0, SEEK_END) == 0;
+    long size = known ? ftell(file) : -1;
+    fclose(file);
+    const long long said =
+        HEAD + ((long long)head[4] | (long long)head[5] << 8 | (long long)head[6] << 16 | (long long)head[7] << 24);
+    if (size < 0 || size >= said) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: it is cut short, %ld of its %lld bytes are there; copy or save it again",
+                path, size, said);
+}

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "image/metadata/exif.h"
+#include "image/metadata/exif_text.h"
+#include "image/formats/picture.h"
+#include "image/formats/picture_rows.h"
+
+/* Chunks are searched wherever they are: some programs write the orientation behind the pixels (ImageMagick). */
+typedef struct chunks {
+    bool has_cicp;
+    unsigned char cicp[4]; /* primaries, transfer, matrix, full range */
+    int orientation;
+    int frames;      /* of an animation */
+    bool overfull;   /* one beside the pixels claims more bytes than the file has, which decoders would make room for */
+    uint64_t packed; /* bytes of all pixels */
+} chunks;
+
+/* A file on its way in; libpng leaves by longjmp, so that what is to be freed is kept here. */
+typedef struct reader {
+    FILE *file;
+    png_structp png;
+    png_infop info;
+    picture_layout layout;
+    chunks chunks;
+    bool profile, interlaced;
+    uint8_t *codes; /* of a row, or of all of them if they are interlaced */
+    png_bytep *rows;
+    picture_rows *to;
+    char words[128];
+} reader;
+
+static void leave(png_structp png, png_const_charp words)
+{
+    reader *r = png_get_error_ptr(png);
+    snprintf(r->words, sizeof r->words, "%s", words);
+    png_longjmp(png, 1);
+}
+
+static void say_nothing(png_structp png, png_const_charp words)
+{
+    (void)png;
+    (void)words;
+}
+
+static void reader_free(reader *r)
+{
+    picture_rows_free(r->to);
+    free(r->rows);
+    free(r->codes);
+    png_destroy_read_struct(&r->png, &r->info, NULL);
+    if (r->file) fclose(r->file);
+}
+
+static bool reader_open(reader *r, const char *path)
+{
+    *r = (reader){.file = file_open(path)};
+    r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, leave, say_nothing);
+    r->info = r->png ? png_create_info_struct(r->png) : NULL;
+    return r->file && r->info;
+}
+
+/* Damage in it does no harm. */
+static int orientation_in(int file, off_t at, uint32_t size)
+{
+    enum { LARGEST = 1 << 16 }; /* as JPEG has it */
+    if (size > LARGEST) return 1;
+    void *exif = malloc(size + 1);
+    int orientation = 1;
+    if (exif && pread(file, exif, size, at) == (ssize_t)size) orientation = picture_exif_orientation(exif, size);
+    free(exif);
+    return orientation;
+}
+
+/* Of EXIF as text (exif_text.h); 0 of other texts. */
+static int orientation_in_text(int file, off_t at, uint32_t size, bool packed)
+{
+    char *content = size <= EXIF_TEXT_MOST ? malloc(size + 1) : NULL;
+    void *exif;
+    size_t exif_size;
+    exif_facts facts = {.orientation = 0};
+    if (content && pread(file, content, size, at) == (ssize_t)size &&
+        exif_text_decode(content, size, packed, &exif, &exif_size)) {
+        exif_parse(exif, exif_size, &facts);
+        free(exif);
+    }
+    free(content);
+    return facts.orientation;
+}
+
+static int frames_in(int file, off_t at)
+{
+    unsigned char b[4];
+    bool there = pread(file, b, sizeof b, at) == (ssize_t)sizeof b && b[0] == 0;
+    return there ? b[1] << 16 | b[2] << 8 | b[3] : 0;
+}
+
+/* Goes over a file's chunks; what is damaged libpng says later. */
+static chunks find_chunks(int file)
+{
+    struct stat about;
+    const off_t end = fstat(file, &about) == 0 ? about.st_size : 0;
+    chunks found = {.orientation = 0};
+    int by_text = 0;
+    unsigned char head[8];
+    for (off_t at = 8; pread(file, head, sizeof head, at) == (ssize_t)sizeof head;) {
+        uint32_t size = (uint32_t)head[0] << 24 | (uint32_t)head[1] << 16 | (uint32_t)head[2] << 8 | head[3];
+        const char *name = (const char *)head + 4;
+        if (memcmp(name, "cICP", 4) == 0 && size == 4) found.has_cicp = pread(file, found.cicp, 4, at + 8) == 4;
+        if (memcmp(name, "eXIf", 4) == 0) found.orientation = orientation_in(file, at + 8, size);
+        found.overfull |= memcmp(name, "IDAT", 4) != 0 && (off_t)size > end - at;
+        bool packed = memcmp(name, "zTXt", 4) == 0;
+        if (by_text == 0 && (packed || memcmp(name, "tEXt", 4) == 0))
+            by_text = orientation_in_text(file, at + 8, size, packed);
+        if (memcmp(name, "IDAT", 4) == 0) found.packed += size;
+        if (memcmp(name, "acTL", 4) == 0 && size == 8) found.frames = frames_in(file, at + 8);
+        if (memcmp(name, "IEND", 4) == 0) break;
+        at += 12 + (off_t)size;
+    }
+    if (found.orientation == 0) found.orientation = by_text ? by_text : 1;
+    return found;
+}
+
+/* Near the gamma of screens a curve is sRGB's (as the PNG specification has it), which is no power, unless the
+ * primaries are others; ImageMagick keeps linear pictures as PNGs of gamma 1. */
+static picture_light light_of_gamma(const reader *r)
+{
+    picture_light light = {.said = png_get_valid(r->png, r->info, PNG_INFO_sRGB) != 0};
+    double gamma = 0, xy[8];
+    if (light.said) return light;
+    bool known = png_get_gAMA(r->png, r->info, &gamma) && gamma >= 0.1 && gamma <= 10;
+    if (png_get_cHRM(r->png, r->info, xy + 6, xy + 7, xy, xy + 1, xy + 2, xy + 3, xy + 4, xy + 5)) {
+        float rounded[8];
+        for (int i = 0; i < 8; i++)
+            rounded[i] = (float)xy[i];
+        picture_light_set_primaries(rounded, &light);
+    }
+    light.said = known;
+    bool screen = fabs(gamma * 2.2 - 1) < 0.05 && !light.has_primaries;
+    if (!known || screen) return light;
+    light.curve = PICTURE_CURVE_POWER;
+    light.exponent = (float)(1 / gamma);
+    return light;
+}
+
+/* The codes' meaning: by cICP, else by a profile, which is left to others, else by sRGB, gAMA and cHRM. */
+static status find_light(reader *r, const char *path)
+{
+    const unsigned char *cicp = r->chunks.cicp;
+    int primaries = cicp[0], transfer = cicp[1], matrix = cicp[2], full = cicp[3];
+    r->profile = png_get_valid(r->png, r->info, PNG_INFO_iCCP) != 0;
+    if (!r->chunks.has_cicp) {
+        r->layout.light = light_of_gamma(r);
+        return OK;
+    }
+    if (matrix != 0 || !picture_light_of_cicp(primaries, transfer, &r->layout.light))
+        return fail(
+            ERROR_INPUT,
+            "cannot read %s: its cICP chunk states primaries %d, transfer %d and matrix %d, which are not known "
+            "here; save it as sRGB",
+            path, primaries, transfer, matrix);
+    r->layout.light.narrow = !full;
+    r->profile &= !r->layout.light.said;
+    return OK;
+}
+
+static bool read_head(reader *r)
+{
+    if (setjmp(png_jmpbuf(r->png))) return false;
+    png_init_io(r->png, r->file);
+    png_set_user_limits(r->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_read_info(r->png, r->info);
+    r->layout.width = (int)png_get_image_width(r->png, r->info);
+    r->layout.height = (int)png_get_image_height(r->png, r->info);
+    r->interlaced = png_get_interlace_type(r->png, r->info) != PNG_INTERLACE_NONE;
+    r->layout.sample = png_get_bit_depth(r->png, r->info) == 16 ? PICTURE_UINT16 : PICTURE_UINT8;
+    return true;
+}
+
+/* All that there is becomes grey or RGB, with alpha or without, of 8 or 16 bits. Takes a row's memory. */
+static bool begin_rows(reader *r)
+{
+    if (setjmp(png_jmpbuf(r->png))) return false;
+    png_set_expand(r->png);
+    png_set_swap(r->png); /* of 16 bits, the largest first in the file */
+    (void)png_set_interlace_handling(r->png);
+    png_read_update_info(r->png, r->info);
+    r->layout.bands = png_get_channels(r->png, r->info);
+    r->layout.alpha = r->layout.bands % 2 == 0;
+    return true;
+}
+
+static bool read_row(reader *r)
+{
+    if (setjmp(png_jmpbuf(r->png))) return false;
+    png_read_row(r->png, r->codes, NULL);
+    return true;
+}
+
+static bool read_all_rows(reader *r)
+{
+    if (setjmp(png_jmpbuf(r->png))) return false;
+    png_read_image(r->png, r->rows);
+    return true;
+}
+
+static status damaged(const reader *r, const char *path)
+{
+    return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
+}
+
+static size_t line_bytes(const reader *r)
+{
+    return (size_t)r->layout.width * (size_t)r->layout.bands * (r->layout.sample == PICTURE_UINT16 ? 2 : 1);
+}
+
+static status make_codes(reader *r, const char *path)
+{
+    size_t height = r->interlaced ? (size_t)r->layout.height : 1;
+    r->codes = malloc(line_bytes(r) * height);
+    r->rows = malloc(height * sizeof *r->rows);
+    if (!r->codes || !r->rows) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    for (size_t y = 0; y < height; y++)
+        r->rows[y] = r->codes + y * line_bytes(r);
+    return OK;
+}
+
+static status read_rows(reader *r, const char *path)
+{
+    if (r->interlaced && !read_all_rows(r)) return damaged(r, path);
+    for (int y = 0; y < r->layout.height; y++) {
+        if (!r->interlaced && !read_row(r)) return damaged(r, path);
+        picture_rows_put(r->to, y, r->interlaced ? r->rows[y] : r->codes);
+    }
+    return OK;
+}
+
+/* No compression of PNG's makes more of a byte; a claim beyond that takes memory and time for nothing. */
+static bool is_long_enough(const reader *r)
+{
+    const double most = 1032;
+    return (double)line_bytes(r) * r->layout.height <= most * ((double)r->chunks.packed + 64);
+}
+
+static status check_budget(const reader *r, const char *path)
+{
+    const picture_layout *l = &r->layout;
+    status s = picture_check_size(path, l->width, l->height);
+    if (s != OK || !r->interlaced) return s;
+    return picture_check_whole(path, l->width, l->height, l->sample == PICTURE_UINT16 ? 8 : 4, "without interlacing");
+}
+
+static status read_open(reader *r, const char *path, picture_colour how, img *color, img *alpha)
+{
+    r->chunks = find_chunks(fileno(r->file));
+    if (r->chunks.overfull) return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+    if (!read_head(r)) return fail(ERROR_INPUT, "cannot read %s: %s", path, r->words);
+    status s = check_budget(r, path);
+    if (s == OK) s = find_light(r, path);
+    if (s != OK || r->profile || !color) return s;
+    r->layout.orientation = r->chunks.orientation;
+    if (!begin_rows(r)) return damaged(r, path);
+    if (!is_long_enough(r)) return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+    s = make_codes(r, path);
+    if (s == OK) s = picture_rows_new(&r->layout, how, color, alpha, &r->to);
+    return s == OK ? read_rows(r, path) : s;
+}
+
+status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head)
+{
+    reader r;
+    status s = reader_open(&r, path) ? OK : fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    if (s == OK) s = read_open(&r, path, how, color, alpha);
+    *head = (picture_head){.width = r.layout.width,
+                           .height = r.layout.height,
+                           .bits = r.layout.sample == PICTURE_UINT16 ? 16 : 8,
+                           .frames = r.chunks.frames,
+                           .plain = !r.profile,
+                           .light = r.layout.light};
+    reader_free(&r);
+    return s;
+}

@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: MIT */
+#include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/metadata/box_file.h"
+#include "image/metadata/exif.h"
+#include "image/formats/picture_rows.h"
+#include "image/metadata/profile.h"
+#include "image/start.h"
+#include "image/vips_library.h"
+
+/* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be
+ * written as the last argument: in which order arguments are computed is the compiler's choice. */
+static bool replace(VipsImage **image, VipsImage *const *made, int failed)
+{
+    if (failed) return false;
+    vips()->g_object_unref(*image);
+    *image = *made;
+    return true;
+}
+
+typedef int loader(const char *path, VipsImage **out, ...);
+
+/* Each kind by its own: asked to find one, libvips shows what it does not know, such as a file cut short, to all that
+ * it has, and CFITSIO, one of the libraries behind it, crashes now and then on what is not its own. */
+static loader *loader_of(picture_kind kind)
+{
+    switch (kind) {
+    case PICTURE_PNG:
+        return vips()->pngload;
+    case PICTURE_JPEG:
+        return vips()->jpegload;
+    case PICTURE_TIFF:
+        return vips()->tiffload;
+    case PICTURE_WEBP:
+        return vips()->webpload;
+    case PICTURE_HDR:
+        return vips()->radload;
+    case PICTURE_GIF:
+        return vips()->gifload;
+    case PICTURE_HEIC:
+        return vips_load_heif() ? vips()->heifload : NULL;
+    case PICTURE_EXR:
+    case PICTURE_RAW:
+    case PICTURE_BMP:
+    case PICTURE_PNM:
+    case PICTURE_TGA:
+    case PICTURE_OTHER:
+    case PICTURE_UNKNOWN:
+        break;
+    }
+    return NULL;
+}
+
+/* libvips divides a TIFF's colours by an alpha of 0 to 255, of floats, too, whose alpha is 0 to 1 (8.14). That is
+ * undone by its inverse, whatever it took for the range, and then done by the range of floats. */
+static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
+{
+    VipsImage *made = NULL;
+    if (vips()->image_get_format(*image) != VIPS_FORMAT_FLOAT || !page->premultiplied) return true;
+    return replace(image, &made, vips()->premultiply(*image, &made, NULL)) &&
+           replace(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
+}
+
+/* Reads the numbers that a HEIC or AVIF states its codes by. They are codes for screens always, however many bits. */
+static status find_heif_light(const char *path, picture_light *light)
+{
+    int n[3];
+    FILE *file = file_open(path);
+    bool stated = file && box_read_colour(file, n);
+    if (file) fclose(file);
+    *light = (picture_light){.said = true};
+    if (!stated || picture_light_of_cicp(n[0], n[1], light)) {
+        light->said = true;
+        return OK;
+    }
+    return fail(ERROR_INPUT,
+                "cannot read %s: it states primaries %d and transfer %d, which are not known here; save it as sRGB",
+                path, n[0], n[1]);
+}
+
+/* Finds what a file says of its codes beside a profile. */
+static status find_light(const char *path, picture_kind kind, picture_tiff_page *page, picture_light *light)
+{
+    exif_facts facts;
+    *light = (picture_light){.said = false};
+    if (kind == PICTURE_HDR) return picture_check_hdr(path);
+    if (kind == PICTURE_HEIC) return find_heif_light(path, light);
+    if (kind == PICTURE_TIFF) {
+        status s = picture_check_tiff(path, page);
+        *light = page->light;
+        return s;
+    }
+    exif_read(path, &facts);
+    if (facts.colours == EXIF_COLOURS_ADOBE) *light = picture_light_of_adobe_rgb();
+    return OK;
+}
+
+/* light: what the file says of its codes beside a profile. */
+static status open_picture(const char *path, picture_kind kind, VipsImage **out, picture_light *light)
+{
+    VipsImage *image = NULL;
+    picture_tiff_page page = {.number = 0};
+    loader *load = loader_of(kind);
+    if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
+    status s = find_light(path, kind, &page, light);
+    if (s != OK) return s;
+    /* what is read in sequence is not kept for the next time, when the file may be another */
+    int failed = kind == PICTURE_TIFF
+                     ? load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, "page",
+                            page.number, NULL)
+                     : load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, NULL);
+    if (failed && (s = picture_check_cut(path, kind)) == OK) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (failed) return s;
+    s = picture_check_size(path, vips()->image_get_width(image), vips()->image_get_height(image));
+    if (s == OK) s = picture_check_held(path, kind, vips()->image_get_width(image), vips()->image_get_height(image));
+    if (s == OK && !divide_by_alpha(&image, &page)) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (s == OK)
+        *out = image;
+    else
+        vips()->g_object_unref(image);
+    return s;
+}
+
+/* From the codings of Radiance files and of 8-bit CIELAB to samples. */
+static bool unpack(VipsImage **image)
+{
+    VipsImage *made = NULL;
+    VipsCoding coding = vips()->image_get_coding(*image);
+    if (coding == VIPS_CODING_RAD) return replace(image, &made, vips()->rad2float(*image, &made, NULL));
+    if (coding != VIPS_CODING_LABQ) return true;
+    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_LAB, NULL));
+}
+
+/* Whether the samples already mean sRGB, grey or linear light, so that our own tables decode them. */
+static bool is_plain(VipsInterpretation i)
+{
+    return i == VIPS_INTERPRETATION_MULTIBAND || i == VIPS_INTERPRETATION_B_W || i == VIPS_INTERPRETATION_sRGB ||
+           i == VIPS_INTERPRETATION_RGB || i == VIPS_INTERPRETATION_RGB16 || i == VIPS_INTERPRETATION_GREY16 ||
+           i == VIPS_INTERPRETATION_scRGB || i == VIPS_INTERPRETATION_HISTOGRAM;
+}
+
+/* The part of a picture that is asked for: its pixels, or its head alone. */
+typedef struct request {
+    const char *path;
+    picture_kind kind;
+    picture_colour how;
+    img *color, *alpha;
+    picture_head *head;
+    bool by_profile;
+    bool *profiled; /* becomes true where a profile was used */
+} request;
+
+/* Tells whether a profile says what the codes are, and is to be heeded. */
+static bool has_profile(VipsImage *image, const request *r)
+{
+    return r->by_profile && vips()->band_format_isint(vips()->image_get_format(image)) && profile_is_fit(image);
+}
+
+/* Brings other colour spaces to sRGB: by the embedded profile, at 16 bits so that dark codes keep their steps, or by
+ * what the file says it is. */
+static bool convert_space(VipsImage **image, const request *r)
+{
+    VipsImage *made = NULL;
+    if (has_profile(*image, r)) {
+        *r->profiled = true;
+        return replace(image, &made, !profile_apply(*image, &made));
+    }
+    if (is_plain(vips()->image_get_interpretation(*image))) return true;
+    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
+}
+
+/* Hands on what libvips has ready: whole rows, from the top. */
+static int put_rows(VipsRegion *from, VipsRect *area, void *context)
+{
+    for (int y = area->top; y < area->top + area->height; y++)
+        picture_rows_put(context, y, from->data + (ptrdiff_t)(y - from->valid.top) * VIPS_REGION_LSKIP(from));
+    return 0;
+}
+
+static status find_sample(VipsImage *image, const char *path, picture_sample *sample)
+{
+    VipsBandFormat format = vips()->image_get_format(image);
+    *sample = format == VIPS_FORMAT_UCHAR    ? PICTURE_UINT8
+              : format == VIPS_FORMAT_USHORT ? PICTURE_UINT16
+                                             : PICTURE_FLOAT;
+    if (*sample != PICTURE_FLOAT || format == VIPS_FORMAT_FLOAT || format == VIPS_FORMAT_DOUBLE) return OK;
+    return fail(ERROR_INPUT, "cannot read %s: its samples are of type %s; 8 or 16 bits or floats are read", path,
+                vips()->enum_nick(vips()->band_format_get_type(), format));
+}
+
+static status find_layout(VipsImage *image, const char *path, picture_layout *out)
+{
+    *out = (picture_layout){.width = vips()->image_get_width(image),
+                            .height = vips()->image_get_height(image),
+                            .bands = vips()->image_get_bands(image),
+                            .alpha = vips()->image_hasalpha(image),
+                            .orientation = vips()->image_get_orientation(image)};
+    return find_sample(image, path, &out->sample);
+}
+
+static status take_rows(VipsImage **image, const char *path, const picture_layout *layout, picture_colour how,
+                        img *color, img *alpha)
+{
+    VipsImage *made = NULL;
+    picture_rows *rows;
+    if (layout->sample == PICTURE_FLOAT && !replace(image, &made, vips()->cast(*image, &made, VIPS_FORMAT_FLOAT, NULL)))
+        return vips_refusal(ERROR_INPUT, "read", path);
+    status s = picture_rows_new(layout, how, color, alpha, &rows);
+    if (s == OK && vips()->sink_disc(*image, put_rows, rows)) s = vips_refusal(ERROR_INPUT, "read", path);
+    picture_rows_free(rows);
+    return s;
+}
+
+/* libvips does not look for it in a PNG's texts. */
+static int orientation_of(const char *path)
+{
+    exif_facts facts;
+    exif_read(path, &facts);
+    return facts.orientation;
+}
+
+/* light: the codes' own, which other spaces and profiles are brought to sRGB from. */
+static status decode_open(VipsImage **image, const request *r, picture_light light)
+{
+    bool decode = r->how == PICTURE_LINEARIZE;
+    picture_layout layout;
+    const bool floats = !vips()->band_format_isint(vips()->image_get_format(*image));
+    if (has_profile(*image, r) || !is_plain(vips()->image_get_interpretation(*image)))
+        light = (picture_light){.said = false};
+    if (decode && floats && vips()->image_get_typeof(*image, VIPS_META_ICC_NAME)) {
+        status known = profile_light(*image, r->path, &light);
+        if (known != OK) return known;
+    }
+    if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(ERROR_INPUT, "read", r->path);
+    VipsInterpretation space = vips()->image_get_interpretation(*image);
+    if (!decode && !is_plain(space))
+        return fail(ERROR_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
+                    vips()->enum_nick(vips()->interpretation_get_type(), space));
+    status s = find_layout(*image, r->path, &layout);
+    if (r->kind == PICTURE_PNG) layout.orientation = orientation_of(r->path);
+    layout.light = light;
+    layout.coded = floats;
+    return s == OK ? take_rows(image, r->path, &layout, r->how, r->color, r->alpha) : s;
+}
+
+static status decode(const request *r)
+{
+    VipsImage *opened = NULL, *image = NULL;
+    picture_light light;
+    status s = open_picture(r->path, r->kind, &opened, &light);
+    if (s != OK) return s;
+    image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
+    s = decode_open(&image, r, light);
+    vips()->g_object_unref(image);
+    /* last: with it goes the colour profile of a HEIF, which no copy keeps alive */
+    vips()->g_object_unref(opened);
+    return s;
+}
+
+static status look(const request *r)
+{
+    VipsImage *image = NULL;
+    picture_light light;
+    status s = open_picture(r->path, r->kind, &image, &light);
+    if (s != OK) return s;
+    VipsBandFormat format = vips()->image_get_format(image);
+    *r->head = (picture_head){
+        .width = vips()->image_get_width(image),
+        .height = vips()->image_get_height(image),
+        .bits = format == VIPS_FORMAT_UCHAR    ? 8
+                : format == VIPS_FORMAT_USHORT ? 16
+                                               : 32,
+        .frames = r->kind == PICTURE_GIF || r->kind == PICTURE_WEBP ? vips()->image_get_n_pages(image) : 1,
+        .profile = vips()->image_get_typeof(image, VIPS_META_ICC_NAME) != 0,
+        .light = light};
+    vips()->g_object_unref(image);
+    return OK;
+}
+
+/* libvips keeps its words for all threads in one place. Pictures are read side by side all the same; one that is
+ * refused is read again while no other is, so that the words are about it. */
+static status read_side_by_side(status (*work)(const request *r), const request *r)
+{
+    static pthread_rwlock_t reading = PTHREAD_RWLOCK_INITIALIZER;
+    status s = vips_begin();
+    if (s != OK) return s;
+    pthread_rwlock_rdlock(&reading);
+    s = work(r);
+    pthread_rwlock_unlock(&reading);
+    if (s == OK) return OK;
+    img_free(r->color);
+    img_free(r->alpha);
+    pthread_rwlock_wrlock(&reading);
+    vips()->error_clear();
+    s = work(r);
+    pthread_rwlock_unlock(&reading);
+    return s;
+}
+
+/* A damaged profile is ignored, as viewers do. */
+status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
+{
+    bool profiled = false;
+    request r = {path, kind, how, color, alpha, NULL, true, &profiled};
+    status s = read_side_by_side(decode, &r);
+    if (s == OK || !profiled) return s;
+    r.by_profile = false;
+    return read_side_by_side(decode, &r);
+}
+
+status picture_look(const char *path, picture_kind kind, picture_head *head)
+{
+    return read_side_by_side(look, &(request){.path = path, .kind = kind, .head = head});
+}

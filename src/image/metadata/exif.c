@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/metadata/exif.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/metadata/exif_find.h"
+#include "image/metadata/exif_text.h"
+
+enum {
+    FLASH = 37385,
+    FOCAL_LENGTH = 37386,
+    FOCAL_LENGTH_35MM = 41989,
+    SENSOR_RESOLUTION = 41486, /* pixels a unit, along a row */
+    SENSOR_UNIT = 41488,
+    PIXELS_WIDE = 40962,
+    PIXELS_HIGH = 40963,
+};
+enum { FIRED = 1, NO_FLASH_THERE = 32 }; /* bits of FLASH */
+static const double DIAGONAL_35MM = 43.2666, SHORTEST = 1, LONGEST = 5000;
+
+/* The page that has an entry: the EXIF page below the first, or the first itself, as in Canon's CR3. */
+static uint64_t page_with(const tiff_head *t, unsigned tag)
+{
+    uint64_t below = tiff_value(t, t->page[0], TIFF_EXIF);
+    return below && tiff_count(t, below, tag) ? below : t->page[0];
+}
+
+static double number(const tiff_head *t, unsigned tag)
+{
+    return tiff_real(t, page_with(t, tag), tag);
+}
+
+/* By the standard 1 is no unit and 2 inches, which is meant where nothing is said; 4 and 5 are some cameras' own. */
+static double unit_in_mm(const tiff_head *t)
+{
+    switch ((int)number(t, SENSOR_UNIT)) {
+    case 3:
+        return 10;
+    case 4:
+        return 1;
+    case 5:
+        return 0.001;
+    default:
+        return 25.4;
+    }
+}
+
+/* From the focal length and the sensor's size. */
+static double focal_by_sensor(const tiff_head *t)
+{
+    double resolution = number(t, SENSOR_RESOLUTION), pixels = hypot(number(t, PIXELS_WIDE), number(t, PIXELS_HIGH));
+    if (!(resolution > 0) || !(pixels > 0)) return 0;
+    double diagonal = pixels / resolution * unit_in_mm(t);
+    return number(t, FOCAL_LENGTH) * DIAGONAL_35MM / diagonal;
+}
+
+exif_colours exif_colours_of(const tiff_head *t, uint64_t page)
+{
+    enum { RULE = 1, SRGB = 1, ADOBE = 2 };
+    uint32_t space = tiff_value(t, page, TIFF_EXIF_COLOUR_SPACE);
+    uint64_t rules = tiff_value(t, page, TIFF_EXIF_INTEROPERABILITY);
+    bool r03 = rules && tiff_value_at(t, rules, RULE, 0) == 'R' && tiff_value_at(t, rules, RULE, 1) == '0' &&
+               tiff_value_at(t, rules, RULE, 2) == '3';
+    if (space == ADOBE || (space != SRGB && r03)) return EXIF_COLOURS_ADOBE;
+    return space == SRGB ? EXIF_COLOURS_SRGB : EXIF_COLOURS_UNKNOWN;
+}
+
+static void take_facts(const tiff_head *t, exif_facts *out)
+{
+    uint32_t orientation = tiff_value(t, t->page[0], TIFF_ORIENTATION);
+    if (orientation >= 1 && orientation <= 8) out->orientation = (int)orientation;
+    out->colours = exif_colours_of(t, tiff_value(t, t->page[0], TIFF_EXIF));
+    uint64_t page = page_with(t, FLASH);
+    if (tiff_count(t, page, FLASH)) {
+        uint32_t flash = tiff_value(t, page, FLASH);
+        out->flash = flash & FIRED && !(flash & NO_FLASH_THERE) ? EXIF_FLASH_FIRED : EXIF_FLASH_NONE;
+    }
+    double focal = number(t, FOCAL_LENGTH_35MM);
+    if (!(focal >= SHORTEST)) focal = focal_by_sensor(t);
+    if (focal >= SHORTEST && focal <= LONGEST) out->focal_35mm = (float)focal;
+}
+
+void exif_parse(const void *exif, size_t size, exif_facts *out)
+{
+    static const char mark[6] = {'E', 'x', 'i', 'f', 0, 0};
+    *out = (exif_facts){.orientation = 1};
+    const char *bytes = exif;
+    size_t skip = size > sizeof mark && memcmp(bytes, mark, sizeof mark) == 0 ? sizeof mark : 0;
+    FILE *file = size > skip ? fmemopen((void *)(bytes + skip), size - skip, "rb") : NULL;
+    tiff_head t;
+    if (!file) return;
+    if (tiff_open(&t, file)) take_facts(&t, out);
+    fclose(file);
+}
+
+static void parse_part(FILE *file, exif_place place, exif_facts *out)
+{
+    char *bytes = malloc(place.size);
+    if (!bytes) return;
+    bool there = fseeko(file, (off_t)place.at, SEEK_SET) == 0 && fread(bytes, 1, place.size, file) == place.size;
+    if (there) exif_parse(bytes, place.size, out);
+    free(bytes);
+}
+
+static void parse_text(FILE *file, exif_facts *out)
+{
+    void *exif;
+    size_t size;
+    if (!exif_text_find(file, &exif, &size)) return;
+    exif_parse(exif, size, out);
+    free(exif);
+}
+
+void exif_read(const char *path, exif_facts *out)
+{
+    *out = (exif_facts){.orientation = 1};
+    FILE *file = file_open(path);
+    if (!file) return;
+    exif_place place;
+    tiff_head t;
+    if (exif_find(file, &place)) {
+        if (place.size)
+            parse_part(file, place, out);
+        else if (tiff_open(&t, file))
+            take_facts(&t, out);
+    } else {
+        parse_text(file, out);
+    }
+    fclose(file);
+}

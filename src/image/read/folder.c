@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/read/folder.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/file.h"
+#include "base/text/text.h"
+#include "image/read/mask_look.h"
+#include "image/read/mask_names.h"
+#include "image/read/read.h"
+
+static const char *const named_as_pictures[] = {IMAGE_ENDINGS, NULL};
+static const char *const named_as_raw[] = {IMAGE_RAW_ENDINGS, NULL};
+static const char *const named_by_cameras[] = {IMAGE_CAMERA_ENDINGS, NULL};
+
+/* Pictures by their content that are no photographs: Canon's thumbnails, and copies that programs keep. */
+static const char *const copies[] = {".thm", ".bak", ".tmp", ".part", ".crdownload", "~", NULL};
+
+/* Notes that programs keep beside a picture. */
+static const char *const notes[] = {".xmp", ".aae", ".pp3", ".dop", ".thm", ".cos", ".arp", NULL};
+
+/* Data that a capture is read from, or that comes of it, beside texts. */
+static const char *const data[] = {".mat", ".npz", ".npy", ".ply", ".glb", NULL};
+
+static bool is_left_by_systems(const char *name)
+{
+    static const char *const names[] = {"thumbs.db", "ehthumbs.db", "desktop.ini", "picasa.ini", "icon\r"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcasecmp(name, names[i]) == 0) return true;
+    return false;
+}
+
+static img_folder_file look_at(char *path)
+{
+    img_folder_file f = {.path = path, .name = file_name_of(path)};
+    if (file_ends_in_any(f.name, copies)) return f;
+    f.format = img_format_of(path);
+    f.is_picture = f.format.is_read || (!f.format.name && file_ends_in_any(f.name, named_as_pictures));
+    f.is_raw = f.is_picture && (f.format.kind == PICTURE_RAW || file_ends_in_any(f.name, named_as_raw));
+    return f;
+}
+
+/* Names first: of many photographs that are named one by one each has this asked. */
+static const char *find_by_name(char *const *names, size_t count, const char *photo)
+{
+    const char *best = NULL;
+    int least = 0;
+    for (size_t i = 0; i < count; i++) {
+        const char *name = file_name_of(names[i]);
+        int rank = mask_name_has_word(name) ? mask_name_rank(name, photo, false) : 0;
+        if (rank == 0 || (best && rank >= least) || !look_at(names[i]).is_picture) continue;
+        best = name;
+        least = rank;
+    }
+    return best;
+}
+
+status img_folder_find_own_mask(const char *photo, char **mask)
+{
+    char **names, *folder = file_folder_of(photo);
+    size_t count;
+    *mask = NULL;
+    if (!folder) return fail(ERROR_MEMORY, "no memory for file names");
+    status s = file_list(folder, NULL, &names, &count);
+    if (s == OK) {
+        const char *found = find_by_name(names, count, file_name_of(photo));
+        if (found) /* spelled as the photograph is */
+            *mask = strchr(photo, '/') ? file_join(folder, found) : strdup(found);
+        if (found && !*mask) s = fail(ERROR_MEMORY, "no memory for file names");
+        file_list_free(names, count);
+    }
+    free(folder);
+    return s == ERROR_MEMORY ? s : OK; /* a folder may be closed to us whose files are not */
+}
+
+/* Whether a photograph of its name lies beside it. */
+static bool has_photo(const img_folder *f, const img_folder_file *mask)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (f->at[i].is_picture && mask_name_rank(mask->name, f->at[i].name, false)) return true;
+    return false;
+}
+
+static bool is_mask(const img_folder *f, const img_folder_file *file)
+{
+    if (!file->is_picture || !mask_name_has_word(file->name)) return false;
+    if (mask_name_is_whole(file->name) || mask_name_is_sure(file->name) || has_photo(f, file)) return true;
+    return mask_name_is_likely(file->name) && mask_looks_like_one(file->path);
+}
+
+status img_folder_read(const char *folder, img_folder *out)
+{
+    char **names;
+    size_t count;
+    *out = (img_folder){0};
+    status s = file_list(folder, NULL, &names, &count);
+    if (s != OK) return s;
+    out->at = calloc(count + 1, sizeof *out->at);
+    if (!out->at) {
+        file_list_free(names, count);
+        return fail(ERROR_MEMORY, "no memory for the names in %s", folder);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (is_left_by_systems(file_name_of(names[i])))
+            free(names[i]);
+        else
+            out->at[out->count++] = look_at(names[i]);
+    free(names);
+    for (size_t i = 0; i < out->count; i++)
+        out->at[i].is_mask = is_mask(out, &out->at[i]);
+    return OK;
+}
+
+void img_folder_free(img_folder *f)
+{
+    for (size_t i = 0; i < f->count; i++)
+        free(f->at[i].path);
+    free(f->at);
+    *f = (img_folder){0};
+}
+
+bool img_folder_is_photo(const img_folder_file *file)
+{
+    return file->is_picture && !file->is_mask;
+}
+
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && dot > name ? (size_t)(dot - name) : strlen(name);
+}
+
+bool img_folder_is_beside_raw(const img_folder *f, const img_folder_file *file)
+{
+    picture_kind kind = file->format.kind;
+    bool developed = kind == PICTURE_JPEG || kind == PICTURE_HEIC || file_ends_in_any(file->name, named_by_cameras);
+    if (file->is_raw || !developed) return false;
+    size_t stem = stem_length(file->name);
+    for (size_t i = 0; i < f->count; i++)
+        if (f->at[i].is_raw && stem_length(f->at[i].name) == stem && strncasecmp(f->at[i].name, file->name, stem) == 0)
+            return true;
+    return false;
+}
+
+const img_folder_file *img_folder_mask_of(const img_folder *f, const char *photo, bool apart)
+{
+    const img_folder_file *best = NULL;
+    int least = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        const img_folder_file *file = &f->at[i];
+        int rank = apart || file->is_mask ? mask_name_rank(file->name, photo, apart) : 0;
+        if (!file->is_picture || rank == 0 || (best && rank >= least)) continue;
+        best = file;
+        least = rank;
+    }
+    return best;
+}
+
+const img_folder_file *img_folder_whole_mask(const img_folder *f)
+{
+    const img_folder_file *best = NULL;
+    int least = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        const img_folder_file *file = &f->at[i];
+        if (!file->is_mask) continue;
+        bool whole = mask_name_is_whole(file->name), own = !whole && has_photo(f, file);
+        int rank = whole ? 1 : own ? 5 : 3;
+        rank += !file_ends_in(file->name, ".png");
+        if (best && rank >= least) continue;
+        best = file;
+        least = rank;
+    }
+    return best;
+}
+
+static bool is_text(const char *path)
+{
+    static const char blanks[] = {'\t', '\n', '\f', '\r'};
+    char head[IMG_FORMAT_HEAD];
+    FILE *file = file_open(path);
+    if (!file) return false;
+    size_t size = fread(head, 1, sizeof head, file);
+    fclose(file);
+    char *text = NULL;
+    bool plain = text_decode(head, size, path, &text) == OK;
+    for (const char *c = text; plain && *c; c++)
+        plain = (unsigned char)*c >= ' ' || memchr(blanks, *c, sizeof blanks);
+    free(text);
+    return plain;
+}
+
+/* Whether it goes with pictures, so that it is not worth a word. */
+static bool is_beside(const img_folder_file *file, bool capture)
+{
+    if (file->is_picture || file->format.name) return false;
+    if (file_ends_in_any(file->name, notes)) return true;
+    return capture && !file_ends_in_any(file->name, copies) &&
+           (file_ends_in_any(file->name, data) || is_text(file->path));
+}
+
+status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list)
+{
+    char unread[64];
+    if (is_beside(file, capture)) return OK;
+    if (!file->is_picture) {
+        snprintf(unread, sizeof unread, "%s is not read", file->format.name ? file->format.name : "");
+        why = file->format.name ? unread : file_ends_in_any(file->name, copies) ? "a copy" : "no picture";
+    }
+    return skipped_add(list, file->name, why);
+}

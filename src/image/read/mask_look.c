@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/read/mask_look.h"
+
+#include <math.h>
+
+#include "image/read/read.h"
+
+/* Values so near to the darkest or the brightest, a share of their distance, are these; lossy files scatter so. */
+static const float NEAR = 0.1f;
+
+/* Others at most, a share of the rarer of the two: a photograph of an object before black or white has far more. */
+static const double MOST_BETWEEN = 0.25;
+
+bool mask_looks_like_one(const char *path)
+{
+    img grey;
+    if (img_read_grey(path, &grey) != OK) return false;
+    size_t count = img_value_count(&grey), low = 0, high = 0;
+    float least = grey.data[0], most = grey.data[0];
+    for (size_t i = 0; i < count; i++) {
+        least = fminf(least, grey.data[i]);
+        most = fmaxf(most, grey.data[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        low += grey.data[i] - least <= NEAR * (most - least);
+        high += most - grey.data[i] <= NEAR * (most - least);
+    }
+    img_free(&grey);
+    if (!(most > least)) return false;
+    return (double)(count - low - high) <= MOST_BETWEEN * (double)(low < high ? low : high);
+}

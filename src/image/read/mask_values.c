@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/read/mask_values.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Different values that are told apart, and places for them in a table of hashes. */
+enum { MOST_VALUES = 256, SLOTS = 1024, MOST_CHANNELS = 3 };
+
+/* A value is an area's rather than an edge's or noise's if so much of it, a share, has nothing else around it, and if
+ * it has so many pixels, and a share of the picture's. */
+static const double least_inside = 0.4, least_share = 0.002;
+enum { LEAST_AREA = 9 };
+
+/* Distance of values that lossy files make of one, and the least of two that are meant to differ. */
+static const float scatter = 24 / 255.0f, least_contrast = 16 / 255.0f;
+
+/* Two groups are two values if so many of the pixels, a share, are about as far from a group's mean as noise is: a
+ * share of the distance of the means. */
+static const double least_near = 0.85;
+static const float noise = 0.25f;
+
+/* Floats above have a unit of their own. */
+static const float beyond_white = 1.5f;
+
+typedef struct value {
+    float sample[MOST_CHANNELS];
+    float brightness;
+    size_t count, inside; /* pixels, and those of them with nothing else around them */
+} value;
+
+typedef struct tally {
+    value at[MOST_VALUES];
+    uint16_t slot[SLOTS]; /* 1 + a place in at, or 0 */
+    size_t count;
+    bool many; /* values have no room in the table: a soft mask, or a photograph */
+} tally;
+
+static float brightness_of(const float *sample, int channels)
+{
+    float sum = 0;
+    for (int c = 0; c < channels; c++)
+        sum += sample[c];
+    return sum / (float)channels;
+}
+
+static bool is_same(const float *a, const float *b, int channels)
+{
+    for (int c = 0; c < channels; c++)
+        if (a[c] != b[c]) return false;
+    return true;
+}
+
+static size_t hash(const float *sample, int channels)
+{
+    uint64_t h = 0;
+    for (int c = 0; c < channels; c++) {
+        float same_zero = sample[c] + 0.0f; /* -0 equals 0, whose bits differ */
+        uint32_t bits;
+        memcpy(&bits, &same_zero, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+    }
+    return (size_t)(h >> 40) % SLOTS;
+}
+
+/* NULL, and many, without room. */
+static value *find_value(tally *t, const float *sample, int channels)
+{
+    size_t slot = hash(sample, channels);
+    for (; t->slot[slot]; slot = (slot + 1) % SLOTS)
+        if (is_same(t->at[t->slot[slot] - 1].sample, sample, channels)) return &t->at[t->slot[slot] - 1];
+    t->many = t->count == MOST_VALUES;
+    if (t->many) return NULL;
+    value *v = &t->at[t->count++];
+    t->slot[slot] = (uint16_t)t->count;
+    *v = (value){.brightness = brightness_of(sample, channels)};
+    memcpy(v->sample, sample, (size_t)channels * sizeof *sample);
+    return v;
+}
+
+static bool is_inside(const img *m, int x, int y)
+{
+    const float *p = img_at(m, x, y);
+    int n = m->channels;
+    return (x == 0 || is_same(p, p - n, n)) && (x + 1 == m->width || is_same(p, p + n, n)) &&
+           (y == 0 || is_same(p, img_at(m, x, y - 1), n)) && (y + 1 == m->height || is_same(p, img_at(m, x, y + 1), n));
+}
+
+static void count_values(const img *m, tally *t)
+{
+    value *last = NULL;
+    for (int y = 0; y < m->height && !t->many; y++)
+        for (int x = 0; x < m->width && !t->many; x++) {
+            const float *sample = img_at(m, x, y);
+            if (!last || !is_same(last->sample, sample, m->channels)) last = find_value(t, sample, m->channels);
+            if (!last) return;
+            last->count++;
+            last->inside += is_inside(m, x, y);
+        }
+}
+
+/* ---- values with areas of their own ---- */
+
+static int by_brightness(const void *a, const void *b)
+{
+    const value *v = a, *w = b;
+    return (v->brightness > w->brightness) - (v->brightness < w->brightness);
+}
+
+static bool is_area(const value *v, size_t pixels)
+{
+    return v->count >= LEAST_AREA && (double)v->count >= least_share * (double)pixels &&
+           (double)v->inside >= least_inside * (double)v->count;
+}
+
+/* Keeps the areas' values alone, the darkest first; of those that differ as one value does in lossy files, one. */
+static void keep_areas(tally *t, size_t pixels, bool lossy)
+{
+    size_t kept = 0, joined = 0;
+    for (size_t i = 0; i < t->count; i++)
+        if (is_area(&t->at[i], pixels)) t->at[kept++] = t->at[i];
+    qsort(t->at, kept, sizeof *t->at, by_brightness);
+    float before = -1;
+    for (size_t i = 0; i < kept; i++) {
+        bool same = lossy && joined && t->at[i].brightness - before < scatter;
+        before = t->at[i].brightness;
+        if (!same) t->at[joined++] = t->at[i];
+    }
+    t->count = joined;
+}
+
+static bool are_codes(const tally *t, float white)
+{
+    for (size_t i = 0; i < t->count; i++)
+        if (fabsf(t->at[i].brightness * white - roundf(t->at[i].brightness * white)) > 0.001f) return false;
+    return true;
+}
+
+/* "0, 1, 2 of 255", or colours as "#800000". */
+static void list_values(const tally *t, int channels, char *words, size_t size)
+{
+    enum { TOLD = 5 };
+    float white = channels > 1 || are_codes(t, 255) ? 255 : 65535;
+    size_t told = t->count < TOLD ? t->count : TOLD, at = 0;
+    for (size_t i = 0; i < told; i++) {
+        const float *v = t->at[i].sample;
+        const char *between = i ? ", " : "";
+        int n = channels > 1
+                    ? snprintf(words + at, size - at, "%s#%02x%02x%02x", between, (unsigned)(v[0] * 255 + 0.5f),
+                               (unsigned)(v[1] * 255 + 0.5f), (unsigned)(v[2] * 255 + 0.5f))
+                    : snprintf(words + at, size - at, "%s%.0f", between, (double)(v[0] * white));
+        at += (size_t)n;
+    }
+    if (told < t->count) at += (size_t)snprintf(words + at, size - at, ", ...");
+    if (channels == 1) snprintf(words + at, size - at, " of %.0f", (double)white);
+}
+
+static status refuse_labels(const char *path, const tally *t, int channels)
+{
+    char words[128];
+    list_values(t, channels, words, sizeof words);
+    return fail(ERROR_INPUT, "the mask %s has areas of %zu %s (%s): which is the object? Save it as white on black",
+                path, t->count, channels > 1 ? "colours" : "values", words);
+}
+
+static status refuse_equals(const char *path, const tally *t, int channels)
+{
+    char words[128];
+    list_values(t, channels, words, sizeof words);
+    return fail(ERROR_INPUT,
+                "the mask %s has two colours that are equally bright (%s): which is the object? Save it as white on "
+                "black",
+                path, words);
+}
+
+/* ---- coverage ---- */
+
+/* Whose values below low are 0 and above high are 1. */
+static status spread(const img *values, float low, float high, img *mask)
+{
+    status s = img_new(mask, values->width, values->height, 1);
+    size_t pixels = (size_t)values->width * (size_t)values->height, n = (size_t)values->channels;
+    for (size_t i = 0; i < pixels && s == OK; i++) {
+        float v = brightness_of(values->data + i * n, values->channels);
+        mask->data[i] = fminf(fmaxf((v - low) / (high - low), 0), 1);
+    }
+    return s;
+}
+
+static status as_it_is(const img *values, img *mask)
+{
+    return spread(values, 0, 1, mask);
+}
+
+/* Half white tells them apart already. */
+static status between(const img *values, float low, float high, img *mask)
+{
+    bool plain = low < 0.5f && high >= 0.5f;
+    return plain ? as_it_is(values, mask) : spread(values, low, high, mask);
+}
+
+enum { BINS = 256 };
+
+typedef struct groups {
+    float low, high; /* means */
+    double near;     /* share of the pixels that are near to one */
+    float least, most;
+} groups;
+
+static size_t bin_of(const img *values, size_t pixel)
+{
+    float v = brightness_of(values->data + pixel * (size_t)values->channels, values->channels);
+    return (size_t)(fminf(fmaxf(v, 0), 1) * (BINS - 1) + 0.5f);
+}
+
+/* The two groups whose means are farthest apart for their sizes (Otsu 1979). */
+static groups divide(const size_t bins[BINS])
+{
+    double total = 0, sum = 0, best = -1, below = 0, below_sum = 0;
+    groups g = {.least = -1};
+    for (int b = 0; b < BINS; b++) {
+        total += (double)bins[b];
+        sum += (double)bins[b] * b;
+        if (!bins[b]) continue;
+        g.most = (float)b / (BINS - 1);
+        if (g.least < 0) g.least = g.most;
+    }
+    for (int b = 0; b + 1 < BINS; b++) {
+        below += (double)bins[b];
+        below_sum += (double)bins[b] * b;
+        if (below == 0 || below == total) continue;
+        double low = below_sum / below, high = (sum - below_sum) / (total - below);
+        double apart = below * (total - below) * (high - low) * (high - low);
+        if (apart <= best) continue;
+        best = apart;
+        g.low = (float)(low / (BINS - 1));
+        g.high = (float)(high / (BINS - 1));
+    }
+    for (int b = 0; b < BINS; b++) {
+        float v = (float)b / (BINS - 1), off = fminf(fabsf(v - g.low), fabsf(v - g.high));
+        if (off <= noise * (g.high - g.low)) g.near += (double)bins[b] / total;
+    }
+    return g;
+}
+
+/* Without two areas of one value each: noise about two, or a soft mask. */
+static status from_groups(const char *path, const img *values, img *mask)
+{
+    size_t bins[BINS] = {0}, pixels = (size_t)values->width * (size_t)values->height;
+    for (size_t i = 0; i < pixels; i++)
+        bins[bin_of(values, i)]++;
+    groups g = divide(bins);
+    bool across = g.least < 0.5f && g.most >= 0.5f, even = g.most - g.least < least_contrast;
+    if (even || (g.low < 0.5f && g.high >= 0.5f)) return as_it_is(values, mask);
+    if (g.near >= least_near && g.high - g.low >= least_contrast) return spread(values, g.low, g.high, mask);
+    if (across) return as_it_is(values, mask);
+    return fail(ERROR_INPUT,
+                "the mask %s has no two values that stand out: they run from %.0f to %.0f of 255, all on one side of "
+                "half white; save it as white on black",
+                path, (double)(255 * g.least), (double)(255 * g.most));
+}
+
+/* Those of the whole picture; noise about one value has no areas. */
+static bool are_two(tally *t, bool lossy)
+{
+    if (t->many || t->count != 2 || (lossy && !(is_area(&t->at[0], 0) && is_area(&t->at[1], 0)))) return false;
+    qsort(t->at, 2, sizeof *t->at, by_brightness);
+    return true;
+}
+
+static status from_tally(const char *path, const img *values, bool lossy, tally *t, img *mask)
+{
+    count_values(values, t);
+    if (t->count == 1) return as_it_is(values, mask);
+    bool two = are_two(t, lossy);
+    if (!two && !t->many) keep_areas(t, (size_t)values->width * (size_t)values->height, lossy);
+    if (t->many || t->count < 2) return from_groups(path, values, mask);
+    float low = t->at[0].brightness, high = t->at[1].brightness;
+    if (t->count > 2) return refuse_labels(path, t, values->channels);
+    if (low == high) return refuse_equals(path, t, values->channels);
+    return two ? spread(values, low, high, mask) : between(values, low, high, mask);
+}
+
+static void scale(img *values)
+{
+    float most = 0;
+    size_t count = img_value_count(values);
+    for (size_t i = 0; i < count; i++)
+        most = fmaxf(most, values->data[i] = fmaxf(values->data[i], 0));
+    for (size_t i = 0; i < count && most >= beyond_white; i++)
+        values->data[i] /= most;
+}
+
+bool mask_is_even(const img *values)
+{
+    size_t count = img_value_count(values);
+    for (size_t i = 1; i < count; i++)
+        if (values->data[i] != values->data[0]) return false;
+    return true;
+}
+
+status mask_from_alpha(const img *alpha, img *mask)
+{
+    tally *t = calloc(1, sizeof *t);
+    if (!t) return fail(ERROR_MEMORY, "no memory to read a mask");
+    count_values(alpha, t);
+    status s =
+        are_two(t, false) ? spread(alpha, t->at[0].brightness, t->at[1].brightness, mask) : as_it_is(alpha, mask);
+    free(t);
+    return s;
+}
+
+status mask_from_values(const char *path, img *values, bool lossy, img *mask)
+{
+    tally *t = calloc(1, sizeof *t);
+    if (!t) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    scale(values);
+    status s = from_tally(path, values, lossy, t, mask);
+    free(t);
+    if (s != OK) img_free(mask);
+    return s;
+}

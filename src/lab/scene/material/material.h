@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/* A procedural svBRDF: paints laid over one another, each where its mask says, and relief finer than the mesh. */
+#ifndef MERLIN_LAB_SCENE_MATERIAL_MATERIAL_H
+#define MERLIN_LAB_SCENE_MATERIAL_MATERIAL_H
+
+#include "lab/scene/material/pattern.h"
+#include "lab/scene/scene.h"
+#include "lab/scene/shape/shape.h"
+#include "lab/scene/material/texture.h"
+
+/* One stuff: up to three colours mixed by a pattern, and a roughness that may follow it. */
+typedef struct paint {
+    int colours;
+    vec3 colour[3];
+    pattern mix;                /* used with two or three colours, or where roughness varies */
+    float roughness, spread;    /* at the middle of the mix; added over its whole range */
+    texture_place photographed; /* takes the colours' place, and the roughness's where it has a map of it */
+} paint;
+
+typedef struct layer {
+    uint32_t parts;  /* bit i: lies on part i (modulo 32) */
+    bool everywhere; /* no mask */
+    pattern mask;
+    float opacity;
+    paint paint;
+} layer;
+
+/* Normal detail: height x pattern above the surface, in units of the object's radius. */
+typedef struct bump {
+    uint32_t parts;
+    pattern pattern;
+    float height, step; /* step: how far apart the differences are taken, well under a feature */
+} bump;
+
+enum { LAYERS = 10, BUMPS = 3 };
+
+struct scn_material {
+    int layers, bumps;
+    layer layer[LAYERS];
+    bump bump[BUMPS];
+    bool embossed; /* a photographed ground has normal detail */
+    bool smudged;  /* roughness varies by itself */
+    pattern smudge;
+    float smudge_amount;
+};
+
+/* A random material for this mesh (its parts and references). NULL when memory ran out. */
+scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *traits);
+
+/* Lays photographed textures on some of the material's grounds, or on none. They must outlive it. */
+void material_wear(scn_material *material, const scn_textures *textures, rng *r);
+
+/* Where a material is looked up. */
+typedef struct material_points {
+    lane_set wanted;
+    lanes reference, facing; /* facing: the reference surface's normal */
+    uint8_t part[LANES];
+} material_points;
+
+void material_eval(const scn_material *material, const material_points *at, lanes *albedo, float roughness[LANES]);
+
+/* Differences d[0], d[1] of the normal detail's height a unit length along two unit tangents. */
+void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES]);
+
+#endif

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Limits of a mesh and its files. */
+#ifndef MERLIN_MESH_READ_MESH_LIMITS_H
+#define MERLIN_MESH_READ_MESH_LIMITS_H
+
+#include <stddef.h>
+
+/* Triangles of a mesh at most; bytes at most of a file, or of all that make one mesh. */
+enum { MESH_TRIANGLES = 5000000, MESH_BYTES = 1 << 30 };
+
+/* Returns how many triangles a mesh of so many bytes may have: five million, and of a small file, which can only repeat
+ * itself, one and what it has bytes for. */
+size_t mesh_most_triangles(size_t bytes);
+
+#endif

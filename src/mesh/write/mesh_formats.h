@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT */
+/* A built mesh as a file: one source a format. Internal to mesh_write.h. */
+#ifndef MERLIN_MESH_WRITE_MESH_FORMATS_H
+#define MERLIN_MESH_WRITE_MESH_FORMATS_H
+
+#include "mesh/write/mesh_build.h"
+
+status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+
+#endif

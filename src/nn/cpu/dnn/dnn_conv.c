@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: MIT */
+/* Convolutions by oneDNN.
+ *
+ * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
+ * layout and type it asked for, made anew after every change, with batch norm by running statistics folded into it. */
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "nn/cpu/kernels/conv_parts.h"
+#include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/kernels/kernels.h"
+#include "nn/cpu/kernels/steps.h"
+
+typedef struct conv {
+    dnn_call forward, data, weights;
+    dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
+    dnn_shape plain;                         /* the float32 weights */
+    void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
+    bool has_bias;
+} conv;
+
+static dnn_shape weights_shape(const nn_step *step, nn_type type, dnnl_format_tag_t order)
+{
+    const int kernel = step->at.kernel;
+    return (dnn_shape){4, {step->out.c, step->in[0].c, kernel, kernel}, dnn_type(type), order};
+}
+
+static dnn_shape any_weights(const nn_step *step, nn_type type)
+{
+    return weights_shape(step, type, dnnl_format_tag_any);
+}
+
+static dnn_shape bias_shape(const nn_step *step)
+{
+    return (dnn_shape){1, {step->out.c}, dnnl_f32, dnnl_a};
+}
+
+/* Strides and padding: (k - 1)/2 before, the rest behind. */
+static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind)
+{
+    int k = step->at.kernel, stride = step->at.stride, before = (k - 1) / 2, behind = k - stride - before;
+    if (behind < 0) behind = 0; /* a kernel smaller than its stride leaves pixels out */
+    return (dnn_convolution){
+        .kind = kind,
+        .source = dnn_activation(&step->in[0], step->compute),
+        .weights = any_weights(step, step->compute),
+        .bias = bias_shape(step),
+        .target = dnn_activation(&step->out, step->compute),
+        .strides = {stride, stride},
+        .before = {before, before},
+        .behind = {behind, behind},
+    };
+}
+
+static status describe_forward(nn_step *step, conv *state)
+{
+    dnn_convolution wanted = convolution_of(step, step->train ? dnnl_forward_training : dnnl_forward_inference);
+    wanted.target = dnn_activation(&step->out, step->out.type);
+    wanted.has_bias = state->has_bias;
+    wanted.has_beside = step->inputs > 1;
+    if (wanted.has_beside) wanted.beside = dnn_activation(&step->in[1], step->in[1].type);
+    wanted.relu = step->relu;
+    return dnn_describe(&state->forward, step->context, &wanted);
+}
+
+/* The forward primitive that oneDNN wants as a hint for backward: without float32 output and post-operations. */
+static status describe_hint(nn_step *step, dnn_call *hint)
+{
+    nn_step bare = *step;
+    conv state = {.has_bias = step->at.bias};
+    bare.relu = false;
+    bare.out.type = step->compute;
+    status s = describe_forward(&bare, &state);
+    *hint = state.forward;
+    return s;
+}
+
+static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
+{
+    dnn_convolution wanted = convolution_of(step, dnnl_backward_data);
+    wanted.hint = hint;
+    return dnn_describe(&state->data, step->context, &wanted);
+}
+
+/* With fewer than 16 channels, the weights' gradient of oneDNN 2.6.3's 1×1 convolution with a stride differs from run
+ * to run of the same numbers, by up to a quarter. It packs the pixels it needs first, maybe by 16 channels and over the
+ * next thread's; to be safe, no rest of channels is left to it. */
+static bool differs_from_run_to_run(const nn_step *step)
+{
+    return step->at.kernel == 1 && step->at.stride > 1 && step->in[0].c % 16 != 0;
+}
+
+static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
+{
+    dnn_convolution wanted = convolution_of(step, dnnl_backward_weights);
+    wanted.weights = any_weights(step, NN_FLOAT32);
+    wanted.has_bias = state->has_bias;
+    wanted.hint = hint;
+    wanted.avoided = differs_from_run_to_run(step) ? "1x1" : NULL;
+    return dnn_describe(&state->weights, step->context, &wanted);
+}
+
+static status own(nn_step *step, dnn_layout layout, void **memory)
+{
+    return conv_own(step, dnnl_memory_desc_get_size(layout), memory);
+}
+
+static status describe_backward(nn_step *step, conv *state)
+{
+    dnn_call hint = {0};
+    status s = describe_hint(step, &hint);
+    if (s == OK && step->wants[0]) s = describe_data(step, state, &hint);
+    if (s == OK) s = describe_weights(step, state, &hint);
+    dnn_release(&hint);
+    if (s != OK) return s;
+    s = own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
+    if (s == OK && step->wants[0]) s = own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
+    if (s != OK) return s;
+    size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
+    /* prepared gradient, unaccumulated gradient of the input, oneDNN's own */
+    step->backward_scratch =
+        conv_prepared_bytes(step) + conv_align(tensor_bytes(&step->in[0])) + (data > weights ? data : weights);
+    return OK;
+}
+
+static void conv_release(nn_step *step)
+{
+    conv *state = step->state;
+    dnn_call *calls[] = {&state->forward, &state->data,         &state->weights,
+                         &state->convert, &state->convert_back, &state->collect};
+    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
+        dnn_release(calls[i]);
+    memory_free(state->folded_bias);
+    memory_free(state->forward_weights);
+    memory_free(state->data_weights);
+    memory_free(state->weight_gradient);
+    free(state);
+}
+
+static float *bias_data(const nn_step *step)
+{
+    const conv *state = step->state;
+    return state->folded_bias ? state->folded_bias : step->params.bias->value;
+}
+
+static status bind_beside(const nn_step *step, dnn_call *call)
+{
+    dnn_shape beside = dnn_activation(&step->in[1], step->in[1].type);
+    return dnn_argument_of(call, step->context, DNN_ARG_BESIDE, &beside, step->in[1].data);
+}
+
+static status bind_forward(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->forward;
+    dnn_shape x = dnn_activation(&step->in[0], step->compute), b = bias_shape(step),
+              y = dnn_activation(&step->out, step->out.type);
+    dnn_layout w = dnn_query(call, dnnl_query_weights_md);
+    status s = dnn_argument_of(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
+    if (s == OK && state->has_bias) s = dnn_argument_of(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DST, &y, step->out.data);
+    if (s == OK && step->inputs > 1) s = bind_beside(step, call);
+    return s == OK ? dnn_make(call, step->forward_space, context) : s;
+}
+
+/* Places in the backward scratch. */
+static char *prepared_place(const nn_step *step)
+{
+    return step->backward_space;
+}
+
+static char *unaccumulated_place(const nn_step *step)
+{
+    return prepared_place(step) + conv_prepared_bytes(step);
+}
+
+static char *library_place(const nn_step *step)
+{
+    return unaccumulated_place(step) + conv_align(tensor_bytes(&step->in[0]));
+}
+
+static void *gradient_place(const nn_step *step)
+{
+    return conv_prepared(step, prepared_place(step));
+}
+
+static status bind_data(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->data;
+    dnn_shape dx = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute);
+    dnn_layout w = dnn_query(call, dnnl_query_weights_md);
+    void *target = step->accumulate[0] ? unaccumulated_place(step) : step->in_gradient[0].data;
+    status s = dnn_argument_of(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->data_weights);
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DIFF_SRC, &dx, target);
+    return s == OK ? dnn_make(call, library_place(step), context) : s;
+}
+
+static status bind_weights(nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    dnn_call *call = &state->weights;
+    dnn_shape x = dnn_activation(&step->in[0], step->compute), dy = dnn_activation(&step->out, step->compute),
+              db = bias_shape(step);
+    dnn_layout dw = dnn_query(call, dnnl_query_diff_weights_md);
+    status s = dnn_argument_of(call, context, DNNL_ARG_SRC, &x, step->in[0].data);
+    if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DIFF_DST, &dy, gradient_place(step));
+    if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_WEIGHTS, dw, state->weight_gradient);
+    if (s == OK && state->has_bias)
+        s = dnn_argument_of(call, context, DNNL_ARG_DIFF_BIAS, &db, step->params.bias->gradient);
+    if (s == OK) s = dnn_make(call, library_place(step), context);
+    if (s == OK)
+        s = dnn_make_reorder_from(&state->collect, context, dw, state->weight_gradient, &state->plain,
+                                  step->params.weight->gradient);
+    return s;
+}
+
+static status conv_bind(nn_step *step)
+{
+    conv *state = step->state;
+    status s = bind_forward(step, state);
+    if (s == OK && step->backs && step->wants[0]) s = bind_data(step, state);
+    if (s == OK && step->backs) s = bind_weights(step, state);
+    return s;
+}
+
+/* Where they are used first: oneDNN keeps the number of threads of where it was asked for them. */
+static status make_conversions(const nn_step *step, conv *state)
+{
+    const dnn_context *context = step->context;
+    float *master = conv_weights(step, step->forward_space);
+    dnn_layout w = dnn_query(&state->forward, dnnl_query_weights_md);
+    status s = dnn_make_reorder_to(&state->convert, context, &state->plain, master, w, state->forward_weights);
+    if (s != OK || !state->data.primitive) return s;
+    w = dnn_query(&state->data, dnnl_query_weights_md);
+    return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master, w, state->data_weights);
+}
+
+static bool is_made(const dnn_call *conversion)
+{
+    return conversion->primitive || conversion->packing;
+}
+
+static status conv_refresh(nn_step *step)
+{
+    conv *state = step->state;
+    status s = is_made(&state->convert) ? OK : make_conversions(step, state);
+    if (s != OK) return s;
+    /* into the scratch of forward, which is free between runs */
+    conv_make_weights(step, step->forward_space, state->folded_bias);
+    s = dnn_run(&state->convert, step->context);
+    if (s == OK && is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);
+    return s;
+}
+
+static status conv_forward(nn_step *step)
+{
+    conv *state = step->state;
+    return dnn_run(&state->forward, step->context);
+}
+
+status conv_backward_data(nn_step *step)
+{
+    conv *state = step->state;
+    status s = dnn_run(&state->data, step->context);
+    if (s != OK || !step->accumulate[0]) return s;
+    nn_tensor fresh = step->in_gradient[0];
+    fresh.data = unaccumulated_place(step);
+    cpu_cast(&fresh, &step->in_gradient[0], true);
+    return OK;
+}
+
+status conv_backward_weights(nn_step *step)
+{
+    conv *state = step->state;
+    status s = dnn_run(&state->weights, step->context);
+    return s == OK ? dnn_run(&state->collect, step->context) : s;
+}
+
+static status conv_backward(nn_step *step)
+{
+    conv_prepare(step, prepared_place(step));
+    status s = conv_backward_weights(step);
+    return s == OK && step->wants[0] ? conv_backward_data(step) : s;
+}
+
+status conv_create(nn_step *step)
+{
+    static const step_functions functions = {conv_bind, conv_refresh, conv_forward, conv_backward, conv_release};
+    conv *state = calloc(1, sizeof *state);
+    if (!state) return fail(ERROR_MEMORY, "no memory for a convolution");
+    step->run = &functions;
+    step->state = state;
+    step->reads_in = true;
+    step->reads_out = step->relu;
+    state->has_bias = step->at.bias || step->folded.weight;
+    state->plain = weights_shape(step, NN_FLOAT32, dnnl_oihw);
+    conv_count_flops(step);
+    status s = conv_own_folded_bias(step, &state->folded_bias);
+    if (s == OK) s = describe_forward(step, state);
+    if (s == OK) s = own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
+    if (s != OK) return s;
+    step->forward_scratch = dnn_scratch_bytes(&state->forward);
+    if (step->forward_scratch < conv_weights_bytes(step)) step->forward_scratch = conv_weights_bytes(step);
+    return step->backs ? describe_backward(step, state) : OK;
+}

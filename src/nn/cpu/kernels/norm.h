@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* Batch normalization (Ioffe & Szegedy 2015) over rows of channels, with ReLU behind it if asked for.
+ *
+ * Rows are N·H·W, float32 or bfloat16. Statistics are sums over a fixed number of chunks of rows, combined in double in
+ * order, so that results do not depend on the number of threads. Internal to src/nn/cpu. */
+#ifndef MERLIN_NN_CPU_KERNELS_NORM_H
+#define MERLIN_NN_CPU_KERNELS_NORM_H
+
+#include "base/ranks.h"
+#include "nn/tensor.h"
+
+#define NORM_EPSILON 1e-5f
+
+/* Floats of workspace for a channel count. */
+size_t norm_partial_floats(int channels);
+
+/* Mean and biased variance per channel, of the rows of all ranks. sums: room for two doubles a channel. ERROR_MEMORY.
+ */
+status norm_statistics(const nn_tensor *x, const ranks *together, float *partial, double *sums, float *mean,
+                       float *variance);
+/* y = scale x + shift per channel, then ReLU. */
+void norm_apply(const nn_tensor *x, const float *scale, const float *shift, bool relu, nn_tensor *y);
+
+/* One channel's worth per entry of each array. */
+typedef struct norm_channels {
+    const float *mean, *inverse_deviation, *gamma, *beta;
+    float *dgamma, *dbeta;
+} norm_channels;
+/* dx (added to if accumulate), dgamma and dbeta from dy; where ReLU cut is recomputed from x. dx NULL: none is wanted.
+ * dgamma and dbeta are this rank's own share. sums as above. ERROR_MEMORY. */
+status norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, const ranks *together,
+                     float *partial, double *sums, nn_tensor *dx, bool accumulate);
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* A camera by its focal length and principal point in pixels, as calibrations tell it (camera.h has one by its field of
+ * view); without perspective it is far away. */
+#ifndef MERLIN_OPTICS_PINHOLE_H
+#define MERLIN_OPTICS_PINHOLE_H
+
+#include <math.h>
+#include <stdbool.h>
+
+typedef struct pinhole {
+    bool perspective;
+    float focal;              /* pixels */
+    float center_x, center_y; /* principal point, pixels from the top left corner */
+    float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
+} pinhole;
+
+/* The camera whose picture is so many degrees wide, with the axis through its middle. */
+static inline pinhole pinhole_of(int width, int height, float field_of_view)
+{
+    static const float HALF_DEGREE = 0.00872664626f;
+    return (pinhole){.perspective = true,
+                     .focal = 0.5f * (float)width / tanf(field_of_view * HALF_DEGREE),
+                     .center_x = 0.5f * (float)width,
+                     .center_y = 0.5f * (float)height};
+}
+
+#endif

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/calibrate/calibrate.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "stereo/calibrate/calibrate_parts.h"
+#include "stereo/capture/capture_parts.h"
+#include "stereo/doubts/doubts.h"
+#include "stereo/fit/pixel_fit.h"
+
+static float grey(const uint16_t *pixel, int channels)
+{
+    float sum = 0;
+    for (int k = 0; k < channels; k++)
+        sum += pixel[k];
+    return sum / (65535 * (float)channels);
+}
+
+/* Clipped as a whole where one channel is: the mean of the others and of what is left of it is no shading. */
+static float shading(const uint16_t *pixel, int channels)
+{
+    for (int k = 0; k < channels; k++)
+        if ((float)pixel[k] >= PST_SATURATED * 65535) return 1;
+    return grey(pixel, channels);
+}
+
+static size_t pixels_of(const pst_capture *c)
+{
+    return (size_t)c->width * (size_t)c->height;
+}
+
+static status find_brightest(const pst_capture *c, img *out)
+{
+    status s = img_new(out, c->width, c->height, 3);
+    for (int i = 0; i < c->count && s == OK; i++)
+        for (size_t p = 0; p < 3 * pixels_of(c); p++) {
+            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            out->data[p] = fmaxf(out->data[p], value);
+        }
+    return s;
+}
+
+/* 3 x 3 binomial means of one channel; the border stays as it is. */
+static status smooth(img *p)
+{
+    img from;
+    status s = img_copy(&from, p);
+    if (s != OK) return s;
+    for (int y = 1; y < p->height - 1; y++)
+        for (int x = 1; x < p->width - 1; x++) {
+            float sum = 0;
+            for (int dy = -1; dy <= 1; dy++)
+                for (int dx = -1; dx <= 1; dx++)
+                    sum += *img_at(&from, x + dx, y + dy) * (float)((2 - dx * dx) * (2 - dy * dy));
+            *img_at(p, x, y) = sum / 16;
+        }
+    img_free(&from);
+    return OK;
+}
+
+/* What the outline is searched in: the logarithm, so that a dark ball before a darker room has an edge as well. */
+static status outline_picture(const img *brightest, img *out)
+{
+    static const float NOISE = 0.002f;
+    status s = img_new(out, brightest->width, brightest->height, 1);
+    if (s != OK) return s;
+    size_t pixels = (size_t)out->width * (size_t)out->height;
+    for (size_t p = 0; p < pixels; p++) {
+        const float *v = brightest->data + 3 * p;
+        out->data[p] = logf((v[0] + v[1] + v[2]) / 3 + NOISE);
+    }
+    s = smooth(out);
+    return s == OK ? smooth(out) : s;
+}
+
+/* As it is without its highlights, which move. */
+static status find_darkest(const pst_capture *c, img *out)
+{
+    img darkest;
+    status s = img_new(&darkest, c->width, c->height, 3);
+    if (s != OK) return s;
+    for (int i = 0; i < c->count; i++)
+        for (size_t p = 0; p < 3 * pixels_of(c); p++) {
+            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            darkest.data[p] = i ? fminf(darkest.data[p], value) : value;
+        }
+    s = outline_picture(&darkest, out);
+    img_free(&darkest);
+    return s;
+}
+
+static status search_outlines(const pst_capture *c, pst_ball ball, const img *picture, ball_outlines *out)
+{
+    img darkest = {0};
+    status s = find_darkest(c, &darkest);
+    if (s == OK) s = ball_list_outlines(picture, &darkest, ball, out);
+    img_free(&darkest);
+    return s;
+}
+
+/* The outline of the mask, or the picture to search in, and what may be outlines there. */
+static status find_outlines(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
+                            pst_calibration *out, img *picture, ball_outlines *outlines)
+{
+    char *mask;
+    bool found = false;
+    *outlines = (ball_outlines){0};
+    status s = pst_find_mask(folder, options->mask, &mask);
+    if (s != OK) return s;
+    out->from_mask = mask != NULL;
+    s = mask ? img_copy(picture, &c->mask) : outline_picture(&out->brightest, picture);
+    if (s == OK && mask) s = smooth(picture);
+    if (s == OK && mask) s = ball_find(picture, NULL, &outlines->at[0], &found);
+    if (s == OK && !mask) s = search_outlines(c, options->ball, picture, outlines);
+    if (found) outlines->count = 1;
+    if (s == OK && outlines->count == 0)
+        s = mask ? fail(ERROR_INPUT, "the mask %s is not round", mask)
+                 : fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
+    free(mask);
+    return s;
+}
+
+/* What every picture has, such as a window that mirrors in the ball; zero for fewer than three pictures. */
+static void find_constant(const pst_capture *c, img *constant)
+{
+    for (int i = 0; i < c->count && c->count > 2; i++)
+        for (size_t p = 0; p < pixels_of(c); p++) {
+            float value = grey(c->picture[i] + p * (size_t)c->channels, c->channels);
+            constant->data[p] = i ? fminf(constant->data[p], value) : value;
+        }
+}
+
+/* What a picture has beyond the constant; what is clipped stays that. */
+static status take_picture(const pst_capture *c, int i, pst_ball ball, const img *constant, img *out)
+{
+    status s = img_new(out, c->width, c->height, 1);
+    for (size_t p = 0; p < pixels_of(c) && s == OK; p++) {
+        const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
+        float value = ball == PST_CHROME ? grey(pixel, c->channels) : shading(pixel, c->channels);
+        out->data[p] = ball == PST_MATTE && value == 1 ? 1 : value - constant->data[p];
+    }
+    return s;
+}
+
+/* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
+ * over pictures, for where a light is beside the camera no such side is seen. */
+static status find_room(const pst_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
+{
+    float *level = malloc((size_t)c->count * sizeof *level);
+    if (!level) return fail(ERROR_MEMORY, "no memory for a room's light");
+    size_t count = 0;
+    status s = OK;
+    for (int i = 0; i < c->count && s == OK; i++) {
+        img picture;
+        s = take_picture(c, i, PST_MATTE, constant, &picture);
+        if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
+        img_free(&picture);
+    }
+    qsort(level, count, sizeof *level, pst_ascending);
+    for (size_t p = 0; p < pixels_of(c) && count > 0; p++)
+        constant->data[p] = level[count / 2];
+    free(level);
+    return s;
+}
+
+static status find_light(const pst_capture *c, int i, const img *constant, const ball_view *view, pst_calibration *out)
+{
+    img picture;
+    status s = take_picture(c, i, out->ball, constant, &picture);
+    if (s != OK) return s;
+    s = out->ball == PST_CHROME ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
+                                : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
+    img_free(&picture);
+    if (s == ERROR_INPUT && !out->from_mask)
+        s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
+                    (double)out->circle.x, (double)out->circle.y, (double)out->circle.radius);
+    return s == OK ? OK : fail_in(s, "%s", out->name[i]);
+}
+
+static status find_lights(const pst_capture *c, const img *constant, const ball_view *view, pst_calibration *out)
+{
+    status s = OK;
+    for (int i = 0; i < c->count && s == OK; i++)
+        s = find_light(c, i, constant, view, out);
+    return s;
+}
+
+static status reserve(int count, pst_calibration *out)
+{
+    out->count = count;
+    out->direction = calloc((size_t)count, sizeof *out->direction);
+    if (out->ball == PST_CHROME)
+        out->highlight = calloc((size_t)count, sizeof *out->highlight);
+    else
+        out->residual = calloc((size_t)count, sizeof *out->residual);
+    return out->direction && (out->highlight || out->residual) ? OK : fail(ERROR_MEMORY, "no memory for lights");
+}
+
+/* All lights by one outline. */
+static status calibrate_by(const pst_capture *c, const img *picture, pst_calibration *out)
+{
+    img constant = {0};
+    ball_view view = {.circle = out->circle, .camera = c->camera};
+    status s = img_new(&constant, c->width, c->height, 1);
+    if (s == OK && c->camera.focal > 0) s = ball_center(picture, &c->camera, &out->circle, &view.center);
+    if (s == OK && out->ball == PST_CHROME) find_constant(c, &constant);
+    if (s == OK) s = reserve(c->count, out);
+    if (s == OK) s = find_lights(c, &constant, &view, out);
+    if (s == OK && out->ball == PST_MATTE) s = find_room(c, &view, out, &constant);
+    if (s == OK && out->ball == PST_MATTE) s = find_lights(c, &constant, &view, out);
+    img_free(&constant);
+    return s;
+}
+
+/* ---- which outline ---- */
+
+static float mean_residual(const pst_calibration *c)
+{
+    float sum = 0;
+    for (int i = 0; i < c->count; i++)
+        sum += c->residual[i] / (float)c->count;
+    return sum;
+}
+
+static int lights_behind(const pst_calibration *c)
+{
+    int count = 0;
+    for (int i = 0; i < c->count; i++)
+        count += c->direction[i].z < 0;
+    return count;
+}
+
+/* Another outline than the likelier one before: a matte ball's has the shading of one, a mirror's no lights behind. */
+static bool is_better(const pst_calibration *trial, const pst_calibration *best)
+{
+    static const float CLEARLY = 0.8f;
+    if (trial->ball == PST_MATTE) return mean_residual(trial) < CLEARLY * mean_residual(best);
+    return lights_behind(trial) == 0 && lights_behind(best) > 0;
+}
+
+static void take_lights(pst_calibration *from, pst_calibration *to)
+{
+    free(to->direction);
+    free(to->highlight);
+    free(to->residual);
+    to->circle = from->circle;
+    to->count = from->count;
+    to->direction = from->direction;
+    to->highlight = from->highlight;
+    to->residual = from->residual;
+    from->direction = NULL;
+    from->highlight = NULL;
+    from->residual = NULL;
+}
+
+/* The first outline's failure is the one that is told. */
+static status choose_outline(const pst_capture *c, const img *picture, ball_outlines *outlines, pst_calibration *out,
+                             int *chosen)
+{
+    status first = OK;
+    char words[512] = "";
+    *chosen = -1;
+    for (int i = 0; i < outlines->count; i++) {
+        pst_calibration trial = {
+            .ball = out->ball, .circle = outlines->at[i], .from_mask = out->from_mask, .name = c->name};
+        status s = calibrate_by(c, picture, &trial);
+        outlines->residual[i] = s == OK && out->ball == PST_MATTE ? mean_residual(&trial) : 2;
+        if (s == OK && (*chosen < 0 || is_better(&trial, out))) {
+            take_lights(&trial, out);
+            *chosen = i;
+        }
+        if (i == 0 && (first = s) != OK) snprintf(words, sizeof words, "%s", status_message());
+        trial.name = NULL;
+        pst_calibration_free(&trial);
+        if (s != OK && s != ERROR_INPUT) return s;
+    }
+    return *chosen >= 0 ? OK : fail(first, "%s", words);
+}
+
+/* An inner circle of this size is the horizon that a mirror ball has of a wide table. */
+static bool is_horizon(float ratio)
+{
+    return ratio > 0.67f && ratio < 0.74f;
+}
+
+/* Tells whether it is decided which of two circles, one within the other, the ball is. */
+static bool is_decided(const ball_outlines *outlines, pst_ball ball, int chosen)
+{
+    static const float CLEARLY = 0.6f;
+    if (ball == PST_CHROME) return chosen == 0 && is_horizon(outlines->ratio);
+    return outlines->residual[chosen] < CLEARLY * outlines->residual[1 - chosen];
+}
+
+static void doubt(const ball_outlines *outlines, int chosen, pst_calibration *c)
+{
+    const pst_circle *other = &outlines->at[1 - chosen % 2];
+    if (outlines->nested && chosen < 2 && !is_decided(outlines, c->ball, chosen))
+        warnings_add(
+            &c->doubts, "circle_unsure",
+            "two circles may be the ball's outline, one of radius %.1f within one of %.1f, and that of %.1f was "
+            "taken: if calibration.png does not show it on the outline, give a mask",
+            (double)fminf(other->radius, c->circle.radius), (double)fmaxf(other->radius, c->circle.radius),
+            (double)c->circle.radius);
+    if (chosen == (outlines->nested ? 2 : 1))
+        warnings_add(
+            &c->doubts, "circle_unsure",
+            "the ball was taken to be at %.0f, %.0f with radius %.1f, beside what looks most like one but does not "
+            "shine like one: if calibration.png does not show it there, give a mask",
+            (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);
+    int behind = lights_behind(c);
+    if (behind)
+        warnings_add(
+            &c->doubts, "lights_behind",
+            "%d of %d lights would stand behind the ball: if the circle in calibration.png is not its outline, "
+            "give a mask",
+            behind, c->count);
+}
+
+static status doubt_fit(const pst_capture *c, pst_calibration *out)
+{
+    img outlines = {0};
+    status s = outline_picture(&out->brightest, &outlines);
+    if (s == OK) s = ball_doubt(&c->mask, &outlines, out);
+    if (s == OK) s = pst_doubt_copies(c, &out->doubts);
+    img_free(&outlines);
+    return s;
+}
+
+static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
+{
+    img picture = {0};
+    ball_outlines outlines;
+    int chosen = 0;
+    status s = find_brightest(c, &out->brightest);
+    if (s == OK) s = find_outlines(folder, options, c, out, &picture, &outlines);
+    if (s == OK) s = choose_outline(c, &picture, &outlines, out, &chosen);
+    if (s == OK) doubt(&outlines, chosen, out);
+    if (s == OK) s = doubt_fit(c, out);
+    img_free(&picture);
+    if (s != OK) return s;
+    out->name = c->name;
+    c->name = NULL;
+    return OK;
+}
+
+status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
+{
+    *out = (pst_calibration){.ball = options->ball};
+    pst_read_options reading = {
+        .mask = options->mask, .unknown_lights = true, .linear = options->linear, .watch = options->watch};
+    pst_capture c;
+    status s = pst_capture_read(folder, &reading, &c);
+    if (s != OK) return s;
+    c.camera = options->field_of_view > 0 ? pinhole_of(c.width, c.height, options->field_of_view) : (pinhole){0};
+    s = calibrate(folder, options, &c, out);
+    out->skipped = c.skipped;
+    c.skipped = (skipped_files){0};
+    pst_capture_free(&c);
+    if (s != OK) pst_calibration_free(out);
+    return s;
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+/* The outline of a mirror ball on a table. Its rim mirrors the table, its middle the room before it, and the edge
+ * between these is a circle, too, and often the strongest in sight: of a large table straight behind the ball its
+ * radius is the ball's by the root of two, of a small table it is more. So around a circle that was found another is
+ * searched for, all along which the pictures step up, or down, sharply. */
+#include <math.h>
+
+#include "stereo/calibrate/calibrate_parts.h"
+
+enum { ANGLES = 96, RADII = 40, PLACES = 9, POLISH = 5 };
+
+/* Shares of the inner radius: how far out is searched, and how far aside the middle may be (the camera looks askance).
+ */
+static const float LARGEST = 1.62f, ASIDE = 0.2f;
+/* The mean of steps over their root mean square: 1 where all are alike, 0.1 to 0.3 on a table's grain. */
+static const float LEAST_ALIKE = 0.6f;
+/* The mean step of a logarithm; and how much more it must be than that a little further in or out: else it is a halo.
+ */
+static const float LEAST_STEP = 0.03f, SHARPER = 1.6f;
+/* The share of the circle that must be in the picture. */
+static const float LEAST_WITHIN = 0.45f;
+
+/* Steps across a circle from inside to outside. */
+typedef struct steps {
+    float mean, alike; /* over the circle; mean against root mean square */
+} steps;
+
+static bool pixel_at(const img *p, float x, float y, float *value)
+{
+    int i = (int)floorf(x), j = (int)floorf(y);
+    if (i < 0 || j < 0 || i >= p->width || j >= p->height) return false;
+    *value = *img_at(p, i, j);
+    return true;
+}
+
+/* across: how far from the circle is looked, in pixels. */
+static steps steps_across(const img *p, const pst_circle *c, float across)
+{
+    float sum = 0, squares = 0;
+    int seen = 0;
+    for (int k = 0; k < ANGLES; k++) {
+        float turn = 6.2831853f * (float)k / ANGLES, u = cosf(turn), v = sinf(turn), inner = 0, outer = 0;
+        bool within = true;
+        for (int i = 1; i <= 2 && within; i++) {
+            float in = c->radius - across * (float)i / 2, out = c->radius + across * (float)i / 2, a, b;
+            within = pixel_at(p, c->x + in * u, c->y + in * v, &a) && pixel_at(p, c->x + out * u, c->y + out * v, &b);
+            if (!within) break;
+            inner += a / 2;
+            outer += b / 2;
+        }
+        if (!within) continue;
+        sum += outer - inner;
+        squares += (outer - inner) * (outer - inner);
+        seen++;
+    }
+    if ((float)seen < LEAST_WITHIN * ANGLES) return (steps){0, 0};
+    float mean = sum / (float)seen;
+    return (steps){mean, fabsf(mean) / sqrtf(fmaxf(squares / (float)seen, 1e-12f))};
+}
+
+static float worth(const steps *s)
+{
+    return fabsf(s->mean) * s->alike;
+}
+
+static void try_circle(const img *p, const pst_circle *trial, float across, float *most, pst_circle *best)
+{
+    steps s = steps_across(p, trial, across);
+    if (!(worth(&s) > *most)) return;
+    *most = worth(&s);
+    *best = *trial;
+}
+
+/* The worthiest circle that has the inner one in it, not nearer than steps of that one's own edge reach. */
+static float search(const img *p, const pst_circle *inner, float across, pst_circle *best)
+{
+    float most = 0, reach = ASIDE * inner->radius;
+    for (int place = 0; place < PLACES * PLACES; place++) {
+        int column = place % PLACES, row = place / PLACES;
+        float dx = reach * (2 * (float)column / (PLACES - 1) - 1);
+        float dy = reach * (2 * (float)row / (PLACES - 1) - 1);
+        float least = inner->radius + hypotf(dx, dy) + 2 * across, largest = LARGEST * inner->radius;
+        for (int i = 0; i <= RADII && least < largest; i++) {
+            pst_circle trial = {inner->x + dx, inner->y + dy, least + (largest - least) * (float)i / RADII};
+            try_circle(p, &trial, across, &most, best);
+        }
+    }
+    return most;
+}
+
+/* Uphill from the grid's best, by smaller and smaller moves. */
+static void polish(const img *p, const pst_circle *inner, float across, float most, pst_circle *best)
+{
+    float move = 2 * ASIDE * inner->radius / (PLACES - 1);
+    for (int round = 0; round < POLISH; round++, move /= 2)
+        for (int k = 0; k < 27; k++) {
+            int right = k % 3 - 1, down = k / 3 % 3 - 1, larger = k / 9 - 1;
+            pst_circle trial = {best->x + move * (float)right, best->y + move * (float)down,
+                                best->radius + move * (float)larger};
+            float apart = hypotf(trial.x - inner->x, trial.y - inner->y);
+            if (trial.radius < inner->radius + apart + 2 * across) continue;
+            try_circle(p, &trial, across, &most, best);
+        }
+}
+
+static bool is_outline(const img *p, const pst_circle *c, float across)
+{
+    steps here = steps_across(p, c, across);
+    pst_circle in = *c, out = *c;
+    in.radius -= 2 * across;
+    out.radius += 2 * across;
+    steps further_in = steps_across(p, &in, across), further_out = steps_across(p, &out, across);
+    float beside = fminf(fabsf(further_in.mean), fabsf(further_out.mean)); /* one may be the inner circle's edge */
+    return here.alike > LEAST_ALIKE && fabsf(here.mean) > LEAST_STEP && fabsf(here.mean) > SHARPER * beside;
+}
+
+bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer)
+{
+    float across = fmaxf(2, inner->radius / 24);
+    float most = search(picture, inner, across, outer);
+    if (!(most > 0)) return false;
+    polish(picture, inner, across, most, outer);
+    float finer = across / 2;
+    while (finer >= 1.5f) {
+        polish(picture, inner, finer, 0, outer);
+        finer /= 2;
+    }
+    return is_outline(picture, outer, across);
+}
+
+bool ball_has_horizon(const img *picture, const pst_circle *circle)
+{
+    enum { STEPS = 12 };
+    static const float LEAST = 0.66f, MOST = 0.76f, BESIDE = 0.05f, CLEARLY = 0.8f;
+    float across = fmaxf(1.5f, circle->radius / 30), most = 0;
+    pst_circle best = *circle;
+    for (int place = 0; place < 9; place++)
+        for (int i = 0; i <= STEPS; i++) {
+            int right = place % 3 - 1, down = place / 3 - 1;
+            pst_circle trial = {circle->x + BESIDE * circle->radius * (float)right,
+                                circle->y + BESIDE * circle->radius * (float)down,
+                                circle->radius * (LEAST + (MOST - LEAST) * (float)i / STEPS)};
+            try_circle(picture, &trial, across, &most, &best);
+        }
+    return most > 0 && steps_across(picture, &best, across).alike > CLEARLY && is_outline(picture, &best, across);
+}
+
+status ball_list_outlines(const img *picture, const img *darkest, pst_ball ball, ball_outlines *out)
+{
+    *out = (ball_outlines){0};
+    bool found = false;
+    pst_circle first, around, beside;
+    status s = ball_find(picture, NULL, &first, &found);
+    if (s != OK || !found) return s;
+    bool within = !(ball == PST_CHROME && ball_has_horizon(darkest, &first)) && ball_around(picture, &first, &around);
+    if (within) s = ball_refine(picture, &around);
+    if (within && ball == PST_CHROME) out->at[out->count++] = around;
+    out->at[out->count++] = first;
+    if (within && ball == PST_MATTE) out->at[out->count++] = around;
+    out->nested = within;
+    out->ratio = within ? first.radius / around.radius : 1;
+    if (s == OK) s = ball_find(picture, within ? &around : &first, &beside, &found);
+    if (s == OK && found) out->at[out->count++] = beside;
+    return s;
+}

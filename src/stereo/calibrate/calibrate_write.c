@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "image/write/canvas.h"
+#include "image/resize.h"
+#include "stereo/calibrate/calibrate.h"
+
+static status write_lights(const pst_calibration *c, const char *path)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return fail(ERROR_MEMORY, "no memory for a list of lights");
+    fprintf(out, PST_CALIBRATION_LIST " a %s ball: x right, y up, z toward the camera.\n",
+            c->ball == PST_CHROME ? "chrome" : "matte");
+    for (int i = 0; i < c->count; i++) {
+        vec3 d = c->direction[i];
+        fprintf(out, "%.6f %.6f %.6f\n", (double)d.x, (double)d.y, (double)d.z);
+    }
+    status s = fclose(out) == 0 ? file_write(path, text, size) : fail(ERROR_MEMORY, "no memory for a list of lights");
+    free(text);
+    return s;
+}
+
+static void draw_light(const pst_calibration *c, int i, float scale, canvas_drawing *d)
+{
+    double x = c->circle.x * scale, y = c->circle.y * scale, r = c->circle.radius * scale;
+    double tip_x = x + r * c->direction[i].x, tip_y = y - r * c->direction[i].y;
+    fprintf(d->out,
+            "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#8ab4f8\" stroke-width=\"1.2\" "
+            "marker-end=\"url(#tip)\"/>\n<text x=\"%.1f\" y=\"%.1f\" font-size=\"11\" fill=\"#fdd663\">%d</text>\n",
+            x, y, tip_x, tip_y, tip_x + 4, tip_y - 4, i + 1);
+    if (!c->highlight) return;
+    fprintf(d->out,
+            "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#f28b82\" stroke-width=\"1.2\"/>\n",
+            c->highlight[i].x * scale, c->highlight[i].y * scale, c->highlight[i].radius * scale + 1);
+}
+
+static void draw_all(const pst_calibration *c, float scale, canvas_drawing *d)
+{
+    fputs("<defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" markerHeight=\"7\" "
+          "orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#8ab4f8\"/></marker></defs>\n",
+          d->out);
+    fprintf(d->out,
+            "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#81c995\" stroke-width=\"1.5\"/>\n",
+            c->circle.x * scale, c->circle.y * scale, c->circle.radius * scale);
+    for (int i = 0; i < c->count; i++)
+        draw_light(c, i, scale, d);
+}
+
+/* An arrow is as long as the ball's radius when its light is at the side, and a point when it is behind the camera. */
+static status write_picture(const pst_calibration *c, const char *path)
+{
+    static const float LARGEST = 1280;
+    int width = c->brightest.width, height = c->brightest.height;
+    float scale = LARGEST / (float)(width > height ? width : height);
+    img shown;
+    canvas paper = {0};
+    canvas_drawing drawing;
+    int shown_width = (int)fmaxf(1, lroundf((float)width * scale));
+    int shown_height = (int)fmaxf(1, lroundf((float)height * scale));
+    status s = img_resize(&c->brightest, shown_width, shown_height, &shown);
+    if (s != OK) return s;
+    s = canvas_new(&paper, shown_width, shown_height);
+    if (s == OK) canvas_paste(&paper, &shown, 0, 0);
+    if (s == OK) s = canvas_draw_begin(&paper, &drawing);
+    if (s == OK) {
+        draw_all(c, scale, &drawing);
+        s = canvas_draw_end(&paper, &drawing);
+    }
+    if (s == OK) s = canvas_write(&paper, path);
+    canvas_free(&paper);
+    img_free(&shown);
+    return s;
+}
+
+status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture)
+{
+    status s = write_picture(c, picture);
+    return s == OK ? write_lights(c, lights) : s;
+}

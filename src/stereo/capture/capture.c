@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/capture/capture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+status pst_capture_reserve(pst_capture *c, size_t count)
+{
+    if (count < 1 || count > PST_MOST_PICTURES)
+        return fail(ERROR_INPUT, "a capture has 1 to %d pictures, not %zu", PST_MOST_PICTURES, count);
+    c->light = calloc(count, sizeof *c->light);
+    c->name = calloc(count, sizeof *c->name);
+    c->picture = calloc(count, sizeof *c->picture);
+    if (!c->light || !c->name || !c->picture) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    c->count = (int)count;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            c->light[i].intensity[k] = 1;
+    return OK;
+}
+
+status pst_capture_set_name(pst_capture *c, size_t i, const char *name)
+{
+    c->name[i] = strdup(name);
+    return c->name[i] ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+}
+
+static status make_room(pst_capture *c)
+{
+    size_t count = (size_t)c->count + 1;
+    if (count > PST_MOST_PICTURES) return fail(ERROR_USAGE, "a capture has %d pictures at most", PST_MOST_PICTURES);
+    pst_light *light = realloc(c->light, count * sizeof *light);
+    if (light) c->light = light;
+    char **name = realloc(c->name, count * sizeof *name);
+    if (name) c->name = name;
+    uint16_t **picture = realloc(c->picture, count * sizeof *picture);
+    if (picture) c->picture = picture;
+    return light && name && picture ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+}
+
+static uint16_t code_of(float value)
+{
+    return (uint16_t)(fminf(fmaxf(value, 0), 1) * 65535 + 0.5f);
+}
+
+status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light)
+{
+    status s = make_room(c);
+    if (s != OK) return s;
+    size_t values = img_value_count(picture);
+    uint16_t *codes = malloc(values * sizeof *codes);
+    char *name = NULL;
+    if (!codes || asprintf(&name, "light %d", c->count) < 0) {
+        free(codes);
+        return fail(ERROR_MEMORY, "no memory for one more picture");
+    }
+    for (size_t i = 0; i < values; i++)
+        codes[i] = code_of(picture->data[i]);
+    c->picture[c->count] = codes;
+    c->name[c->count] = name;
+    c->light[c->count++] = *light;
+    return OK;
+}
+
+void pst_capture_free(pst_capture *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        if (c->picture) free(c->picture[i]);
+        if (c->name) free(c->name[i]);
+    }
+    free(c->picture);
+    free(c->name);
+    free(c->light);
+    skipped_free(&c->skipped);
+    img_free(&c->mask);
+    img_free(&c->normal_true);
+    img_free(&c->depth_true);
+    *c = (pst_capture){0};
+}
+
+void pst_capture_forget_lights(pst_capture *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        const float *e = c->light[i].intensity;
+        c->light[i] = (pst_light){.intensity = {e[0], e[1], e[2]}};
+    }
+    c->lighting = PST_UNKNOWN_LIGHT;
+}
+
+void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
+{
+    static const float NEAR_FIELD_OF_VIEW = 60;
+    bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
+    float degrees = field_of_view > 0 ? field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
+    float distance = mean_distance > 0 ? mean_distance : c->camera.mean_distance;
+    if (degrees > 0) c->camera = pinhole_of(c->width, c->height, degrees);
+    c->camera.mean_distance = distance;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* led_params.txt of the LUCES layout (Mecca et al. 2021), parsed: camera and LEDs, turned into this project's axes. */
+#ifndef MERLIN_STEREO_CAPTURE_LUCES_H
+#define MERLIN_STEREO_CAPTURE_LUCES_H
+
+#include "stereo/capture/capture.h"
+
+typedef struct luces_params {
+    int count, height, width;
+    pinhole camera;
+    pst_light *light; /* count */
+} luces_params;
+
+/* `where` is put in front of messages. Free light with luces_free. */
+status luces_parse(const char *text, size_t size, const char *where, luces_params *out);
+void luces_free(luces_params *p);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/* A capture from a folder: which layout it has, and what is read behind one another. */
+#include "base/file.h"
+#include "stereo/capture/capture_parts.h"
+
+typedef enum layout { LAYOUT_PLAIN, LAYOUT_LUCES, LAYOUT_DILIGENT } layout;
+
+static layout layout_of(const char *folder)
+{
+    if (file_is_in(folder, "led_params.txt")) return LAYOUT_LUCES;
+    bool named = file_is_in(folder, "filenames.txt") || !file_is_in(folder, "lights.txt");
+    if (file_is_in(folder, "light_directions.txt") && named) return LAYOUT_DILIGENT;
+    return LAYOUT_PLAIN;
+}
+
+bool pst_is_of_data_set(const char *folder)
+{
+    return layout_of(folder) != LAYOUT_PLAIN;
+}
+
+static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    if (kind == LAYOUT_DILIGENT && options->near && !options->unknown_lights)
+        return fail(ERROR_USAGE, "the lights of %s/light_directions.txt are no positions; give a list of these",
+                    folder);
+    if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
+    if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
+    return pst_read_plain(folder, options, c);
+}
+
+static status read_truth(layout kind, const char *folder, pst_capture *c)
+{
+    if (kind == LAYOUT_LUCES) return pst_read_luces_truth(folder, c);
+    if (kind == LAYOUT_DILIGENT) return pst_read_diligent_truth(folder, c);
+    return OK;
+}
+
+static status settle_camera(const pst_read_options *options, pst_capture *c)
+{
+    pst_capture_see(c, options->field_of_view, options->distance);
+    if (!(options->distance > 0) || c->camera.perspective) return OK;
+    return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
+}
+
+status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
+{
+    static const pst_read_options defaults = {0};
+    if (!options) options = &defaults;
+    *out = (pst_capture){0};
+    if (!file_is_folder(folder)) return fail(ERROR_INPUT, "there is no folder %s with pictures in it", folder);
+    layout kind = options->lights ? LAYOUT_PLAIN : layout_of(folder);
+    status s = read_layout(kind, folder, options, out);
+    if (s == OK) s = pst_read_pictures(folder, options, out);
+    if (s == OK) s = pst_read_mask(folder, options, out);
+    if (s == OK) s = read_truth(kind, folder, out);
+    if (s == OK) s = settle_camera(options, out);
+    if (s == OK && options->unknown_lights) pst_capture_forget_lights(out);
+    if (s != OK) pst_capture_free(out);
+    return s;
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/lights/light_list.h"
+#include "stereo/capture/capture_parts.h"
+#include "stereo/capture/match_lights.h"
+
+const char *const pst_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
+
+/* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
+static status find_lights(const char *folder, const char *asked, char **path)
+{
+    size_t found = 0;
+    *path = NULL;
+    status s = asked ? OK : pst_find_named(folder, pst_list_names, path);
+    if (s == OK && !*path) s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
+    if (s != OK || found < 2) return s;
+    free(*path);
+    *path = NULL;
+    return fail(ERROR_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
+}
+
+/* Returns whether lights listed for --near are directions: as places all are as far from the camera, and some behind
+ * it. */
+static bool are_directions(const light_list *list)
+{
+    bool behind = list->angles;
+    for (size_t i = 0; i < list->count; i++)
+        behind = behind || list->at[i].z > 0.1f;
+    return behind && light_list_is_unit(list);
+}
+
+/* Returns whether the numbers are too long or too short for directions, which a dome has from its middle. */
+static bool are_places(const light_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (fabsf(vec3_length(list->at[i]) - 1) > 0.02f) return true;
+    return false;
+}
+
+/* Returns whether some light is before (side 1) or behind (side -1) what stands at z = 0. */
+static bool has_some(const light_list *list, real side)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (side * list->at[i].z > (real)1e-4 * vec3_length(list->at[i])) return true;
+    return false;
+}
+
+/* Finds whether an .lp file's positions are about the object, which a dome stands round. Lights behind it would light
+ * nothing that is seen, so that where all z are negative the camera must be meant. */
+static status find_frame(const char *path, const light_list *list, bool *about)
+{
+    *about = has_some(list, 1);
+    if (!*about || !has_some(list, -1) || !are_places(list)) return OK;
+    return fail(ERROR_INPUT,
+                "%s has lights before and behind z = 0, so that its positions may be about the object or from the "
+                "camera; list them from the camera, as x y z a line in a .txt file",
+                path);
+}
+
+static status set_positions(const char *path, const light_list *list, pst_capture *c)
+{
+    if (list->angles || (!list->about_object && are_directions(list)))
+        return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
+    for (size_t i = 0; i < list->count; i++)
+        c->light[i].position = list->at[i];
+    return list->about_object ? find_frame(path, list, &c->about_object) : OK;
+}
+
+static void note_places(const char *path, const light_list *list, pst_capture *c)
+{
+    real least = HUGE_VALF, most = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        least = fminf(least, vec3_length(list->at[i]));
+        most = fmaxf(most, vec3_length(list->at[i]));
+    }
+    char range[64];
+    snprintf(range, sizeof range, most > 1.02f * least ? "%.3g to %.3g" : "%.3g", (double)least, (double)most);
+    warnings_add(&c->noticed, "lights_have_places",
+                 "the lights in %s are %s long, as places are, and were taken for directions: --near heeds places",
+                 path, range);
+}
+
+static status set_directions(const char *path, const light_list *list, pst_capture *c)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        c->light[i].direction = light_list_direction(list, i);
+        if (!(vec3_length(c->light[i].direction) > 0.5f))
+            return fail(ERROR_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
+    }
+    if (!are_places(list)) return OK;
+    c->about_object = list->about_object && has_some(list, 1) && !has_some(list, -1);
+    for (size_t i = 0; i < list->count && c->about_object; i++)
+        c->light[i].position = list->at[i];
+    if (!c->about_object) note_places(path, list, c);
+    return OK;
+}
+
+status pst_set_lights(const char *path, const light_list *list, const pst_read_options *options, pst_capture *c)
+{
+    c->lighting = options->near ? PST_NEAR : PST_DISTANT;
+    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
+    for (size_t i = 0; i < list->count && list->intensity; i++)
+        vec3_put(list->intensity[i], c->light[i].intensity);
+    if (list->note[0]) warnings_add(&c->noticed, "lights_list", "%s: %s", path, list->note);
+    return options->near ? set_positions(path, list, c) : set_directions(path, list, c);
+}
+
+status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c)
+{
+    char *path;
+    if (!listed) return pst_read_intensities(folder, lights, c);
+    status s = pst_find_intensities(folder, lights, &path);
+    if (s == OK && path)
+        s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
+    free(path);
+    return s;
+}
+
+status pst_read_light_list(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c)
+{
+    light_list list;
+    status s = light_list_read(lights, &list);
+    if (s != OK) return s;
+    s = pst_match_lights(folder, lights, &list, c);
+    if (s == OK) s = pst_set_lights(lights, &list, options, c);
+    if (s == OK) s = pst_read_strengths(folder, lights, list.intensity, c);
+    light_list_free(&list);
+    return s;
+}
+
+status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    char *lights = NULL;
+    if (options->unknown_lights) {
+        status s = pst_take_pictures(folder, false, NULL, 0, c);
+        return s == OK ? pst_read_intensities(folder, NULL, c) : s;
+    }
+    status s = find_lights(folder, options->lights, &lights);
+    if (s == OK && !lights) s = pst_check_pictures(folder);
+    if (s == OK && !lights)
+        return fail(ERROR_INPUT,
+                    "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
+                    "holds them, or give --method uncalibrated, which finds them",
+                    folder);
+    if (s == OK) s = pst_read_light_list(folder, lights, options, c);
+    free(lights);
+    return s;
+}

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include "image/read/folder.h"
+#include "image/read/read.h"
+#include "stereo/capture/capture_parts.h"
+
+status pst_find_mask(const char *folder, const char *asked, char **path)
+{
+    img_folder f = {0};
+    *path = NULL;
+    if (!asked) {
+        status s = img_folder_read(folder, &f);
+        if (s != OK) return s;
+        const img_folder_file *found = img_folder_whole_mask(&f);
+        if (found) asked = found->path;
+    }
+    if (asked) *path = strdup(asked);
+    img_folder_free(&f);
+    return !asked || *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+}
+
+/* A surface's smallest piece is a triangle of three of a square's four pixels. */
+static bool holds_a_triangle(const img *mask)
+{
+    const float *m = mask->data;
+    const size_t width = (size_t)mask->width;
+    for (int y = 0; y + 1 < mask->height; y++)
+        for (size_t at = (size_t)y * width, end = at + width - 1; at < end; at++)
+            if (m[at] + m[at + 1] + m[at + width] + m[at + width + 1] > 2.5f) return true;
+    return false;
+}
+
+/* Dim pictures are no black ones: whoever gives a mask of what is dark knows that it is. */
+static bool is_ever_lit(const pst_capture *c)
+{
+    const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    for (int k = 0; k < c->count; k++)
+        for (size_t i = 0; i < pixels * channels; i++)
+            if (c->picture[k][i] > 0 && c->mask.data[i / channels] > 0) return true;
+    return false;
+}
+
+static status check_mask(const char *path, pst_capture *c)
+{
+    if (c->mask.width != c->width || c->mask.height != c->height)
+        return fail(ERROR_INPUT, "the mask %s is %d x %d pixels, but the pictures are %d x %d", path, c->mask.width,
+                    c->mask.height, c->width, c->height);
+    size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
+    for (size_t p = 0; p < pixels; p++)
+        inside += (c->mask.data[p] = c->mask.data[p] >= 0.5f) > 0;
+    if (!inside) return fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
+    if (!holds_a_triangle(&c->mask))
+        return fail(ERROR_INPUT,
+                    "the mask %s shows %zu pixel%s, too few or too far apart for a surface: it must be white wherever "
+                    "the object is",
+                    path, inside, inside == 1 ? "" : "s");
+    if (!is_ever_lit(c))
+        return fail(ERROR_INPUT,
+                    "the pictures are black where the mask %s is white: is it theirs, and the object white in it?",
+                    path);
+    return OK;
+}
+
+static status find_mask(const char *folder, pst_capture *c)
+{
+    status s = pst_capture_find_mask(c);
+    size_t pixels = (size_t)c->width * (size_t)c->height;
+    size_t inside = 0;
+    for (size_t p = 0; p < pixels && s == OK; p++)
+        inside += c->mask.data[p] > 0;
+    if (s != OK) return s;
+    if (!inside)
+        return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask",
+                    folder, (double)(100 * PST_BLACK));
+    if (holds_a_triangle(&c->mask)) return OK;
+    return fail(ERROR_INPUT,
+                "no object is to be found in %s: %zu pixel%s stand%s out, too few for a surface; give a mask", folder,
+                inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
+}
+
+status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    char *path;
+    status s = pst_find_mask(folder, options->mask, &path);
+    if (s != OK) return s;
+    if (path) {
+        s = img_read_mask(path, &c->mask);
+        if (s == OK) s = check_mask(path, c);
+    } else {
+        s = find_mask(folder, c);
+    }
+    if (s == OK) s = pst_list_skipped(folder, path, options->ambient, c);
+    free(path);
+    return s;
+}

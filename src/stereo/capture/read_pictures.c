@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "image/read/read.h"
+#include "stereo/capture/capture_parts.h"
+
+/* Unclipped floats are stored so that their brightest stays below what solvers take for saturated. */
+static const float FLOAT_CEILING = 0.97f;
+
+/* Floats that are all below have a full scale of their own: in 16 bits dim ones would be a few codes, and black. */
+static const float FLOAT_DIM = 0.1f;
+
+/* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
+enum { READERS = 4 };
+
+/* Numbers of a picture's values that are not dark, that are below the ambient picture's, and that differ from these. */
+typedef struct ambient_sums {
+    size_t lit, below, other;
+} ambient_sums;
+
+typedef struct reading {
+    const char *folder;
+    bool decode;
+    const watch *watch;
+    float scale; /* of floats, so that all pictures fit 16 bits */
+    img ambient;
+    char *ambient_path;
+    ambient_sums *beside; /* of every picture; NULL without an ambient one */
+    img *first;           /* the first picture, until it is stored */
+    int bits;             /* its */
+    float *brightest;     /* of every picture, of floats */
+    pst_capture *into;
+} reading;
+
+/* Finds out how the first picture is read; others of its size are read alike. */
+static void look_at_first(const reading *r, pst_capture *c)
+{
+    char *path = file_join(r->folder, c->name[0]);
+    img_facts facts = path ? img_look(path) : (img_facts){1, 1};
+    c->reduced = facts.reduced;
+    c->frames = facts.frames;
+    free(path);
+}
+
+static status read_one(const reading *r, const char *name, img *out, int *bits)
+{
+    char *path = file_join(r->folder, name);
+    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = img_read_samples(path, r->decode, out, bits);
+    free(path);
+    return s;
+}
+
+/* Floats have a unit of their own, of which whole numbers beside them say nothing. */
+static const char *kind_of(int bits)
+{
+    return bits == 32 ? "floats" : "whole numbers";
+}
+
+static status check_shape(const reading *r, const pst_capture *c, const char *name, const img *picture, int bits)
+{
+    if ((bits == 32) != (r->bits == 32))
+        return fail(ERROR_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
+                    kind_of(bits), c->name[0], kind_of(r->bits));
+    if (picture->width != c->width || picture->height != c->height)
+        return fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
+                    r->folder, name, picture->width, picture->height, c->name[0], c->width, c->height);
+    if (picture->channels != c->channels)
+        return fail(ERROR_INPUT, "%s/%s is %s, but %s is %s; all pictures must be of one kind", r->folder, name,
+                    picture->channels == 1 ? "grey" : "in colour", c->name[0], c->channels == 1 ? "grey" : "in colour");
+    return OK;
+}
+
+/* Light only adds: a value that is plainly below the ambient picture's says that this is none. */
+static void hold_against_ambient(const reading *r, int i, const img *picture)
+{
+    static const float noise = 0.02f;
+    ambient_sums sums = {0};
+    for (size_t k = 0, n = img_value_count(picture); k < n; k++) {
+        float value = picture->data[k] * r->scale;
+        sums.lit += value > noise || r->ambient.data[k] > noise;
+        sums.below += value < r->ambient.data[k] - noise;
+        sums.other += value != r->ambient.data[k];
+    }
+    r->beside[i] = sums;
+}
+
+static status store(const reading *r, const img *picture, uint16_t **out)
+{
+    size_t count = img_value_count(picture);
+    uint16_t *codes = malloc(count * sizeof *codes);
+    if (!codes) return fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
+    memory_prefer_large_pages(codes, count * sizeof *codes);
+    const float *ambient = r->ambient.data;
+    for (size_t i = 0; i < count; i++) {
+        float value = picture->data[i] * r->scale, left = ambient ? value - ambient[i] : value;
+        /* what the sensor clipped stays recognizable after the subtraction */
+        float code = left * 65535 + 0.5f;
+        codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
+    }
+    *out = codes;
+    return OK;
+}
+
+typedef struct group {
+    const reading *reading;
+    status (*work)(const reading *r, int i);
+    int first;
+} group;
+
+static status work_on(void *context, size_t i)
+{
+    const group *g = context;
+    return g->work(g->reading, g->first + (int)i);
+}
+
+static status for_pictures(const reading *r, status (*work)(const reading *r, int i))
+{
+    status s = OK;
+    for (int i = 0; i < r->into->count && s == OK; i += READERS) {
+        watch_tell(r->watch, "reading", (double)i / r->into->count);
+        int left = r->into->count - i;
+        if (watch_stops(r->watch)) return fail(ERROR_STOPPED, "stopped");
+        s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
+    }
+    return s;
+}
+
+static status find_brightest(const reading *r, int i)
+{
+    img picture;
+    int bits;
+    status s = read_one(r, r->into->name[i], &picture, &bits);
+    if (s != OK) return s;
+    for (size_t k = 0, n = img_value_count(&picture); k < n && bits == 32; k++)
+        r->brightest[i] = fmaxf(r->brightest[i], picture.data[k]);
+    img_free(&picture);
+    return OK;
+}
+
+/* The factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. */
+static status measure_scale(reading *r)
+{
+    float most = 0;
+    r->brightest = calloc((size_t)r->into->count, sizeof *r->brightest);
+    if (!r->brightest) return fail(ERROR_MEMORY, "no memory for %d pictures", r->into->count);
+    status s = for_pictures(r, find_brightest);
+    for (int i = 0; i < r->into->count; i++)
+        most = fmaxf(most, r->brightest[i]);
+    free(r->brightest);
+    r->scale = most > FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? FLOAT_CEILING / most : 1;
+    return s;
+}
+
+static status read_first_shape(reading *r, pst_capture *c)
+{
+    const img *first = r->first;
+    status s = read_one(r, c->name[0], r->first, &r->bits);
+    if (s != OK) return s;
+    if (c->width && (c->width != first->width || c->height != first->height))
+        s = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
+                 first->width, first->height, c->width, c->height);
+    look_at_first(r, c);
+    c->width = first->width;
+    c->height = first->height;
+    c->channels = first->channels;
+    return s == OK && r->bits == 32 ? measure_scale(r) : s;
+}
+
+static status read_ambient(reading *r, const char *asked, const pst_capture *c)
+{
+    char *path = asked ? strdup(asked) : NULL;
+    if (asked && !path) return fail(ERROR_MEMORY, "no memory for a file name");
+    status s = asked ? OK : pst_find_ambient(r->folder, c->name[0], &path);
+    int bits;
+    if (path) {
+        s = img_read_samples(path, r->decode, &r->ambient, &bits);
+        if (s == OK &&
+            (r->ambient.width != c->width || r->ambient.height != c->height || r->ambient.channels != c->channels))
+            s = fail(ERROR_INPUT,
+                     "the ambient picture %s is %d x %d with %d channels, but the pictures are %d x %d with %d", path,
+                     r->ambient.width, r->ambient.height, r->ambient.channels, c->width, c->height, c->channels);
+        if (s == OK && (bits == 32) != (r->bits == 32))
+            s = fail(ERROR_INPUT, "the ambient picture %s has %s, but the pictures have %s; give one of their kind",
+                     path, kind_of(bits), kind_of(r->bits));
+        for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
+            r->ambient.data[i] *= r->scale;
+    }
+    r->ambient_path = path;
+    if (s != OK || !path) return s;
+    r->beside = calloc((size_t)c->count, sizeof *r->beside);
+    return r->beside ? OK : fail(ERROR_MEMORY, "no memory for %d sums", c->count);
+}
+
+/* Returns the first picture that has the ambient picture's values, NULL if none has; dark ones, which are all alike, do
+ * not count. */
+static const char *copied_as_ambient(const reading *r)
+{
+    for (int i = 0; i < r->into->count; i++)
+        if (r->beside[i].other == 0 && r->beside[i].lit > 0) return r->into->name[i];
+    return NULL;
+}
+
+/* Refuses or doubts an ambient picture that is one under a light, or of another exposure: less that, a picture shows
+ * nothing. */
+static status check_ambient(const reading *r, pst_capture *c)
+{
+    static const double few = 0.05, all = 0.95;
+    double lit = 1e-9, below = 0;
+    for (int i = 0; i < c->count; i++) {
+        lit += (double)r->beside[i].lit;
+        below += (double)r->beside[i].below;
+    }
+    if (below > all * lit)
+        return fail(
+            ERROR_INPUT,
+            "the ambient picture %s is brighter than all pictures: it must show the object in the light that is "
+            "there when no lamp is on",
+            r->ambient_path);
+    const char *copied = copied_as_ambient(r);
+    if (copied)
+        warnings_add(
+            &c->noticed, "ambient_copied",
+            "the ambient picture %s is the same as %s, of which nothing is left, and normals may be many degrees "
+            "off: it must show the object in the light that is there when no lamp is on",
+            r->ambient_path, copied);
+    else if (below > few * lit)
+        warnings_add(
+            &c->noticed, "ambient_brighter",
+            "the ambient picture %s is brighter than the pictures in %.0f %% of their values, and normals may be "
+            "many degrees off: it must show the object in the light that is there when no lamp is on",
+            r->ambient_path, 100 * below / lit);
+    return OK;
+}
+
+/* The first has been read for its shape. */
+static status get_picture(const reading *r, int i, img *out, int *bits)
+{
+    if (i > 0) return read_one(r, r->into->name[i], out, bits);
+    *out = *r->first;
+    *bits = r->bits;
+    *r->first = (img){0};
+    return OK;
+}
+
+static status take_picture(const reading *r, int i)
+{
+    img picture;
+    int bits;
+    status s = get_picture(r, i, &picture, &bits);
+    if (s != OK) return s;
+    s = check_shape(r, r->into, r->into->name[i], &picture, bits);
+    if (s == OK && r->ambient.data) hold_against_ambient(r, i, &picture);
+    if (s == OK) s = store(r, &picture, &r->into->picture[i]);
+    img_free(&picture);
+    return s;
+}
+
+status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
+{
+    img first = {0};
+    reading r = {
+        .folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c, .watch = options->watch};
+    status s = read_first_shape(&r, c);
+    c->bits = r.bits;
+    c->linear = options->linear;
+    if (s == OK) s = read_ambient(&r, options->ambient, c);
+    if (s == OK) s = for_pictures(&r, take_picture);
+    if (s == OK && r.ambient.data) s = check_ambient(&r, c);
+    img_free(&r.ambient);
+    img_free(&first);
+    free(r.ambient_path);
+    free(r.beside);
+    return s;
+}

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/capture/shrink.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+
+typedef struct shrink_job {
+    const pst_capture *from;
+    pst_capture *to;
+    pst_blocks blocks;
+    uint16_t high;
+} shrink_job;
+
+/* The part of a block that lies inside the picture. */
+typedef struct block {
+    int left, right, top, bottom;
+} block;
+
+static int inside(int at, int end)
+{
+    return at < 0 ? 0 : at > end ? end : at;
+}
+
+static block block_of(const shrink_job *job, int x, int y)
+{
+    const pst_blocks *b = &job->blocks;
+    int left = b->x + x * b->factor, top = b->y + y * b->factor, width = job->from->width, height = job->from->height;
+    return (block){inside(left, width), inside(left + b->factor, width), inside(top, height),
+                   inside(top + b->factor, height)};
+}
+
+static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)
+{
+    const pst_capture *c = job->from;
+    uint64_t sum[3] = {0}, count = 0;
+    bool saturated[3] = {false};
+    for (int y = b.top; y < b.bottom; y++)
+        for (int x = b.left; x < b.right; x++) {
+            size_t at = (size_t)y * (size_t)c->width + (size_t)x;
+            if (c->mask.data[at] <= 0.5f) continue;
+            count++;
+            for (int ch = 0; ch < c->channels; ch++) {
+                uint16_t code = picture[at * (size_t)c->channels + (size_t)ch];
+                sum[ch] += code;
+                saturated[ch] |= code >= job->high;
+            }
+        }
+    for (int ch = 0; ch < c->channels; ch++)
+        out[ch] = saturated[ch] ? UINT16_MAX : (uint16_t)(count ? (sum[ch] + count / 2) / count : 0);
+}
+
+static void shrink_picture(void *context, size_t k)
+{
+    const shrink_job *job = context;
+    pst_capture *to = job->to;
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++) {
+            size_t at = (size_t)y * (size_t)to->width + (size_t)x;
+            if (to->mask.data[at] <= 0.5f) continue;
+            mean_of(job, job->from->picture[k], block_of(job, x, y), to->picture[k] + at * (size_t)to->channels);
+        }
+}
+
+static int pixels_on_object(const shrink_job *job, block b)
+{
+    int count = 0;
+    for (int y = b.top; y < b.bottom; y++)
+        for (int x = b.left; x < b.right; x++)
+            count += *img_at(&job->from->mask, x, y) > 0.5f;
+    return count;
+}
+
+static void shrink_mask(const shrink_job *job)
+{
+    int needed = job->blocks.whole ? job->blocks.factor * job->blocks.factor : 1;
+    img *to = &job->to->mask;
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++)
+            *img_at(to, x, y) = pixels_on_object(job, block_of(job, x, y)) >= needed;
+}
+
+static status allocate(const pst_capture *c, const pst_blocks *b, pst_capture *out)
+{
+    size_t count = (size_t)c->count, samples = (size_t)b->columns * (size_t)b->rows * (size_t)c->channels;
+    *out = (pst_capture){.width = b->columns,
+                         .height = b->rows,
+                         .channels = c->channels,
+                         .lighting = c->lighting,
+                         .intensities_known = c->intensities_known,
+                         .camera = c->camera};
+    out->camera.focal /= (float)b->factor;
+    out->camera.center_x = (c->camera.center_x - (float)b->x) / (float)b->factor;
+    out->camera.center_y = (c->camera.center_y - (float)b->y) / (float)b->factor;
+    out->light = malloc(count * sizeof *out->light);
+    out->picture = calloc(count, sizeof *out->picture);
+    if (!out->light || !out->picture) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+    memcpy(out->light, c->light, count * sizeof *out->light);
+    for (; (size_t)out->count < count; out->count++) {
+        out->picture[out->count] = calloc(samples, sizeof **out->picture);
+        if (!out->picture[out->count]) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+    }
+    return img_new(&out->mask, out->width, out->height, 1);
+}
+
+pst_blocks pst_blocks_of(const pst_capture *c, int factor)
+{
+    return (pst_blocks){
+        .columns = (c->width + factor - 1) / factor, .rows = (c->height + factor - 1) / factor, .factor = factor};
+}
+
+status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst_capture *out)
+{
+    status s = allocate(c, &blocks, out);
+    if (s != OK) {
+        pst_capture_free(out);
+        return s;
+    }
+    float high = saturation * 65535;
+    shrink_job job = {c, out, blocks, (uint16_t)(high < 65535 ? high : 65535)};
+    shrink_mask(&job);
+    parallel_for((size_t)c->count, shrink_picture, &job);
+    return OK;
+}
+
+/* Puts these pictures and their lights into the arrays of `some`, which are the caller's, and shrinks them. */
+static status shrink_some(const pst_capture *c, int pixels, const int picture[], pst_capture *some, pst_capture *out)
+{
+    size_t inside = 0;
+    for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; i < n; i++)
+        inside += c->mask.data[i] > 0.5f;
+    for (int k = 0; k < some->count; k++) {
+        some->picture[k] = c->picture[picture[k]];
+        some->light[k] = c->light[picture[k]];
+    }
+    int factor = (int)sqrt((double)inside / pixels);
+    return pst_shrink(some, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, out);
+}
+
+status pst_shrink_to(const pst_capture *c, int pixels, int most_pictures, int picture[], pst_capture *out)
+{
+    pst_capture some = *c;
+    some.count = c->count < most_pictures ? c->count : most_pictures;
+    some.picture = malloc((size_t)some.count * sizeof *some.picture);
+    some.light = malloc((size_t)some.count * sizeof *some.light);
+    for (int k = 0; k < some.count; k++)
+        picture[k] = (int)((long)k * c->count / some.count);
+    status s = some.picture && some.light ? shrink_some(c, pixels, picture, &some, out)
+                                          : fail(ERROR_MEMORY, "no memory for %d pictures", some.count);
+    free(some.picture);
+    free(some.light);
+    return s;
+}
+
+/* Bilinear between the small pixels' middles, as far as they are on the object. */
+static float between(const img *small, const img *small_mask, float x, float y)
+{
+    int left = (int)(x + 1) - 1, top = (int)(y + 1) - 1; /* rounded down: -1 at the least */
+    float sum = 0, weights = 0;
+    for (int k = 0; k < 4; k++) {
+        int i = left + k % 2, j = top + k / 2;
+        if (i < 0 || j < 0 || i >= small->width || j >= small->height) continue;
+        size_t at = (size_t)j * (size_t)small->width + (size_t)i;
+        float along = k % 2 ? x - (float)left : 1 - x + (float)left, down = k / 2 ? y - (float)top : 1 - y + (float)top;
+        float w = small_mask->data[at] > 0.5f ? along * down : 0;
+        sum += w * small->data[at];
+        weights += w;
+    }
+    return weights > 0 ? sum / weights : 0;
+}
+
+void pst_enlarge(const img *small, const img *small_mask, const img *mask, int factor, img *out)
+{
+    float scale = 1 / (float)factor;
+    for (int y = 0; y < mask->height; y++)
+        for (int x = 0; x < mask->width; x++) {
+            size_t at = (size_t)y * (size_t)mask->width + (size_t)x;
+            if (mask->data[at] <= 0.5f) continue;
+            out->data[at] =
+                between(small, small_mask, ((float)x + 0.5f) * scale - 0.5f, ((float)y + 0.5f) * scale - 0.5f);
+        }
+}

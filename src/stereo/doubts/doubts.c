@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/doubts/doubts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/algebra/dense.h"
+#include "stereo/doubts/light_check.h"
+#include "stereo/doubts/model_check.h"
+
+/* Pixels and values that are looked at. */
+enum { SOME = 1 << 16 };
+/* The least of unit directions' spreads against the largest: a ring of lights 6 degrees from its axis has 0.08, and
+ * errors ten times those of lights from all round. */
+static const double alike = 0.08;
+/* Cosine between the directions of lights that may have the same picture. */
+static const float same_direction = 0.9994f;
+/* Sines below which a light is not merely at the horizon. */
+static const float behind = -0.05f;
+/* The same above which a near light is not merely beside the camera. */
+static const float behind_camera = 0.1f;
+/* Between the lights' distance from the object and the object's from the camera. */
+static const float another_unit = 30;
+/* The share of the object's pixels that are saturated in half of the pictures. */
+static const double much_burnt_out = 0.05;
+
+/* ---- lights ---- */
+
+static void doubt_directions(const pst_capture *c, warnings *out)
+{
+    double m[9] = {0}, spread[6];
+    int away = 0;
+    for (int k = 0; k < c->count; k++) {
+        vec3 d = c->light[k].direction;
+        const double v[3] = {d.x, d.y, d.z};
+        for (int j = 0; j < 9; j++)
+            m[j] += v[j / 3] * v[j % 3];
+        away += d.z < behind;
+    }
+    if (away)
+        warnings_add(
+            out, "lights_behind",
+            "%d of %d lights stand behind the object (z below 0), where they light nothing that is seen: z of a "
+            "direction points toward the camera",
+            away, c->count);
+    if (dense_eigen(m, 3, false, spread) && spread[0] < alike * alike * spread[2])
+        warnings_add(out, "lights_alike",
+                     "the lights come from nearly one direction or one plane, which enlarges every error of the "
+                     "pictures: light the object from more sides");
+}
+
+/* Places about the object, or with z away from the camera, give pictures that are explained nearly as well. */
+static void doubt_places(const pst_capture *c, warnings *out)
+{
+    for (int k = 0; k < c->count; k++)
+        if (c->light[k].position.z < behind_camera * vec3_length(c->light[k].position)) return;
+    warnings_add(
+        out, "lights_behind_camera",
+        "all %d lights are listed behind the camera (z above 0): places are from the camera, and what is before it "
+        "has negative z; those about the object go into an .lp file, with --distance",
+        c->count);
+}
+
+static void doubt_unit(const pst_capture *c, warnings *out)
+{
+    float distance = c->camera.mean_distance, sum = 0;
+    if (!(distance > 0)) return;
+    for (int k = 0; k < c->count; k++)
+        sum += vec3_length(vec3_sub(c->light[k].position, vec3_make(0, 0, -distance))) / (float)c->count;
+    if (sum < another_unit * distance && sum * another_unit > distance) return;
+    warnings_add(
+        out, "other_unit",
+        "the lights are %.3g from the object and the camera %.3g: are the lights' places and --distance in one "
+        "unit?",
+        (double)sum, (double)distance);
+}
+
+/* ---- pictures ---- */
+
+static uint64_t hash_of(const uint16_t *value, size_t count)
+{
+    uint64_t hash = 14695981039346656037u;
+    for (size_t i = 0, step = count / SOME + 1; i < count; i += step)
+        hash = (hash ^ value[i]) * 1099511628211u;
+    return hash;
+}
+
+static bool are_the_same(const pst_capture *c, const uint64_t *hash, int j, int k)
+{
+    size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
+    return hash[j] == hash[k] && memcmp(c->picture[j], c->picture[k], values * sizeof **c->picture) == 0;
+}
+
+static bool may_be_the_same(const pst_capture *c, int j, int k)
+{
+    const pst_light *a = &c->light[j], *b = &c->light[k];
+    if (c->lighting == PST_DISTANT) return vec3_dot(a->direction, b->direction) > same_direction;
+    vec3 apart = vec3_sub(a->position, b->position);
+    return c->lighting == PST_NEAR && !(vec3_length(apart) > 1e-3f * vec3_length(a->position));
+}
+
+status pst_doubt_copies(const pst_capture *c, warnings *out)
+{
+    size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
+    int copies = 0, first = 0, second = 0;
+    uint64_t *hash = malloc((size_t)c->count * sizeof *hash);
+    if (!hash) return fail(ERROR_MEMORY, "no memory for %d pictures' sums", c->count);
+    for (int k = 0; k < c->count; k++) {
+        hash[k] = hash_of(c->picture[k], values);
+        int j = 0;
+        while (j < k && (may_be_the_same(c, j, k) || !are_the_same(c, hash, j, k)))
+            j++;
+        if (j == k) continue;
+        if (copies++ == 0) first = j, second = k;
+    }
+    free(hash);
+    if (copies)
+        warnings_add(out, "same_pictures",
+                     "pictures %d and %d%s are the same, value for value: was one copied in another's place?",
+                     first + 1, second + 1, copies > 1 ? ", and others," : "");
+    return OK;
+}
+
+static bool is_saturated(const pst_capture *c, int k, size_t pixel)
+{
+    for (int ch = 0; ch < c->channels; ch++)
+        if (c->picture[k][pixel * (size_t)c->channels + (size_t)ch] >= PST_SATURATED * 65535) return true;
+    return false;
+}
+
+static void doubt_exposure(const pst_capture *c, warnings *out)
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, seen = 0, burnt = 0;
+    for (size_t i = 0; i < pixels; i += step) {
+        if (c->mask.data[i] <= 0.5f) continue;
+        int saturated = 0;
+        for (int k = 0; k < c->count; k++)
+            saturated += is_saturated(c, k, i);
+        seen++;
+        burnt += 2 * saturated >= c->count;
+    }
+    if (seen && (double)burnt > much_burnt_out * (double)seen)
+        warnings_add(
+            out, "burnt_out",
+            "%.0f %% of the object is burnt out in half of the pictures or more, where normals are guesses: take "
+            "them darker",
+            100 * (double)burnt / (double)seen);
+}
+
+/* Returns how bright a pixel is where it is brightest, as a share of full scale. */
+static float brightest_at(const pst_capture *c, size_t pixel)
+{
+    size_t channels = (size_t)c->channels;
+    uint16_t most = 0;
+    for (int k = 0; k < c->count; k++)
+        for (size_t ch = 0; ch < channels; ch++)
+            if (c->picture[k][pixel * channels + ch] > most) most = c->picture[k][pixel * channels + ch];
+    return (float)most / 65535;
+}
+
+/* Lamps light what they are pointed at: an object that is black in all pictures before what is bright is none. */
+static void doubt_mask(const pst_capture *c, warnings *out)
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, inside = 0, outside = 0;
+    size_t black = 0, bright = 0;
+    for (size_t i = 0; i < pixels; i += step) {
+        bool object = c->mask.data[i] > 0.5f;
+        float most = brightest_at(c, i);
+        inside += object;
+        outside += !object;
+        black += object && most < 0.02f;
+        bright += !object && most > 0.1f;
+    }
+    if (2 * black > inside && 2 * bright > outside)
+        warnings_add(
+            out, "mask_inverted",
+            "%.0f %% of what the mask shows is black in every picture, and %.0f %% of what it hides is bright: is "
+            "it inverted? The object is white in a mask",
+            100 * (double)black / (double)inside, 100 * (double)bright / (double)outside);
+}
+
+/* ---- what solvers and readers noticed ---- */
+
+static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
+{
+    if (c->reduced > 1)
+        warnings_add(out, "reduced_size",
+                     "the pictures were read at a reduced size: %d x %d of their pixels became one", c->reduced,
+                     c->reduced);
+    if (c->frames > 1)
+        warnings_add(out, "first_frame", "%s is an animation, of whose %d pictures the first alone was read",
+                     c->name[0], c->frames);
+    for (size_t i = 0; i < c->noticed.count; i++)
+        warnings_add(out, c->noticed.at[i].code, "%s", c->noticed.at[i].message);
+    if (c->about_object)
+        warnings_add(out, "lights_have_places",
+                     "the lights are listed as places about the object and were taken for directions: --near heeds "
+                     "places");
+    if (c->lights_in_order)
+        warnings_add(
+            out, "lights_in_order",
+            "none of the pictures that the lights' list names is there: its lights were taken in the order of the "
+            "pictures' names");
+    if (s->strengths_unsure)
+        warnings_add(
+            out, "strengths_unsure",
+            "the object is too flat or the pictures are too few to tell how strong the lights are, and normals "
+            "may be many degrees off: state the strengths in light_intensities.txt");
+    if (s->distance_unsure)
+        warnings_add(out, "distance_unsure",
+                     "these lights do not tell how far the object is, and normals may be many degrees off: state it by "
+                     "--distance, or take more lights, at different heights");
+    if (s->lights_unsure)
+        warnings_add(
+            out, "lights_unsure",
+            "the pictures hardly tell where the lights are, and normals may be many degrees off, or bulge where "
+            "the object recedes: state the lights' directions in lights.txt");
+}
+
+status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out)
+{
+    bool known = s->method != PST_UNCALIBRATED;
+    status result = known ? pst_check_lights(c, s, out) : OK;
+    if (known && result == OK && !warnings_find(out, "lights_do_not_fit")) result = pst_check_model(c, s, out);
+    if (known && c->lighting == PST_DISTANT) doubt_directions(c, out);
+    if (known && c->lighting == PST_NEAR) doubt_places(c, out);
+    if (known && c->lighting == PST_NEAR) doubt_unit(c, out);
+    if (result == OK) result = pst_doubt_copies(c, out);
+    doubt_exposure(c, out);
+    doubt_mask(c, out);
+    pass_on(c, s, out);
+    return result;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* Doubts tell a person what to know of a capture and of the surface found from it before they trust that.
+ *
+ *     warnings doubts = {0};
+ *     status s = pst_doubts(&capture, &surface, &doubts); */
+#ifndef MERLIN_STEREO_DOUBTS_DOUBTS_H
+#define MERLIN_STEREO_DOUBTS_DOUBTS_H
+
+#include "base/warnings.h"
+#include "stereo/integrate/surface.h"
+
+/* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
+ * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,
+ * distance_unsure and lights_unsure, where they hold. */
+status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out);
+/* Adds same_pictures alone, if it holds. */
+status pst_doubt_copies(const pst_capture *c, warnings *out);
+
+#endif

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/doubts/light_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/algebra/dense.h"
+#include "stereo/fit/pixel_fit.h"
+#include "stereo/capture/shrink.h"
+
+/* Pixels that tell of the lights, up to four times as many. */
+enum { SMALL = 3000 };
+/* The share of full scale below which a pixel's values are noise. */
+static const double dark = 0.003;
+
+void pst_light_fit_free(pst_light_fit *f)
+{
+    pst_capture_free(&f->small);
+    free(f->light);
+    free(f->strength);
+    free(f->gram);
+    *f = (pst_light_fit){0};
+}
+
+/* ---- the lights ---- */
+
+/* The middle of the object, in the camera's space. */
+static vec3 middle_of(const pst_capture *c, const pst_surface *s)
+{
+    double x = 0, y = 0, depth = 0, count = 0;
+    for (int row = 0; row < c->height; row++)
+        for (int column = 0; column < c->width; column++) {
+            size_t at = (size_t)row * (size_t)c->width + (size_t)column;
+            if (c->mask.data[at] <= 0.5f) continue;
+            x += column + 0.5;
+            y += row + 0.5;
+            depth += s->depth.data ? (double)s->depth.data[at] : (double)c->camera.mean_distance;
+            count++;
+        }
+    double scale = depth / count / (double)c->camera.focal;
+    return vec3_make((float)((x / count - (double)c->camera.center_x) * scale),
+                     (float)(((double)c->camera.center_y - y / count) * scale), (float)(-depth / count));
+}
+
+static vec3 near_light(const pst_light *light, vec3 middle)
+{
+    vec3 to = vec3_sub(light->position, middle);
+    float squared = fmaxf(vec3_dot(to, to), 1e-12f), power = 1 / squared;
+    vec3 toward = vec3_scale(to, 1 / sqrtf(squared));
+    if (light->lobe > 0 && vec3_dot(light->direction, light->direction) > 0)
+        power *= powf(fmaxf(-vec3_dot(toward, light->direction), 0), light->lobe);
+    return vec3_scale(toward, power);
+}
+
+static float mean_intensity(const pst_capture *c, const pst_light *light)
+{
+    float sum = 0;
+    for (int ch = 0; ch < c->channels; ch++)
+        sum += light->intensity[ch];
+    return sum > 0 ? sum / (float)c->channels : 1;
+}
+
+static status list_lights(const pst_capture *c, const pst_surface *s, pst_light_fit *f)
+{
+    const pst_light *light = s->light ? s->light : c->light;
+    vec3 middle = c->lighting == PST_NEAR ? middle_of(c, s) : (vec3){0, 0, 0};
+    f->total = c->count;
+    f->light = malloc((size_t)c->count * sizeof *f->light);
+    f->strength = malloc((size_t)c->count * sizeof *f->strength);
+    if (!f->light || !f->strength) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    float most = 0;
+    for (int k = 0; k < c->count; k++) {
+        vec3 toward = c->lighting == PST_NEAR ? near_light(&light[k], middle) : light[k].direction;
+        f->light[k] = vec3_scale(toward, mean_intensity(c, &light[k]));
+        most = fmaxf(most, vec3_length(f->light[k]));
+    }
+    for (int k = 0; k < c->count; k++) {
+        f->light[k] = vec3_scale(f->light[k], 1 / fmaxf(most, 1e-30f));
+        f->strength[k] = mean_intensity(c, &light[k]);
+    }
+    return OK;
+}
+
+/* ---- the pictures ---- */
+
+static status shrink(const pst_capture *c, pst_light_fit *f)
+{
+    status s = pst_shrink_to(c, SMALL, PST_CHECKED_PICTURES, f->picture, &f->small);
+    f->count = s == OK ? f->small.count : 0;
+    return s;
+}
+
+/* A pixel's values, mean of the channels; below 0: saturated. Returns their length, 0 off the object or in the dark. */
+static double values_at(const pst_light_fit *f, size_t pixel, float *value)
+{
+    const pst_capture *c = &f->small;
+    size_t channels = (size_t)c->channels;
+    double square = 0;
+    if (c->mask.data[pixel] <= 0.5f) return 0;
+    for (int k = 0; k < f->count; k++) {
+        const uint16_t *at = c->picture[k] + pixel * channels;
+        float sum = 0;
+        for (size_t ch = 0; ch < channels; ch++)
+            sum = at[ch] >= PST_SATURATED * 65535 ? -HUGE_VALF : sum + (float)at[ch];
+        value[k] = sum >= 0 ? sum / (65535 * (float)channels) : -1;
+        square += (double)(value[k] * value[k]);
+    }
+    double length = sqrt(square);
+    return length > dark * sqrt(f->count) ? length : 0;
+}
+
+static status sum_products(pst_light_fit *f)
+{
+    size_t n = (size_t)f->count, pixels = (size_t)f->small.width * (size_t)f->small.height;
+    float value[PST_CHECKED_PICTURES];
+    f->gram = calloc(n * n, sizeof *f->gram);
+    if (!f->gram) return fail(ERROR_MEMORY, "no memory for %zu pictures' products", n);
+    for (size_t i = 0; i < pixels; i++) {
+        double length = values_at(f, i, value);
+        if (!(length > 0)) continue;
+        for (size_t j = 0; j < n; j++) /* what is saturated was that bright at least */
+            for (size_t k = 0; k <= j; k++)
+                f->gram[j * n + k] += fabs((double)(value[j] * value[k])) / (length * length);
+    }
+    for (size_t j = 0; j < n; j++) {
+        f->energy += f->gram[j * n + j];
+        for (size_t k = 0; k < j; k++)
+            f->gram[k * n + j] = f->gram[j * n + k];
+    }
+    return f->energy > 0 ? OK : fail(ERROR_INPUT, "the pictures are black where the object is");
+}
+
+status pst_light_fit_new(const pst_capture *c, const pst_surface *s, pst_light_fit *out)
+{
+    *out = (pst_light_fit){0};
+    status result = list_lights(c, s, out);
+    if (result == OK) result = shrink(c, out);
+    if (result == OK) result = sum_products(out);
+    if (result != OK) pst_light_fit_free(out);
+    return result;
+}
+
+/* ---- how they go together ---- */
+
+static double energy_of(const pst_light_fit *f, int without)
+{
+    size_t n = (size_t)f->count, k = (size_t)without;
+    return f->energy - (without >= 0 ? f->gram[k * n + k] : 0);
+}
+
+/* Returns what unit weights of the pictures explain. */
+static double explained_by(const pst_light_fit *f, const double *along)
+{
+    size_t n = (size_t)f->count;
+    double sum = 0;
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = 0; k < n; k++)
+            sum += along[j] * along[k] * f->gram[j * n + k];
+    return sum;
+}
+
+double pst_light_fit_unexplained(const pst_light_fit *f, const vec3 *light, int without)
+{
+    double m[9] = {0}, eigenvalue[6], explained = 0;
+    vec3 l[PST_CHECKED_PICTURES];
+    for (int k = 0; k < f->count; k++) {
+        l[k] = k == without ? (vec3){0, 0, 0} : light[f->picture[k]];
+        const double v[3] = {l[k].x, l[k].y, l[k].z};
+        for (int j = 0; j < 9; j++)
+            m[j] += v[j / 3] * v[j % 3];
+    }
+    if (!dense_eigen(m, 3, true, eigenvalue)) return 1;
+    for (int axis = 0; axis < 3; axis++) {
+        double along[PST_CHECKED_PICTURES];
+        if (!(eigenvalue[axis] > 1e-9 * eigenvalue[2])) continue;
+        for (int k = 0; k < f->count; k++)
+            along[k] = (l[k].x * m[axis] + l[k].y * m[3 + axis] + l[k].z * m[6 + axis]) / sqrt(eigenvalue[axis]);
+        explained += explained_by(f, along);
+    }
+    return fmax(1 - explained / energy_of(f, without), 0);
+}
+
+double pst_light_fit_least(const pst_light_fit *f, int without)
+{
+    size_t n = (size_t)f->count;
+    double *m = malloc(n * n * sizeof *m), value[2 * PST_CHECKED_PICTURES], left = 0;
+    if (!m) return 0;
+    memcpy(m, f->gram, n * n * sizeof *m);
+    for (size_t k = 0; without >= 0 && k < n; k++)
+        m[k * n + (size_t)without] = m[(size_t)without * n + k] = 0;
+    bool found = dense_eigen(m, (int)n, false, value);
+    for (size_t k = 0; found && k + 3 < n; k++)
+        left += fmax(value[k], 0);
+    free(m);
+    return found ? left / energy_of(f, without) : 0;
+}
+
+void pst_light_fit_surface(const pst_light_fit *f, const vec3 *light, vec3 *b)
+{
+    enum { ROOM = PST_CHECKED_PICTURES + PST_LANES };
+    float x[ROOM] = {0}, y[ROOM] = {0}, z[ROOM] = {0}, value[ROOM] = {0}, usable[ROOM] = {0}, weight[ROOM],
+          power[ROOM] = {0};
+    pst_observations o = {.padded = pst_padded(f->count), .x = x, .y = y, .z = z, .value = value, .usable = usable};
+    for (int k = 0; k < f->count; k++) {
+        vec3 l = light[f->picture[k]];
+        power[k] = fmaxf(vec3_length(l), 1e-6f);
+        x[k] = l.x / power[k];
+        y[k] = l.y / power[k];
+        z[k] = l.z / power[k];
+    }
+    size_t pixels = (size_t)f->small.width * (size_t)f->small.height;
+    for (size_t i = 0; i < pixels; i++) {
+        bool lit = values_at(f, i, value) > 0;
+        for (int k = 0; k < f->count && lit; k++) {
+            usable[k] = value[k] >= 0;
+            value[k] = value[k] >= 0 ? value[k] / power[k] : 0;
+        }
+        b[i] = lit ? pst_pixel_fit(&o, weight).b : (vec3){0, 0, 0};
+    }
+}

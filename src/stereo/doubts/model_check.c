@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/doubts/model_check.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "image/color.h"
+#include "optics/camera.h"
+#include "stereo/capture/shrink.h"
+#include "stereo/methods/solve.h"
+
+/* Pixels that are solved again, up to four times as many; pictures; and so few explain everything. */
+enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
+/* A residual from which on something is looked for, and how much less of it has to be left. Measured: of real captures
+ * and rendered ones with gloss and shadows nothing wrong leaves less than 0.75 of it; linear values taken for sRGB
+ * leave twice as much as they need, a distance wrong by half ten times as much. */
+static const double noticed = 0.02, plainly_less = 0.6;
+
+typedef struct check {
+    pst_capture small;
+    pst_method method;
+    double own; /* what is left of the small pictures as they were taken */
+} check;
+
+/* ---- what is left ---- */
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Finds the median: outlines and cast shadows, which no model here knows, leave much in few pixels. */
+static status typical_residual(const pst_capture *c, const pst_surface *s, double *out)
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
+    float *all = malloc((pixels + 1) * sizeof *all);
+    if (!all) return fail(ERROR_MEMORY, "no memory for %zu residuals", pixels);
+    for (size_t i = 0; i < pixels; i++)
+        if (c->mask.data[i] > 0.5f) all[count++] = s->residual.data[i];
+    qsort(all, count, sizeof *all, by_value);
+    *out = count ? (double)all[count / 2] : HUGE_VAL;
+    free(all);
+    return OK;
+}
+
+/* Solves the pictures and measures what is left: everything where they cannot be solved, which explains nothing. */
+static status residual_of(const pst_capture *c, pst_method method, double *left)
+{
+    pst_surface found;
+    status s = pst_solve(c, &(pst_options){.method = method}, &found);
+    *left = HUGE_VAL;
+    if (s != OK) return s == ERROR_INPUT ? OK : s;
+    if (found.residual.data) s = typical_residual(c, &found, left);
+    pst_surface_free(&found);
+    return s;
+}
+
+static bool is_better(const check *c, double left)
+{
+    return left < plainly_less * c->own;
+}
+
+/* ---- distance and lens ---- */
+
+static status try_distance(const check *c, double at, double *best, double *factor)
+{
+    double left;
+    pst_capture other = c->small;
+    other.camera.mean_distance *= (float)at;
+    status s = residual_of(&other, c->method, &left);
+    if (s == OK && left < *best) *best = left, *factor = at;
+    return s;
+}
+
+/* Far and wide first: between there may be distances that fit worse than either. */
+static status check_distance(const check *c, double *best, double *factor)
+{
+    *best = c->own;
+    *factor = 1;
+    status s = OK;
+    for (int i = -8; i <= 8 && s == OK; i++)
+        if (i != 0) s = try_distance(c, pow(1.4, i), best, factor);
+    for (double step = sqrt(1.4); step > 1.04 && s == OK; step = sqrt(step)) {
+        const double middle = *factor;
+        s = try_distance(c, middle * step, best, factor);
+        if (s == OK) s = try_distance(c, middle / step, best, factor);
+    }
+    return s;
+}
+
+static double degrees_wide(const pst_capture *c)
+{
+    return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)CAMERA_RADIAN;
+}
+
+static status check_lens(const check *c, double *best, double *degrees)
+{
+    static const double tried[] = {12, 18, 25, 35, 45, 60, 75};
+    *best = c->own;
+    *degrees = degrees_wide(&c->small);
+    status s = OK;
+    for (size_t i = 0; i < sizeof tried / sizeof *tried && s == OK; i++) {
+        double left;
+        pst_capture other = c->small;
+        other.camera.focal = pinhole_of(other.width, other.height, (float)tried[i]).focal;
+        s = residual_of(&other, c->method, &left);
+        if (left < *best) *best = left, *degrees = tried[i];
+    }
+    return s;
+}
+
+static status check_place(const check *c, warnings *out)
+{
+    const double distance = (double)c->small.camera.mean_distance;
+    double by_distance = HUGE_VAL, factor = 1, by_lens = HUGE_VAL, degrees = 0;
+    status s = OK;
+    if (distance > 0) s = check_distance(c, &by_distance, &factor);
+    if (s == OK) s = check_lens(c, &by_lens, &degrees);
+    if (s != OK || !is_better(c, fmin(by_distance, by_lens))) return s;
+    if (by_distance <= by_lens)
+        warnings_add(out, "other_distance",
+                     "the pictures fit these lights far better with the object about %.2g from the camera than %.2g, "
+                     "and normals may be many degrees off: is --distance right, and in the unit of the lights?",
+                     factor * distance, distance);
+    else
+        warnings_add(
+            out, "other_lens",
+            "the pictures fit these lights far better as about %.0f degrees wide than %.0f, and normals may be "
+            "many degrees off: state by --fov how wide they are",
+            degrees, degrees_wide(&c->small));
+    return OK;
+}
+
+/* ---- tones and strengths ---- */
+
+static uint16_t other_tone(uint16_t code, bool linear)
+{
+    float value = (float)code / 65535;
+    return (uint16_t)lrintf(65535 * (linear ? srgb_decode(value) : srgb_encode(value)));
+}
+
+/* Changes the pictures as if 8 bits had meant the other of the two things that they usually mean, and measures what is
+ * left. */
+static status with_other_tones(check *c, bool linear, double *left)
+{
+    for (int k = 0; k < c->small.count; k++)
+        for (size_t i = 0, n = (size_t)c->small.width * (size_t)c->small.height * (size_t)c->small.channels; i < n; i++)
+            c->small.picture[k][i] = other_tone(c->small.picture[k][i], linear);
+    return residual_of(&c->small, c->method, left);
+}
+
+/* Whoever lists lights and no strengths means equal ones. */
+static bool are_of_one_strength(const pst_capture *c)
+{
+    for (int k = 1; k < c->count; k++)
+        for (int ch = 0; ch < c->channels; ch++)
+            if (c->light[k].intensity[ch] != c->light[0].intensity[ch]) return false;
+    return c->intensities_known;
+}
+
+static void tell_tones(bool linear, warnings *out)
+{
+    warnings_add(out, "other_tones", "%s",
+                 linear
+                     ? "the pictures fit their lights far better with sRGB's tones than as linear values, which "
+                       "--linear says they are, and normals may be many degrees off: leave it out"
+                     : "the pictures fit their lights far better as linear values than with sRGB's tones, and normals "
+                       "may be many degrees off: if what wrote them left their values linear, say so by --linear");
+}
+
+static void tell_strengths(warnings *out)
+{
+    warnings_add(out, "strengths_unequal",
+                 "the pictures fit these lights far better if they are of different strengths, which nothing says they "
+                 "are, and normals may be many degrees off: list them in light_intensities.txt, or find them by "
+                 "--method semi");
+}
+
+/* Either makes up for some of the other: the better one is told. */
+static status check_values(check *c, const pst_capture *of, warnings *out)
+{
+    double semi = HUGE_VAL, toned = HUGE_VAL;
+    status s = OK;
+    if (of->lighting == PST_DISTANT && c->method != PST_SEMI && are_of_one_strength(of))
+        s = residual_of(&c->small, PST_SEMI, &semi);
+    if (s == OK && of->bits == 8) s = with_other_tones(c, of->linear, &toned);
+    if (s != OK || !is_better(c, fmin(semi, toned))) return s;
+    if (toned < semi)
+        tell_tones(of->linear, out);
+    else
+        tell_strengths(out);
+    return OK;
+}
+
+/* ---- all of it ---- */
+
+static status check_all(check *c, const pst_capture *of, warnings *out)
+{
+    status s = residual_of(&c->small, c->method, &c->own);
+    if (s != OK || !(c->own > noticed) || isinf(c->own)) return s;
+    size_t before = out->count;
+    if (of->lighting == PST_NEAR) s = check_place(c, out);
+    if (s == OK && out->count == before) s = check_values(c, of, out);
+    return s;
+}
+
+status pst_check_model(const pst_capture *c, const pst_surface *s, warnings *out)
+{
+    check all = {.method = s->method};
+    if (c->lighting == PST_UNKNOWN_LIGHT || c->count < FEWEST) return OK;
+    int picture[PICTURES];
+    status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);
+    if (result == OK) result = check_all(&all, c, out);
+    pst_capture_free(&all.small);
+    return result;
+}

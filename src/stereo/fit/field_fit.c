@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/fit/field_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/inline.h"
+#include "base/parallel.h"
+#include "stereo/fit/field_neighbours.h"
+#include "stereo/algebra/matrix3.h"
+#include "stereo/fit/near_lights.h"
+#include "stereo/fit/pixel_fit.h"
+
+/* Pixels gathered at a time: a picture's cache lines serve them all. */
+enum { BLOCK = 32 };
+
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MEND, MODEL, FALL_OFF, STORE } field_task;
+
+typedef struct fit_job {
+    const pst_field *field;
+    field_task task;
+    pst_around around;     /* spread, mend */
+    float limit;           /* search */
+    float contradiction;   /* mend: what it costs to differ from all neighbours */
+    pst_shading *next;     /* spread, mend: to take the place of the field's */
+    float *weight, *model; /* model: padded lights a pixel */
+    pst_fall_off *fall;    /* fall off */
+    pst_surface *out;      /* store */
+    float *x, *y, *z;      /* distant lights, padded */
+    float *cost;           /* a pixel */
+    double total;
+} fit_job;
+
+typedef struct run_start {
+    bool valid;
+    float cost;
+} run_start;
+
+typedef struct gathered {
+    float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) a pixel */
+} gathered;
+
+/* channels is a constant where this is called. */
+ALWAYS_INLINE void gather_picture(const pst_problem *p, int k, const uint32_t *pixel, size_t count, int channels,
+                                  float *restrict value, float *restrict usable, size_t stride)
+{
+    const uint16_t *picture = p->capture->picture[k];
+    float low = p->shadow > 0 ? p->shadow * 65535 * (float)channels : -1, high = p->saturation * 65535;
+    float share[3];
+    for (int ch = 0; ch < channels; ch++)
+        share[ch] = 1 / p->light[k].intensity[ch] / (65535 * (float)channels);
+    for (size_t j = 0; j < count; j++) {
+        const uint16_t *code = picture + (size_t)pixel[j] * (size_t)channels;
+        float sum = 0, top = 0, dark = 0;
+        for (int ch = 0; ch < channels; ch++) {
+            float v = code[ch];
+            sum += v * share[ch];
+            dark += v;
+            top = v > top ? v : top;
+        }
+        value[j * stride] = sum;
+        usable[j * stride] = top < high && dark > low ? 1 : 0;
+    }
+}
+
+void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride)
+{
+    const pst_capture *c = p->capture;
+    for (int k = 0; k < c->count; k++) {
+        if (c->channels == 1)
+            gather_picture(p, k, pixel, count, 1, value + k, usable + k, stride);
+        else
+            gather_picture(p, k, pixel, count, 3, value + k, usable + k, stride);
+    }
+    for (size_t j = 0; j < count; j++)
+        for (size_t k = (size_t)c->count; k < (size_t)pst_padded(c->count); k++)
+            value[j * stride + k] = usable[j * stride + k] = 0;
+}
+
+static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
+{
+    return q->second ? f->second : f->lobe;
+}
+
+/* Albedo a channel by the same weights, and the residual beside the fit. power NULL: distant. */
+static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
+{
+    const pst_problem *p = job->field->problem;
+    const pst_capture *c = p->capture;
+    const pst_observations *o = &d->seen;
+    pst_surface *out = job->out;
+    float w[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS];
+    const pst_lobe *kind = lobe_of(job->field, q);
+    pst_lobe_weigh(d, kind, q, w, model);
+    vec3 n = pst_facing(q->normal);
+    float albedo[3] = {0}, energy = 0, fit = 0, residual = 0;
+    for (int k = 0; k < c->count; k++) {
+        float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - kind->terminator, 0);
+        const uint16_t *code = c->picture[k] + at * (size_t)c->channels;
+        float wc = w[k] * cosine, r = o->value[k] - model[k], lobe = model[k] - q->albedo * cosine;
+        energy += wc * cosine;
+        for (int ch = 0; ch < c->channels && wc > 0; ch++)
+            albedo[ch] += wc * ((float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) - lobe);
+        residual += w[k] * r * r;
+        fit += w[k] * model[k] * model[k];
+    }
+    for (int ch = 0; ch < c->channels; ch++)
+        albedo[ch] = energy > 1e-12f ? fmaxf(albedo[ch] / energy, 0) : 0;
+    memcpy(out->normal.data + 3 * at, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
+    memcpy(out->albedo.data + at * (size_t)c->channels, albedo, (size_t)c->channels * sizeof(float));
+    out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
+}
+
+/* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
+ * where a run of pixels began. Not with few lights: a wrong surface costs no more then, and would be dragged along the
+ * row. */
+static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
+{
+    const pst_field *f = job->field;
+    if (begun->valid && f->problem->capture->count >= PST_MANY_LIGHTS) {
+        pst_shading next = pst_lobe_refine(d, f->lobe, &f->shading[i - 1], HUGE_VALF);
+        if (next.cost < begun->cost + PST_FAR_LESS) return next;
+    }
+    pst_shading found = pst_lobe_fit(d, f->lobe);
+    *begun = (run_start){true, found.cost};
+    return found;
+}
+
+static void try_second(const pst_field *f, size_t i, const pst_lobe_data *d)
+{
+    pst_shading start = pst_lobe_translate(f->lobe, f->second, &f->shading[i]);
+    start.second = true;
+    float limit = pst_far_below(f->shading[i].cost);
+    pst_shading found = pst_lobe_refine(d, f->second, &start, limit);
+    if (found.cost < limit) f->shading[i] = found;
+}
+
+static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
+{
+    const pst_field *f = job->field;
+    const pst_shading *start[4];
+    int starts = pst_better_neighbours(&job->around, i, start);
+    for (int k = 0; k < starts; k++) {
+        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k], job->next[i].cost);
+        if (trial.cost < job->next[i].cost) job->next[i] = trial;
+    }
+}
+
+/* Detail as small as a pixel costs much less than what its neighbours have, and stays. */
+static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
+{
+    const pst_shading *own = &job->field->shading[i];
+    pst_majority m;
+    if (!pst_majority_against(&job->around, i, &m)) return;
+    pst_shading trial = pst_lobe_refine(d, lobe_of(job->field, m.member), m.member, own->cost + job->contradiction);
+    float less_strange = pst_strangeness(&m, own->normal) - pst_strangeness(&m, trial.normal);
+    if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
+}
+
+/* power NULL: distant. */
+static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
+{
+    const pst_field *f = job->field;
+    size_t at = i * (size_t)d->seen.padded;
+    pst_shading *own = &f->shading[i];
+    switch (job->task) {
+    case FIT:
+        *own = fit_after(job, i, d, begun);
+        break;
+    case REFINE:
+        *own = pst_lobe_refine(d, lobe_of(f, own), own, HUGE_VALF);
+        break;
+    case SEARCH:
+        *own = pst_lobe_search(d, f->lobe, own);
+        break;
+    case SECOND:
+        try_second(f, i, d);
+        break;
+    case SPREAD:
+        try_neighbours(job, i, d);
+        break;
+    case MEND:
+        mend(job, i, d);
+        break;
+    case MODEL:
+        pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
+        break;
+    default:
+        store_pixel(job, f->pixel[i], d, own, power);
+    }
+    job->cost[i] = own->cost;
+}
+
+/* Under near lights or from a near camera: where the pixel sees them. Returns the direction to the camera. */
+static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
+{
+    const pst_capture *c = f->problem->capture;
+    int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width), padded = pst_padded(c->count);
+    if (f->depth) {
+        vec3 ray = pst_ray(&c->camera, x, y);
+        pst_near_lights_at(f->problem, vec3_scale(ray, f->scale * f->depth->data[at]), lights);
+        pst_near_lights_divide(lights, padded, value, usable);
+        return vec3_normalize(vec3_scale(ray, -1));
+    }
+    if (!f->lobe || f->lobe->focal <= 0) return vec3_make(0, 0, 1);
+    return vec3_normalize(vec3_make((0.5f * (float)c->width - 0.5f - (float)x) / f->lobe->focal,
+                                    ((float)y + 0.5f - 0.5f * (float)c->height) / f->lobe->focal, 1));
+}
+
+static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *d, const pst_near_lights *lights,
+                             vec3 view)
+{
+    const pst_lobe *kind = lobe_of(f, &f->shading[i]);
+    int padded = d->seen.padded, width = f->problem->capture->width;
+    size_t at = f->pixel[i];
+    vec3 ray = pst_ray(&f->problem->capture->camera, (int)(at % (size_t)width), (int)(at / (size_t)width));
+    pst_near_lights behind;
+    pst_lobe_data deeper;
+    float value[PST_MAX_LIGHTS];
+    pst_near_lights_at(f->problem, vec3_scale(ray, f->scale * f->depth->data[at] * expf(PST_DEEPER)), &behind);
+    for (int k = 0; k < padded; k++)
+        value[k] = behind.power[k] > 0 ? d->seen.value[k] * lights->power[k] / behind.power[k] : 0;
+    pst_observations o = {padded, behind.x, behind.y, behind.z, value, d->seen.usable, 0};
+    pst_lobe_prepare(&o, view, kind->shadow, &deeper);
+    return pst_fall_off_of(d, &deeper, kind, &f->shading[i]);
+}
+
+/* The effort of a fit from nothing, counted in fits that begin from a neighbour's. */
+enum { FIT_EFFORT = 4 };
+
+/* Whether the task has anything to do there. */
+static bool concerns(const fit_job *job, size_t i)
+{
+    const pst_shading *start[4];
+    pst_majority m;
+    if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
+    if (job->task == MEND) return pst_majority_against(&job->around, i, &m);
+    return job->task != SPREAD || pst_better_neighbours(&job->around, i, start) > 0;
+}
+
+static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
+{
+    const pst_field *f = job->field;
+    pst_near_lights lights;
+    vec3 view = look_from(f, f->pixel[i], &lights, value, usable);
+    pst_observations o = {pst_padded(f->problem->capture->count), job->x, job->y, job->z, value, usable, 0};
+    if (f->depth) {
+        o.x = lights.x;
+        o.y = lights.y;
+        o.z = lights.z;
+    }
+    if (!f->lobe) {
+        float weight[PST_MAX_LIGHTS];
+        pst_pixel p = pst_pixel_fit(&o, weight);
+        job->cost[i] = p.cost;
+        if (f->b) f->b[i] = p.b;
+    } else if (job->task == FORETELL) {
+        job->cost[i] = pst_lobe_foretell(&o, view, f->lobe);
+    } else {
+        pst_lobe_data d;
+        pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
+        if (job->task == FALL_OFF)
+            job->fall[i] = fall_off(f, i, &d, &lights, view);
+        else
+            fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
+    }
+}
+
+static bool stopped(const pst_field *f)
+{
+    return f->problem->effort && watch_stops(f->problem->effort->watch);
+}
+
+static void fit_block(void *context, size_t block)
+{
+    const fit_job *job = context;
+    const pst_field *f = job->field;
+    if (stopped(f)) return;
+    size_t first = block * BLOCK, end = first + BLOCK < f->count ? first + BLOCK : f->count;
+    size_t stride = (size_t)pst_padded(f->problem->capture->count), wanted[BLOCK], count = 0;
+    uint32_t pixel[BLOCK];
+    gathered g;
+    run_start begun = {false, 0};
+    for (size_t i = first; i < end; i++) {
+        if (!concerns(job, i)) continue;
+        pixel[count] = f->pixel[i];
+        wanted[count++] = i;
+    }
+    if (f->problem->effort)
+        pst_effort_add(f->problem->effort, job->task == FIT ? FIT_EFFORT * (end - first) : end - first);
+    if (count == 0) return;
+    pst_gather(f->problem, pixel, count, g.value, g.usable, stride);
+    for (size_t j = 0; j < count; j++)
+        fit_pixel(job, wanted[j], g.value + j * stride, g.usable + j * stride, &begun);
+}
+
+static status run(fit_job *job)
+{
+    const pst_field *f = job->field;
+    int count = f->problem->capture->count;
+    size_t padded = (size_t)pst_padded(count);
+    float *memory = calloc(3 * padded + f->count, sizeof *memory);
+    if (!memory) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    job->x = memory;
+    job->y = job->x + padded;
+    job->z = job->y + padded;
+    job->cost = job->z + padded;
+    for (int k = 0; k < count; k++) {
+        job->x[k] = f->problem->light[k].direction.x;
+        job->y[k] = f->problem->light[k].direction.y;
+        job->z[k] = f->problem->light[k].direction.z;
+    }
+    parallel_for((f->count + BLOCK - 1) / BLOCK, fit_block, job);
+    job->total = 0;
+    for (size_t i = 0; i < f->count; i++)
+        job->total += (double)job->cost[i];
+    free(memory);
+    return stopped(f) ? fail(ERROR_STOPPED, "stopped") : OK;
+}
+
+status pst_field_fit(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = FIT};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_refine(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = REFINE};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_search(const pst_field *f, float limit)
+{
+    return run(&(fit_job){.field = f, .task = SEARCH, .limit = limit});
+}
+
+status pst_field_try_second(const pst_field *f)
+{
+    return f->second ? run(&(fit_job){.field = f, .task = SECOND}) : OK;
+}
+
+status pst_field_foretell(const pst_field *f, double *cost)
+{
+    fit_job job = {.field = f, .task = FORETELL};
+    status s = run(&job);
+    *cost = job.total;
+    return s;
+}
+
+status pst_field_model(const pst_field *f, float *weight, float *model)
+{
+    return run(&(fit_job){.field = f, .task = MODEL, .weight = weight, .model = model});
+}
+
+status pst_field_fall_off(const pst_field *f, pst_fall_off *out)
+{
+    return run(&(fit_job){.field = f, .task = FALL_OFF, .fall = out});
+}
+
+status pst_field_store(const pst_field *f, pst_surface *out)
+{
+    return run(&(fit_job){.field = f, .task = STORE, .out = out});
+}
+
+static size_t take(const pst_field *f, const pst_shading *next, bool *news)
+{
+    size_t moved = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        news[i] = next[i].cost < f->shading[i].cost;
+        moved += news[i];
+        f->shading[i] = next[i];
+    }
+    return moved;
+}
+
+int32_t *pst_field_slots(const pst_field *f)
+{
+    const pst_capture *c = f->problem->capture;
+    size_t size = (size_t)c->width * (size_t)c->height;
+    int32_t *slot = malloc(size * sizeof *slot);
+    if (!slot) return NULL;
+    memset(slot, 0xff, size * sizeof *slot);
+    for (size_t i = 0; i < f->count; i++)
+        slot[f->pixel[i]] = (int32_t)i;
+    return slot;
+}
+
+status pst_field_spread(const pst_field *f, int sweeps)
+{
+    size_t moved = 1;
+    pst_shading *next = malloc(f->count * sizeof *next);
+    int32_t *slot = pst_field_slots(f);
+    bool *news = malloc(f->count * sizeof *news);
+    status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
+        memcpy(next, f->shading, f->count * sizeof *next);
+        s = run(&(fit_job){.field = f, .task = SPREAD, .around = {f, slot, k > 0 ? news : NULL}, .next = next});
+        if (s == OK) moved = take(f, next, news);
+    }
+    free(next);
+    free(slot);
+    free(news);
+    return s;
+}
+
+static float mean_cost(const pst_field *f)
+{
+    double cost = 0;
+    for (size_t i = 0; i < f->count; i++)
+        cost += (double)f->shading[i].cost;
+    return (float)(cost / (double)f->count);
+}
+
+status pst_field_mend(const pst_field *f, int sweeps)
+{
+    pst_shading *next = malloc(f->count * sizeof *next);
+    int32_t *slot = pst_field_slots(f);
+    status s = next && slot ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    for (int k = 0; s == OK && k < sweeps; k++) {
+        memcpy(next, f->shading, f->count * sizeof *next);
+        s = run(&(fit_job){.field = f,
+                           .task = MEND,
+                           .around = {.field = f, .slot = slot},
+                           .contradiction = PST_FAR_LESS + mean_cost(f),
+                           .next = next});
+        if (s == OK) memcpy(f->shading, next, f->count * sizeof *next);
+    }
+    free(next);
+    free(slot);
+    return s;
+}
+
+status pst_field_sample(const pst_problem *p, size_t count, uint32_t **pixel, size_t *found)
+{
+    size_t n = count < p->pixel_count ? count : p->pixel_count;
+    *found = 0;
+    *pixel = malloc(n * sizeof **pixel);
+    if (!*pixel) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", n);
+    for (size_t i = 0; i < n; i++)
+        (*pixel)[i] = p->pixel[(2 * i + 1) * p->pixel_count / (2 * n)];
+    *found = n;
+    return OK;
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/* The model of lobe.h at one light, for loops over lights without a branch. Internal to the fit. */
+#ifndef MERLIN_STEREO_FIT_LOBE_MODEL_H
+#define MERLIN_STEREO_FIT_LOBE_MODEL_H
+
+#include "stereo/fit/pixel_fit.h"
+
+static inline float clamp_between(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Log u, from lobes wider than the hemisphere to mirrors. */
+static inline float clamp_sharpness(float x)
+{
+    return clamp_between(x, -2.3f, 11);
+}
+
+/* What an observation that is far below the fit is charged. */
+static inline float charge(float shadowy, float value, float residual)
+{
+    return PST_IS_SHADOW(value, residual) ? 1 - shadowy : 1;
+}
+
+/* The distribution by its argument x = sin² of the angle between n and h, without a branch: one of the three
+ * powers counts (none for Lambert's law), and c = 1 − bend x turns the sine into the tangent. */
+typedef struct tail_choice {
+    float two, four, eight, bend;
+} tail_choice;
+
+static inline tail_choice choose_tail(int tail)
+{
+    return (tail_choice){tail == 2 ? 1 : 0, tail == 4 ? 1 : 0, tail == 8 ? 1 : 0, tail == 8 ? 0.999f : 0};
+}
+
+/* base^(γ − 1) */
+static inline float power_below(const tail_choice *t, float base)
+{
+    float two = base * base;
+    return base * (t->two + two * (t->four + t->eight * (two * two)));
+}
+
+/* The lobe at x and at the cosine to the light, of height 1; one division for distribution and masking. */
+static inline float lobe_at(const tail_choice *t, float u, float x, float lit, float k)
+{
+    float c = 1 - t->bend * x, wide = c + u * x, mask = lit * (1 - k) + k + 1e-6f, both = 1 / (wide * mask);
+    float base = c * both * mask;
+    return base * power_below(t, base) * lit * both * wide;
+}
+
+#endif

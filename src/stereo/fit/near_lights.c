@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/fit/near_lights.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+void pst_near_lights_at(const pst_problem *p, vec3 at, pst_near_lights *out)
+{
+    int count = p->capture->count, padded = pst_padded(count);
+    for (int k = 0; k < padded; k++)
+        out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
+    for (int k = 0; k < count; k++) {
+        const pst_light *from = &p->light[k];
+        vec3 to = vec3_sub(from->position, at);
+        float squared = fmaxf(vec3_dot(to, to), 1e-12f);
+        vec3 l = vec3_scale(to, 1 / sqrtf(squared));
+        float power = 1 / squared;
+        if (from->lobe > 0 && vec3_dot(from->direction, from->direction) > 0)
+            power *= powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe);
+        out->x[k] = l.x;
+        out->y[k] = l.y;
+        out->z[k] = l.z;
+        out->power[k] = power;
+    }
+}
+
+void pst_near_lights_divide(const pst_near_lights *l, int padded, float *value, float *usable)
+{
+    float most = 0;
+    for (int k = 0; k < padded; k++)
+        most = l->power[k] > most ? l->power[k] : most;
+    for (int k = 0; k < padded; k++) {
+        bool lit = l->power[k] > 1e-4f * most; /* less is the lobe's dark side: nothing but noise, enlarged */
+        value[k] = lit ? value[k] / l->power[k] : 0;
+        usable[k] = lit ? usable[k] : 0;
+    }
+}

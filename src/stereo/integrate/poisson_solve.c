@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "stereo/integrate/poisson_level.h"
+
+/* Of conjugate gradients; more than a new stack took that an old one may take. */
+enum { MOST_STEPS = 100, MORE_STEPS = 3 };
+/* Tolerances that may be left after the last step. */
+static const double MOST_ASTRAY = 100;
+
+struct poisson_solver {
+    const poisson_grid *grid;
+    poisson_stack stack;
+    double *b, *r, *z, *p, *product; /* all but b only if the grid is not factorized itself */
+    double *x;                       /* the caller's */
+    double length, turn;             /* of a step of the conjugate gradients */
+    int steps_at_first;              /* that a solution took with the stack just made; 0: it is to be made anew */
+    double sum[POISSON_STRIPS];
+};
+
+status poisson_solver_new(const poisson_grid *g, poisson_solver **out)
+{
+    poisson_solver *s = calloc(1, sizeof *s);
+    *out = s;
+    if (!s) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    s->grid = g;
+    double **arrays[] = {&s->b, &s->r, &s->z, &s->p, &s->product};
+    size_t wanted = g->count <= POISSON_DIRECT ? 1 : 5, n = (size_t)g->count;
+    for (size_t i = 0; i < wanted; i++)
+        if (!(*arrays[i] = memory_new(n * sizeof(double)))) {
+            poisson_solver_free(s);
+            *out = NULL;
+            return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
+        }
+    return OK;
+}
+
+void poisson_solver_free(poisson_solver *s)
+{
+    if (!s) return;
+    poisson_stack_free(&s->stack);
+    memory_free(s->b);
+    memory_free(s->r);
+    memory_free(s->z);
+    memory_free(s->p);
+    memory_free(s->product);
+    free(s);
+}
+
+static void right_hand_side(const poisson_grid *g, double *b)
+{
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < g->count; i++) {
+        b[i] = (double)g->pull[i] * (double)g->pulled_to[i];
+        for (int k = 0; k < 2; k++) {
+            int before = g->previous[k][i];
+            b[i] -= (double)g->weight[k][i] * (double)g->target[k][i];
+            if (before >= 0) b[i] += (double)g->weight[k][before] * (double)g->target[k][before];
+        }
+    }
+}
+
+/* ---- conjugate gradients, a strip at a time ---- */
+
+typedef double strip_work(poisson_solver *s, int begin, int end);
+
+typedef struct strip_job {
+    poisson_solver *solver;
+    strip_work *work;
+} strip_job;
+
+static void work_on(void *context, size_t i)
+{
+    strip_job *job = context;
+    const int *strip = job->solver->stack.levels[0].strip;
+    job->solver->sum[i] = job->work(job->solver, strip[i], strip[i + 1]);
+}
+
+/* The strips' sum. */
+static double over_strips(poisson_solver *s, strip_work *work)
+{
+    double sum = 0;
+    parallel_for(POISSON_STRIPS, work_on, &(strip_job){s, work});
+    for (int i = 0; i < POISSON_STRIPS; i++)
+        sum += s->sum[i];
+    return sum;
+}
+
+static double square_of_b(poisson_solver *s, int begin, int end)
+{
+    double sum = 0;
+    for (int i = begin; i < end; i++)
+        sum += s->b[i] * s->b[i];
+    return sum;
+}
+
+/* r = b − A x; r·r */
+static double start(poisson_solver *s, int begin, int end)
+{
+    const poisson_level *finest = &s->stack.levels[0];
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->r[i] = poisson_residual(finest, i, s->b, s->x);
+        s->p[i] = 0;
+        sum += s->r[i] * s->r[i];
+    }
+    return sum;
+}
+
+static double residual_by_preconditioned(poisson_solver *s, int begin, int end)
+{
+    double sum = 0;
+    for (int i = begin; i < end; i++)
+        sum += s->r[i] * s->z[i];
+    return sum;
+}
+
+static double turn(poisson_solver *s, int begin, int end)
+{
+    for (int i = begin; i < end; i++)
+        s->p[i] = s->turn * s->p[i] + s->z[i];
+    return 0;
+}
+
+/* p·(A p), with A p left in product. */
+static double apply(poisson_solver *s, int begin, int end)
+{
+    const poisson_level *finest = &s->stack.levels[0];
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->product[i] = poisson_diagonal(finest, i) * s->p[i] - poisson_around(finest, i, s->p);
+        sum += s->p[i] * s->product[i];
+    }
+    return sum;
+}
+
+/* x and r go on; r·r */
+static double step(poisson_solver *s, int begin, int end)
+{
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+        s->x[i] += s->length * s->p[i];
+        s->r[i] -= s->length * s->product[i];
+        sum += s->r[i] * s->r[i];
+    }
+    return sum;
+}
+
+/* *left: of the residual's square, in times of what is enough; *steps: up to `most` that were made. */
+static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
+{
+    double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
+    if (!(enough > 0)) { /* b = 0 */
+        memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
+        square = 0;
+    }
+    for (*steps = 0; *steps < most && square > enough; ++*steps) {
+        status result = poisson_stack_cycle(&s->stack, s->r, s->z);
+        if (result != OK) return result;
+        double before = energy;
+        energy = over_strips(s, residual_by_preconditioned);
+        s->turn = *steps ? energy / before : 0;
+        over_strips(s, turn);
+        double curvature = over_strips(s, apply);
+        if (!(curvature > 0)) break;
+        s->length = energy / curvature;
+        square = over_strips(s, step);
+    }
+    *left = square / fmax(enough, 1e-300);
+    return OK;
+}
+
+/* The whole of it, whatever memory that takes. */
+static status factorize(const poisson_solver *s)
+{
+    poisson_graph graph;
+    poisson_factor *whole = NULL;
+    status result = poisson_graph_of(s->grid, &graph);
+    if (result == OK) result = poisson_factor_new(&graph, &whole);
+    if (result == OK) result = poisson_factor_solve(whole, s->b, s->x);
+    poisson_factor_free(whole);
+    poisson_graph_free(&graph);
+    return result;
+}
+
+static status build(poisson_solver *s)
+{
+    poisson_stack_free(&s->stack);
+    return poisson_stack_new(s->grid, &s->stack);
+}
+
+/* A stack that was made for other weights is as good as any until it takes too many steps. */
+static status iterate(poisson_solver *s, double tolerance)
+{
+    int steps, most = s->steps_at_first + MORE_STEPS;
+    double left = INFINITY;
+    status result = OK;
+    if (s->steps_at_first) result = conjugate_gradients(s, tolerance, most, &steps, &left);
+    if (result != OK || left <= 1) return result;
+    result = build(s);
+    if (result == ERROR_DEVICE) return factorize(s);
+    if (result == OK) result = conjugate_gradients(s, tolerance, MOST_STEPS, &s->steps_at_first, &left);
+    return result == OK && left > MOST_ASTRAY * MOST_ASTRAY ? factorize(s) : result;
+}
+
+static status solve_directly(poisson_solver *s)
+{
+    status result = build(s);
+    return result == OK ? poisson_factor_solve(s->stack.factor, s->b, s->x) : result;
+}
+
+status poisson_solve(poisson_solver *s, double tolerance, double *x)
+{
+    s->x = x;
+    right_hand_side(s->grid, s->b);
+    return s->grid->count <= POISSON_DIRECT ? solve_directly(s) : iterate(s, tolerance);
+}

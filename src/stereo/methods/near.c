@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT */
+/* Near point lights and a perspective camera, alternating (the scheme of Logothetis, Mecca & Cipolla, Semi-calibrated
+ * near field photometric stereo, CVPR 2017, with a robust fit for the normals): from a depth map each pixel has its own
+ * light vectors, inverse-square attenuation and LED lobes; from these its normal (field_fit.h); from the normals a
+ * depth map by integration. The first depth map is a plane that faces the camera.
+ *
+ * Normals cannot tell how far behind another a part of the object lies, and integration alone joins what only meets in
+ * the picture. The lights tell: each pixel's fit also says in which distance it would agree better with how they fall
+ * off (fall_off.h), and draws its depth there, softly, so that all of a part's pixels together place the part.
+ *
+ * Most rounds are gone through on a small version of the pictures (shrink.h), which knows the depth nearly as well.
+ *
+ * Where the camera's mean distance is known the depth keeps it until parts have found their places (then what is still
+ * wrong in the dark must not move the rest); otherwise the lights tell that, too. With few lights the first rounds also
+ * find out whether a highlight's lobe is worth fitting (lobe_choice.h). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stereo/fit/field_fit.h"
+#include "stereo/integrate/integrate.h"
+#include "stereo/fit/lobe_choice.h"
+#include "stereo/algebra/matrix3.h"
+#include "stereo/capture/shrink.h"
+#include "stereo/methods/solve_parts.h"
+
+/* SMALL: pixels that the depth is searched on, up to four times as many; ANEW: rounds whose fits start from nothing,
+ * since the depth was far off; ADMISSIONS: rounds until it is good enough to judge a lobe by; STEPPED: rounds at the
+ * end. */
+enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
+
+/* Rounds end when depths move by less than this share of the distance, on average. */
+static const float settled = 3e-4f;
+
+/* The slope that normals are taken to err by beside what a pixel says of its own depth: more where parts still look for
+ * their place, less where the surface is to be smooth. Normals err by less, but neighbours err alike in their depths.
+ * Rendered objects come out much the same for slopes from half to twice these. */
+static const float searching = 0.3f, placed = 0.1f;
+
+/* No pixel asks for more than this change of log depth in a round, nor is trusted further than to a percent. */
+static const float most_offset = 0.1f, most_trust = 1e4f, least_trust = 1e-2f;
+
+/* The distance is told where this factor on it costs this much more, and a pixel this much, which noise does, too.
+ * Rings of four lights have 1 to 1.2 and 0.04, three lights nothing; five about a ball 4 and 0.5, fifty about objects
+ * of all kinds 1.6 at least and 8 (docs/notes/solvers.md has what a ring leaves). */
+static const float elsewhere = 1.25f;
+static const double well_told = 1.3, least_told = 0.1;
+
+typedef struct near_job {
+    const pst_problem *problem;
+    pst_surface *out;
+    pst_field sample; /* for the scale */
+    pinhole camera;
+    pst_lobe lobe;
+    pst_shading *shading; /* a pixel */
+    float held_at;        /* mean distance, where it is known and until parts have found their places; else 0 */
+    const watch *watch;   /* of the integration, where it lasts; else NULL */
+    float moved;          /* by the last integration: mean of all pixels, against the distance */
+} near_job;
+
+static void fill_plane(const pst_problem *p, float distance, img *depth)
+{
+    for (size_t i = 0; i < p->pixel_count; i++)
+        depth->data[p->pixel[i]] = distance;
+}
+
+static float light_reach(const pst_capture *c)
+{
+    float sum = 0;
+    for (int k = 0; k < c->count; k++)
+        sum += vec3_length(c->light[k].position);
+    return sum / (float)c->count;
+}
+
+/* Of the sampled pixels, with the depth times a factor. */
+static status cost_at(const near_job *job, float scale, bool anew, double *cost)
+{
+    pst_field f = job->sample;
+    f.depth = &job->out->depth;
+    f.scale = scale;
+    return anew ? pst_field_fit(&f, cost) : pst_field_refine(&f, cost);
+}
+
+/* The factor on the depth with the least loss among 2 steps + 1 factors a ratio apart around 1. */
+static status best_scale(near_job *job, float ratio, int steps, bool anew, float *scale)
+{
+    double best = HUGE_VAL, cost;
+    status s = OK;
+    for (int k = -steps; s == OK && k <= steps; k++) {
+        float factor = powf(ratio, (float)k);
+        s = cost_at(job, factor, anew, &cost);
+        if (s == OK && cost < best) {
+            best = cost;
+            *scale = factor;
+        }
+    }
+    return s;
+}
+
+/* Whether the pictures are explained as well from nearer or further away: then how far the object is was a guess. */
+static status doubt_distance(const near_job *job, bool *unsure)
+{
+    double here, nearer, further;
+    status s = cost_at(job, 1, true, &here);
+    if (s == OK) s = cost_at(job, 1 / elsewhere, true, &nearer);
+    if (s == OK) s = cost_at(job, elsewhere, true, &further);
+    if (s == OK) *unsure = fmin(nearer, further) < well_told * here + least_told * (double)job->sample.count;
+    return s;
+}
+
+static void rescale(near_job *job, float scale)
+{
+    img *depth = &job->out->depth;
+    for (size_t i = 0; i < job->problem->pixel_count; i++)
+        depth->data[job->problem->pixel[i]] *= scale;
+    job->camera.mean_distance *= scale;
+}
+
+static void keep_distance(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    double sum = 0;
+    for (size_t i = 0; i < p->pixel_count; i++)
+        sum += (double)job->out->depth.data[p->pixel[i]];
+    rescale(job, job->held_at * (float)p->pixel_count / (float)sum);
+    job->camera.mean_distance = job->held_at;
+}
+
+/* Mean change in depth against the distance. */
+static float change(const pst_problem *p, const img *a, const img *b, float distance)
+{
+    double sum = 0;
+    for (size_t i = 0; i < p->pixel_count; i++)
+        sum += fabs((double)(a->data[p->pixel[i]] - b->data[p->pixel[i]]));
+    return (float)(sum / (double)p->pixel_count) / distance;
+}
+
+static pst_field whole_field(const near_job *job)
+{
+    const pst_problem *p = job->problem;
+    return (pst_field){.problem = p,
+                       .pixel = p->pixel,
+                       .count = p->pixel_count,
+                       .depth = &job->out->depth,
+                       .scale = 1,
+                       .lobe = &job->lobe,
+                       .shading = job->shading};
+}
+
+/* anew: from nothing, else from the normals before. */
+static status fit_normals(const near_job *job, bool anew)
+{
+    pst_field f = whole_field(job);
+    double cost;
+    status s = anew ? pst_field_fit(&f, &cost) : pst_field_refine(&f, &cost);
+    /* with few lights a wrong surface costs no more, and would spread */
+    if (s == OK && anew && job->problem->capture->count >= PST_MANY_LIGHTS) s = pst_field_spread(&f, SWEEPS);
+    for (size_t i = 0; s == OK && i < f.count; i++) {
+        vec3 n = pst_facing(f.shading[i].normal);
+        memcpy(job->out->normal.data + 3 * (size_t)f.pixel[i], &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
+    }
+    return s;
+}
+
+static status admit_lobe(near_job *job)
+{
+    pst_field f = job->sample;
+    f.depth = &job->out->depth;
+    f.scale = 1;
+    return pst_lobe_admit(&f, &job->lobe);
+}
+
+/* The depth map by way of the normals. */
+static status integrate(near_job *job, const pst_integration *how)
+{
+    img depth = {0};
+    status s = pst_integrate(&job->out->normal, &job->problem->capture->mask, &job->camera, how, &depth);
+    if (s != OK) return s;
+    img before = job->out->depth;
+    job->out->depth = depth;
+    if (job->held_at > 0) keep_distance(job);
+    job->moved = change(job->problem, &job->out->depth, &before, job->camera.mean_distance);
+    img_free(&before);
+    return OK;
+}
+
+/* Where each pixel's fit would have its depth, and what that weighs. */
+static status place_pixels(near_job *job, float slope, img *place, img *trust)
+{
+    pst_field f = whole_field(job);
+    pst_fall_off *found = malloc(f.count * sizeof *found);
+    status s = found ? OK : fail(ERROR_MEMORY, "no memory to place %zu pixels", f.count);
+    if (s == OK) s = img_copy(place, f.depth);
+    if (s == OK) s = img_copy(trust, f.depth);
+    if (s == OK) s = pst_field_fall_off(&f, found);
+    float unit = slope / job->camera.focal;
+    for (size_t i = 0; s == OK && i < f.count; i++) {
+        float offset = fmaxf(fminf(found[i].offset, most_offset), -most_offset);
+        place->data[f.pixel[i]] *= expf(offset);
+        trust->data[f.pixel[i]] = unit * unit * fmaxf(fminf(found[i].trust, most_trust), least_trust);
+    }
+    free(found);
+    return s;
+}
+
+/* The depth map by way of the normals and of what the lights say. */
+static status place(near_job *job, float slope, bool preserve_edges)
+{
+    img place = {0}, trust = {0};
+    status s = place_pixels(job, slope, &place, &trust);
+    pst_integration how = {.prior = &place,
+                           .prior_weight = 1,
+                           .trust = &trust,
+                           .preserve_edges = preserve_edges,
+                           .from_prior = preserve_edges,
+                           .watch = job->watch};
+    if (s == OK) s = integrate(job, &how);
+    img_free(&place);
+    img_free(&trust);
+    return s;
+}
+
+static status iterate(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    int iterations = p->iterations > 0 ? p->iterations : ITERATIONS;
+    status s = OK;
+    float ratio = 1.2f;
+    job->moved = 1;
+    for (int k = 0; s == OK && k < iterations && job->moved > settled; k++) {
+        if (k < ADMISSIONS) s = admit_lobe(job);
+        if (s == OK) s = fit_normals(job, k < ANEW);
+        if (s == OK) s = k == 0 ? integrate(job, &(pst_integration){0}) : place(job, searching, false);
+        if (s != OK || job->held_at > 0) continue;
+        float scale = 1;
+        s = best_scale(job, ratio, 3, k < ANEW, &scale);
+        rescale(job, scale);
+        job->moved = fmaxf(job->moved, fabsf(scale - 1));
+        ratio = 1 + (ratio - 1) * 0.7f;
+    }
+    return s;
+}
+
+/* From a plane at the distance that is known or most likely. */
+static status find_depth(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    float distance = p->capture->camera.mean_distance;
+    job->held_at = distance;
+    job->camera.mean_distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
+    fill_plane(p, job->camera.mean_distance, &job->out->depth);
+    float scale = 1;
+    status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
+    rescale(job, scale);
+    if (s == OK) s = iterate(job);
+    bool unsure = false;
+    if (s == OK) s = doubt_distance(job, &unsure);
+    job->out->distance_unsure = unsure && !(distance > 0);
+    if (!unsure) job->held_at = 0;
+    /* steps in depth are let in once parts have found their places */
+    for (int k = 0; s == OK && k < STEPPED; k++) {
+        s = fit_normals(job, k == 0);
+        if (s == OK) s = place(job, placed, true);
+    }
+    return s;
+}
+
+static void job_free(near_job *job)
+{
+    free(job->shading);
+    free(job->sample.shading);
+    free((uint32_t *)job->sample.pixel);
+}
+
+static status job_new(const pst_problem *p, pst_surface *out, near_job *job)
+{
+    *job = (near_job){.problem = p,
+                      .out = out,
+                      .sample = {.problem = p},
+                      .camera = p->capture->camera,
+                      .lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST}};
+    job->camera.perspective = true;
+    uint32_t *pixel;
+    status s = img_new(&out->depth, p->capture->width, p->capture->height, 1);
+    if (s == OK) s = pst_field_sample(p, SAMPLE, &pixel, &job->sample.count);
+    if (s != OK) return s;
+    job->sample.pixel = pixel;
+    job->sample.lobe = &job->lobe;
+    job->sample.shading = calloc(job->sample.count, sizeof *job->shading);
+    job->shading = calloc(p->pixel_count, sizeof *job->shading);
+    return job->shading && job->sample.shading ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
+}
+
+/* The depth map, the distance and the lobe from the small pictures. */
+static status find_depth_small(near_job *job, int factor)
+{
+    const pst_capture *c = job->problem->capture;
+    pst_capture small;
+    status s = pst_shrink(c, pst_blocks_of(c, factor), job->problem->saturation, &small);
+    if (s != OK) return s;
+    pst_problem p = *job->problem;
+    pst_surface found = {0};
+    near_job search = {0};
+    p.capture = &small;
+    s = pst_list_pixels(&small, &p);
+    if (s == OK) s = img_new(&found.normal, small.width, small.height, 3);
+    if (s == OK) s = job_new(&p, &found, &search);
+    if (s == OK) s = find_depth(&search);
+    if (s == OK) pst_enlarge(&found.depth, &small.mask, &c->mask, factor, &job->out->depth);
+    job->lobe = search.lobe;
+    job->held_at = search.held_at;
+    job->out->distance_unsure = found.distance_unsure;
+    job->camera.mean_distance = search.camera.mean_distance;
+    job_free(&search);
+    pst_surface_free(&found);
+    free(p.pixel);
+    pst_capture_free(&small);
+    return s;
+}
+
+/* The small depth map's steps find their pixels. */
+static status fill_in(near_job *job)
+{
+    job->watch = job->problem->effort ? job->problem->effort->watch : NULL;
+    status s = fit_normals(job, true);
+    return s == OK ? place(job, placed, true) : s;
+}
+
+static status solve(near_job *job)
+{
+    int factor = (int)sqrtf((float)job->problem->pixel_count / SMALL);
+    status s = factor > 1 ? find_depth_small(job, factor) : find_depth(job);
+    if (s == OK && factor > 1) s = fill_in(job);
+    if (s == OK) s = fit_normals(job, false);
+    pst_field f = whole_field(job);
+    if (s == OK) s = pst_field_mend(&f, SWEEPS);
+    return s == OK ? pst_field_store(&f, job->out) : s;
+}
+
+status pst_solve_near(const pst_problem *p, pst_surface *out)
+{
+    near_job job;
+    status s = job_new(p, out, &job);
+    if (s == OK) s = solve(&job);
+    job_free(&job);
+    return s;
+}

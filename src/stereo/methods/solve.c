@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+#include "stereo/methods/solve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "stereo/fit/pixel_fit.h"
+#include "stereo/methods/solve_parts.h"
+#include "stereo/methods/unlit.h"
+
+/* Listed with z away from the camera, lights would be taken as they are, for a surface that hardly faces any. */
+static status check_known_directions(const pst_light *light, int count)
+{
+    int behind = 0;
+    for (int i = 0; i < count; i++)
+        behind += light[i].direction.z <= 0;
+    if (behind == count)
+        return fail(ERROR_INPUT,
+                    "all %d lights stand behind or beside the object (z is nowhere above 0); z of a direction to a "
+                    "light points "
+                    "toward the camera",
+                    count);
+    return pst_check_directions(light, count);
+}
+
+static pst_method choose(const pst_capture *c)
+{
+    if (c->lighting == PST_UNKNOWN_LIGHT) return PST_UNCALIBRATED;
+    if (c->lighting == PST_NEAR) return PST_NEAR_LIGHTS;
+    return c->intensities_known ? PST_ROBUST : PST_SEMI;
+}
+
+static status check_method(const pst_capture *c, pst_method m)
+{
+    bool distant = m == PST_LS || m == PST_ROBUST || m == PST_SEMI;
+    if (distant && c->lighting != PST_DISTANT)
+        return fail(ERROR_USAGE, "method %s needs light directions, which this capture does not have; use %s",
+                    pst_method_name(m), c->lighting == PST_NEAR ? "near" : "--method uncalibrated");
+    if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
+        return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
+                    c->lighting == PST_DISTANT ? "robust, or say that its lights are near if its list holds positions"
+                                               : "--method uncalibrated");
+    if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
+        return fail(ERROR_USAGE, "method near needs the camera's focal length");
+    if (c->count < 3)
+        return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
+    if (c->count > PST_MAX_LIGHTS && m != PST_LS)
+        return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
+                    pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
+    if (m == PST_NEAR_LIGHTS) return pst_check_positions(c->light, c->count);
+    return distant ? check_known_directions(c->light, c->count) : OK;
+}
+
+static status check_mask(const pst_capture *c)
+{
+    if (c->mask.width != c->width || c->mask.height != c->height)
+        return fail(ERROR_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width, c->mask.height,
+                    c->width, c->height);
+    size_t size = (size_t)c->width * (size_t)c->height;
+    for (size_t i = 0; i < size; i++)
+        if (c->mask.data[i] > 0.5f) return OK;
+    return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
+}
+
+/* Some of the object's pixels, evenly: least squares look at none of a large picture twice. */
+enum { ENOUGH = 1 << 18 };
+static size_t some_pixels(const pst_capture *c, uint32_t some[ENOUGH])
+{
+    size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0, count = 0;
+    for (size_t i = 0; i < pixels; i++)
+        inside += c->mask.data[i] > 0.5f;
+    for (size_t i = 0, met = 0, step = inside / ENOUGH + 1; i < pixels; i++)
+        if (c->mask.data[i] > 0.5f && met++ % step == 0) some[count++] = (uint32_t)i;
+    return count;
+}
+
+/* Mean over these pixels, as if the light were of intensity 1. */
+static double mean_seen(const pst_problem *p, int k, const uint32_t *some, size_t count)
+{
+    size_t channels = (size_t)p->capture->channels;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t ch = 0; ch < channels; ch++)
+            sum += (double)p->capture->picture[k][some[i] * channels + ch] / (double)p->light[k].intensity[ch];
+    return sum / (double)count;
+}
+
+/* Few pictures cannot spare one: a flash that failed would be taken for shadow everywhere, and normals turned away from
+ * its light. */
+static status check_lit(const pst_problem *p)
+{
+    enum { FEW = 8 };
+    static const double BLACK = 0.02; /* of the brightest picture; noise alone is less, the least of lights more */
+    const pst_capture *c = p->capture;
+    if (c->count >= FEW) return OK;
+    uint32_t *some = malloc(ENOUGH * sizeof *some);
+    if (!some) return fail(ERROR_MEMORY, "no memory for a list of pixels");
+    size_t count = some_pixels(c, some);
+    double mean[FEW], most = 0;
+    for (int k = 0; k < c->count; k++)
+        most = fmax(most, mean[k] = mean_seen(p, k, some, count));
+    free(some);
+    for (int k = 0; k < c->count; k++)
+        if (mean[k] < BLACK * most)
+            return fail(ERROR_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out", k + 1,
+                        c->name ? ", " : "", c->name ? c->name[k] : "");
+    return OK;
+}
+
+/* Beyond these, squares of albedos would leave the range of floats, or vanish beside what keeps a division from 0. */
+static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
+
+/* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
+ * divide by zero. */
+static status list_lights(const pst_capture *c, pst_method method, pst_light *light)
+{
+    for (int i = 0; i < c->count; i++) {
+        light[i] = c->light ? c->light[i] : (pst_light){0};
+        float *e = light[i].intensity;
+        bool unknown =
+            method == PST_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
+        for (int k = 0; k < 3; k++) {
+            if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
+            if (!(e[k] > 0))
+                return fail(ERROR_INPUT, "light %d has the intensity %g; it must be above 0", i + 1, (double)e[k]);
+            if (!(e[k] >= least_intensity && e[k] <= largest_intensity))
+                return fail(ERROR_INPUT, "light %d has the intensity %g; give all lights' in another unit, %g to %g",
+                            i + 1, (double)e[k], (double)least_intensity, (double)largest_intensity);
+        }
+    }
+    return OK;
+}
+
+static status allocate_map(const pst_capture *c, int channels, img *out)
+{
+    status s = img_new(out, c->width, c->height, channels);
+    size_t count = (size_t)c->width * (size_t)c->height * (size_t)channels;
+    if (s == OK) memory_prefer_large_pages(out->data, count * sizeof(float));
+    return s;
+}
+
+static status allocate(const pst_capture *c, pst_surface *out)
+{
+    status s = allocate_map(c, 3, &out->normal);
+    if (s == OK) s = allocate_map(c, c->channels, &out->albedo);
+    if (s == OK) s = allocate_map(c, 1, &out->residual);
+    return s;
+}
+
+static status run(const pst_problem *p, pst_surface *out)
+{
+    switch (out->method) {
+    case PST_LS:
+        return pst_solve_ls(p, out);
+    case PST_ROBUST:
+        return pst_solve_robust(p, out);
+    case PST_NEAR_LIGHTS:
+        return pst_solve_near(p, out);
+    case PST_SEMI:
+        return pst_solve_semi(p, out);
+    case PST_UNCALIBRATED:
+        return pst_solve_uncalibrated(p, out);
+    default:
+        return fail(ERROR_USAGE, "there is no such method of photometric stereo");
+    }
+}
+
+/* A fit from nothing counts as four. Each method's own are so many times the pixels, near's first ones are on small
+ * pictures. */
+static size_t expected_effort(const pst_problem *p, pst_method method)
+{
+    static const size_t passes[] = {[PST_ROBUST] = 9, [PST_NEAR_LIGHTS] = 11, [PST_SEMI] = 9, [PST_UNCALIBRATED] = 13};
+    enum { SMALL_ONES = 300000 };
+    bool known = (size_t)method < sizeof passes / sizeof *passes;
+    return (known ? passes[method] : 1) * p->pixel_count + (method == PST_NEAR_LIGHTS ? SMALL_ONES : 0) + 1;
+}
+
+status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
+{
+    *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
+    status s = check_method(c, out->method);
+    if (s != OK) return s;
+    pst_light *light = calloc((size_t)c->count, sizeof *light);
+    if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    pst_problem p = {.capture = c,
+                     .light = light,
+                     .shadow = options->shadow,
+                     .saturation = options->saturation > 0 ? options->saturation : PST_SATURATED,
+                     .iterations = options->iterations};
+    pst_effort effort = {.watch = options->watch, .owner = pthread_self()};
+    if (options->watch) p.effort = &effort;
+    watch_tell(options->watch, "solving", 0);
+    s = list_lights(c, out->method, light);
+    if (s == OK) s = check_mask(c);
+    if (s == OK && out->method != PST_SEMI && out->method != PST_UNCALIBRATED) s = check_lit(&p);
+    if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
+    effort.expected = expected_effort(&p, out->method);
+    if (s == OK) s = allocate(c, out);
+    if (s == OK) s = run(&p, out);
+    if (s == OK && p.effort) pst_effort_add(&effort, 0); /* Other threads may have had the last pixels. */
+    if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
+    free(p.pixel);
+    free(light);
+    if (s != OK) pst_surface_free(out);
+    return s;
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT */
+/* Lights of unknown position or direction. They are found twice, as near ones (uncalibrated_near.c) and as distant ones
+ * (uncalibrated_distant.c); whichever explain a sample of pixels better are used, the robust fit does the rest. The
+ * further near lights are, the less they fall off, and the more easily a bowl under them passes for a ball whose
+ * contrast a camera flattened: then the surface that is more like a balloon of the object's outline is taken.
+ *
+ * Without a camera the pictures are taken for orthographic, which is a perspective from far away. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "stereo/fit/field_fit.h"
+#include "stereo/uncalibrated/inflate.h"
+#include "stereo/integrate/integrate.h"
+#include "stereo/fit/lobe_choice.h"
+#include "stereo/fit/samples.h"
+#include "stereo/methods/solve_parts.h"
+#include "stereo/uncalibrated/uncalibrated_parts.h"
+
+enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
+/* Near lights have an unknown a picture more, and distance to spare: they must cost less than this share of what
+ * distant ones do. Measured on rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.84 to 1.2
+ * where they were distant. */
+static const double clearly = 0.8;
+/* Times the cost of an answer of which more than PST_MOST_AWAY faces away. */
+static const double absurd = 1e3;
+/* Of the camera that stands for none, in widths of the picture. */
+static const float far_away = 30;
+/* Of near lights, in the object's radii: from the second on they are distant ones, whose distances stand for their
+ * strengths; from the first on they are not believed against the outline. Measured: 2.2 to 4.1 where they were truly
+ * near (bowls under them, too), 8 and more where they were distant. What comes of it is in
+ * docs/notes/unknown_lights.md. */
+static const double doubtful = 5, farthest = 10;
+/* How much less like the balloon a surface may be than under distant lights, as a mean cosine. */
+static const double less_like = 0.3;
+
+/* Near lights are doubted from this cost of a value on, and below this likeness to the balloon. Measured: of 15
+ * captures that came out less than 10 degrees off none had more than 0.19 or less than 0.6; a cat and a plane under
+ * distant lights that were taken for near ones, 31 and 34 degrees off, 0.26 and 0.48. */
+static const double costly = 0.2, unlike = 0.55;
+
+/* Lights of one kind, and how well they explain the pictures. */
+typedef struct hypothesis {
+    pst_light *light; /* count */
+    img depth;        /* near lights: goes with them; else empty */
+    double cost;
+    double cost_of_value;  /* the same for each value of the sample, in [0, 1] */
+    double likeness;       /* mean cosine between the sample's normals and the balloon's */
+    pst_rotation rotation; /* distant lights: how they were told */
+} hypothesis;
+
+static pinhole perspective_of(const pst_capture *c)
+{
+    pinhole camera = c->camera;
+    if (!camera.perspective || !(camera.focal > 0))
+        camera = (pinhole){.focal = far_away * (float)(c->width > c->height ? c->width : c->height),
+                              .center_x = 0.5f * (float)c->width,
+                              .center_y = 0.5f * (float)c->height};
+    camera.perspective = true;
+    if (!(camera.mean_distance > 0)) camera.mean_distance = 1;
+    return camera;
+}
+
+static double share_away(const pst_field *f)
+{
+    size_t away = 0, width = (size_t)f->problem->capture->width;
+    for (size_t i = 0; i < f->count; i++) {
+        int x = (int)(f->pixel[i] % width), y = (int)(f->pixel[i] / width);
+        away += vec3_dot(f->b[i], pst_ray(&f->problem->capture->camera, x, y)) > 0;
+    }
+    return (double)away / (double)f->count;
+}
+
+static double likeness(const pst_field *f, const img *balloon)
+{
+    double sum = 0;
+    for (size_t i = 0; i < f->count; i++)
+        sum += (double)vec3_dot(vec3_normalize(f->b[i]), vec3_of(balloon->data + 3 * (size_t)f->pixel[i]));
+    return sum / (double)f->count;
+}
+
+/* What the robust fit leaves of a sample. */
+static status judge(const pst_problem *p, const img *balloon, hypothesis *h)
+{
+    uint32_t *pixel;
+    pst_problem under = *p;
+    under.light = h->light;
+    pst_field f = {.problem = &under, .scale = 1, .depth = h->depth.data ? &h->depth : NULL};
+    status s = pst_field_sample(p, SAMPLE, &pixel, &f.count);
+    if (s != OK) return s;
+    f.pixel = pixel;
+    f.b = calloc(f.count, sizeof *f.b);
+    size_t values = f.count * (size_t)p->capture->count;
+    s = f.b ? pst_field_fit(&f, &h->cost) : fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", f.count);
+    h->cost_of_value = h->cost / fmax((double)values, 1);
+    if (s == OK && share_away(&f) > PST_MOST_AWAY) h->cost *= absurd;
+    if (s == OK) h->likeness = likeness(&f, balloon);
+    free(f.b);
+    free(pixel);
+    return s;
+}
+
+/* Whether a highlight's lobe is worth fitting; f's pixels become all of the problem's. */
+static status admit_lobe(pst_field *f, pst_lobe *lobe)
+{
+    uint32_t *sample;
+    status s = pst_field_sample(f->problem, ADMITTING, &sample, &f->count);
+    if (s != OK) return s;
+    f->pixel = sample;
+    s = pst_lobe_admit(f, lobe);
+    free(sample);
+    f->pixel = f->problem->pixel;
+    f->count = f->problem->pixel_count;
+    return s;
+}
+
+/* Normals from the depth that came with the lights, then a finer depth from these. More rounds gain nothing: that depth
+ * fits the lights that were found with it, errors and all. */
+static status solve_near(const pst_problem *p, const img *depth, pst_surface *out)
+{
+    const pst_integration how = {.prior = depth, .prior_weight = PST_KEEP_DEPTH};
+    pst_lobe lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST};
+    pst_field f = {.problem = p, .depth = depth, .scale = 1, .lobe = &lobe};
+    double cost;
+    f.shading = calloc(p->pixel_count, sizeof *f.shading);
+    if (!f.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
+    status s = admit_lobe(&f, &lobe);
+    if (s == OK) s = pst_field_fit(&f, &cost);
+    if (s == OK) s = pst_field_store(&f, out);
+    if (s == OK) s = pst_integrate(&out->normal, &p->capture->mask, &p->capture->camera, &how, &out->depth);
+    free(f.shading);
+    return s;
+}
+
+/* Of near lights, in the object's radii. */
+static double mean_distance(const pst_problem *p, const hypothesis *h)
+{
+    const pinhole *camera = &p->capture->camera;
+    float radius = sqrtf((float)p->pixel_count / 3.1415927f) / camera->focal * camera->mean_distance;
+    double sum = 0;
+    for (int k = 0; k < p->capture->count; k++)
+        sum += (double)vec3_length(vec3_sub(h->light[k].position, vec3_make(0, 0, -camera->mean_distance)));
+    return sum / (double)radius / p->capture->count;
+}
+
+static status find_near(const pst_problem *p, const img *balloon, hypothesis *h, double *distance)
+{
+    status s = pst_find_near_lights(p, &p->capture->camera, h->light, &h->depth);
+    if (s != OK) return s;
+    *distance = mean_distance(p, h);
+    if (*distance >= farthest) return fail(ERROR_INPUT, "the lights are not near");
+    return judge(p, balloon, h);
+}
+
+static status find_distant(const pst_problem *p, const img *balloon, hypothesis *h)
+{
+    status s = pst_find_distant_lights(p, balloon, h->light, &h->rotation);
+    return s == OK ? judge(p, balloon, h) : s;
+}
+
+/* Lights of a kind that cannot be have an infinite cost. */
+static status find_both(const pst_problem *p, hypothesis *near, hypothesis *distant)
+{
+    img balloon, height;
+    double distance = 0;
+    status s = pst_inflate(&p->capture->mask, &balloon, &height);
+    if (s != OK) return s;
+    img_free(&height);
+    status found = find_near(p, &balloon, near, &distance);
+    if (found == OK || found == ERROR_INPUT) s = find_distant(p, &balloon, distant);
+    img_free(&balloon);
+    if (found != OK && found != ERROR_INPUT) return found;
+    if (s != OK && (s != ERROR_INPUT || found != OK)) return s;
+    if (s != OK) distant->cost = HUGE_VAL;
+    bool astray = s == OK && distance > doubtful && near->likeness < distant->likeness - less_like;
+    if (found != OK || astray) near->cost = HUGE_VAL;
+    return OK;
+}
+
+/* The lights go to the surface; a depth and places in a space that no camera was known for do not. */
+static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, pst_surface *out)
+{
+    out->light = h->light;
+    h->light = NULL;
+    pst_problem found = *p;
+    found.light = out->light;
+    if (!h->depth.data) return pst_solve_robust(&found, out);
+    status s = solve_near(&found, &h->depth, out);
+    out->lights_near = camera_known;
+    if (camera_known) return s;
+    img_free(&out->depth);
+    for (int k = 0; k < p->capture->count; k++)
+        out->light[k].position = (vec3){0};
+    return s;
+}
+
+/* A plane under distant lights has pictures that differ in nothing but brightness, and near lights explain them too, as
+ * well as any others. */
+static status check_not_flat(const pst_problem *p)
+{
+    pst_samples m;
+    bool differ = true;
+    status s = pst_samples_new(p, DIFFERING, &m);
+    if (s != OK) return s;
+    s = pst_samples_differ(&m, &differ);
+    pst_samples_free(&m);
+    if (s == OK && !differ)
+        s = fail(ERROR_INPUT,
+                 "the pictures differ in nothing but their brightness, as those of a plane do: they do not "
+                 "tell where the lights are");
+    return s;
+}
+
+status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
+{
+    const pst_capture *c = p->capture;
+    size_t count = (size_t)c->count;
+    if (count < FEWEST) return fail(ERROR_INPUT, "unknown lights need %d or more pictures, not %d", FEWEST, c->count);
+    pst_capture seen = *c;
+    pst_problem q = *p;
+    seen.camera = perspective_of(c);
+    q.capture = &seen;
+    hypothesis near = {.light = calloc(count, sizeof *near.light)};
+    hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
+    status s = near.light && distant.light ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    if (s == OK) s = check_not_flat(&q);
+    if (s == OK) s = find_both(&q, &near, &distant);
+    if (s == OK) {
+        bool camera_known = c->camera.perspective && c->camera.focal > 0;
+        bool are_near = near.cost < clearly * distant.cost;
+        s = solve_as(&q, are_near ? &near : &distant, camera_known, out);
+        bool near_unsure = near.cost_of_value > costly || near.likeness < unlike;
+        if (s == OK) out->lights_unsure = are_near ? near_unsure : distant.rotation.unsure;
+    }
+    free(near.light);
+    free(distant.light);
+    img_free(&near.depth);
+    img_free(&distant.depth);
+    return s;
+}

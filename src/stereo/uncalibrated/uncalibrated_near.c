@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+/* Near lights of unknown position. Unlike distant ones they leave no ambiguity: what they send falls off with the
+ * squared distance, so that how pictures darken from one side to the other tells where the light is (T. Papadhimitri,
+ * P. Favaro, Uncalibrated near-light photometric stereo, BMVC 2014, alternate light positions, normals and depth). Here
+ * surface and lights are refined together, which converges where alternation creeps (bundle.h).
+ *
+ * Stated priors: all lights have one power and are about equally far away, and the scale is the camera's mean distance.
+ * Convex, flat or concave: several surfaces inflated from the object's outline are started from, on a coarse grid, each
+ * with the lights that make it look most like the pictures; the one that explains the pictures best, once lights that
+ * went astray are back, is refined on a finer grid. A bowl must do so clearly better than what bulges. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "stereo/uncalibrated/bundle.h"
+#include "stereo/uncalibrated/uncalibrated_parts.h"
+
+/* Cells along the object; directions that are tried for a light, and how often. */
+enum { COARSE = 12, FINE = 22, DIRECTIONS = 240, SCANS = 4, RECALLS = 2 };
+/* Highlights count as this in ordinary values, at most, while lights are looked for. */
+static const float bright = 1.5f;
+/* A light moves elsewhere for this share of what it costs. */
+static const double better = 0.95;
+
+typedef struct start {
+    float relief, distance; /* of an inflated outline's height; of lights, in radii of the object */
+    float handicap;         /* factor on what it costs */
+} start;
+
+static const start starts[] = {{1, 2.5f, 1}, {0.3f, 2.5f, 1}, {1, 5, 1}, {0, 3, 1}, {-0.5f, 2.5f, 1.05f}};
+enum { STARTS = sizeof starts / sizeof *starts };
+/* Recalled lights lower the cost by up to a twentieth: a start that is further behind the best stays there. */
+static const double within_reach = 1.1;
+
+/* Widths of the loss, and steps at each. */
+typedef struct pass {
+    float width;
+    int steps;
+} pass;
+
+static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, last_pass = {0.1f, 30};
+static const pass fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
+
+/* On a spiral over the camera's side of the object and a little beyond. */
+static vec3 place(const bundle *b, int i, float distance)
+{
+    float z = 1 - 1.15f * ((float)i + 0.5f) / DIRECTIONS, across = sqrtf(fmaxf(1 - z * z, 0));
+    float turn = 2.3999632f * (float)i;
+    return vec3_fma(b->centre, distance * b->radius, vec3_make(across * cosf(turn), across * sinf(turn), z));
+}
+
+/* Of a picture with what a light would make of the surface, whatever its power; 1: the same. seen: a cell. */
+static float likeness(const bundle *b, int light, const float *seen)
+{
+    float product = 0, square = 1e-20f, own = 1e-20f;
+    for (int i = 0; i < b->cells; i++) {
+        size_t at = (size_t)i * (size_t)b->lights + (size_t)light;
+        if (!(b->precision[at] > 0)) continue;
+        float unit = 1 / b->cell[i].level, v = fminf(b->value[at] * unit, bright);
+        float model = b->cell[i].albedo * fmaxf(seen[i], 0) * unit;
+        product += model * v;
+        square += model * model;
+        own += v * v;
+    }
+    return product / sqrtf(square * own);
+}
+
+static void scan_lights(bundle *b, float distance, const float *seen)
+{
+    for (int k = 0; k < b->lights; k++) {
+        float best = -1;
+        for (int j = 0; j < DIRECTIONS; j++) {
+            float like = likeness(b, k, seen + j * b->cells);
+            if (like <= best) continue;
+            best = like;
+            b->position[k] = place(b, j, distance);
+        }
+    }
+}
+
+/* The lights under which the surface looks most like the pictures; its albedo is first taken for what it were under
+ * lights from everywhere. */
+static status find_lights(bundle *b, float distance)
+{
+    float *seen = malloc((size_t)b->cells * DIRECTIONS * sizeof *seen);
+    if (!seen) return fail(ERROR_MEMORY, "no memory for %d directions", DIRECTIONS);
+    for (int i = 0; i < b->cells; i++) {
+        float sum = 1e-6f;
+        for (int j = 0; j < DIRECTIONS; j++) {
+            float s = bundle_shading(b, i, place(b, j, distance));
+            seen[j * b->cells + i] = s;
+            sum += fmaxf(s, 0) / DIRECTIONS;
+        }
+        b->cell[i].albedo = b->cell[i].level / sum;
+    }
+    for (int scan = 0; scan < SCANS; scan++) {
+        scan_lights(b, distance, seen);
+        bundle_fit_albedo(b);
+    }
+    free(seen);
+    return OK;
+}
+
+/* A light that went astray while surface and albedo were wrong finds its place now that they are better. */
+static void recall_lights(bundle *b, float width)
+{
+    float distance = 0;
+    for (int k = 0; k < b->lights; k++)
+        distance += vec3_length(vec3_sub(b->position[k], b->centre)) / (b->radius * (float)b->lights);
+    for (int k = 0; k < b->lights; k++) {
+        double least = better * bundle_light_cost(b, k, b->position[k], width);
+        for (int j = 0; j < DIRECTIONS; j++) {
+            vec3 at = place(b, j, distance);
+            double cost = bundle_light_cost(b, k, at, width);
+            if (cost >= least) continue;
+            least = cost;
+            b->position[k] = at;
+        }
+    }
+}
+
+static status refine(bundle *b, const pass *passes, int count)
+{
+    status s = OK;
+    for (int i = 0; i < count && s == OK; i++)
+        s = bundle_refine(b, passes[i].width, passes[i].steps);
+    return s;
+}
+
+/* least: of the starts before. */
+static status solve_from(const start *from, double least, bundle *b)
+{
+    status s = bundle_inflate(b, from->relief);
+    if (s == OK) s = find_lights(b, from->distance);
+    if (s == OK) s = refine(b, coarse_pass, sizeof coarse_pass / sizeof *coarse_pass);
+    for (int i = 0; i < RECALLS && s == OK && b->cost < within_reach * least; i++) {
+        recall_lights(b, last_pass.width);
+        s = refine(b, &last_pass, 1);
+    }
+    b->cost *= (double)from->handicap;
+    return s;
+}
+
+static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *best)
+{
+    status s = bundle_new(p, camera, COARSE, best);
+    if (s == OK) s = solve_from(&starts[0], HUGE_VAL, best);
+    for (int i = 1; i < STARTS && s == OK; i++) {
+        bundle trial;
+        s = bundle_new(p, camera, COARSE, &trial);
+        if (s == OK) s = solve_from(&starts[i], best->cost, &trial);
+        bundle worse = trial;
+        if (s == OK && trial.cost < best->cost) {
+            worse = *best;
+            *best = trial;
+        }
+        bundle_free(&worse);
+    }
+    return s;
+}
+
+static status take_result(const bundle *b, pst_light *light, img *depth)
+{
+    const pst_problem *p = b->problem;
+    size_t width = (size_t)p->capture->width;
+    status s = img_new(depth, p->capture->width, p->capture->height, 1);
+    if (s != OK) return s;
+    for (size_t i = 0; i < p->pixel_count; i++) {
+        size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
+        depth->data[p->pixel[i]] = b->camera.mean_distance * bundle_depth(b, (float)column + 0.5f, (float)row + 0.5f);
+    }
+    for (int k = 0; k < b->lights; k++) {
+        light[k] = p->light[k];
+        light[k].lobe = 0;
+        light[k].position = vec3_scale(b->position[k], b->camera.mean_distance);
+        light[k].direction = vec3_normalize(vec3_sub(b->position[k], b->centre));
+    }
+    return OK;
+}
+
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, pst_light *light, img *depth)
+{
+    bundle coarse = {0}, fine = {0};
+    status s = solve_coarse(p, camera, &coarse);
+    if (s == OK) s = bundle_new(p, camera, FINE, &fine);
+    if (s == OK) {
+        bundle_take(&fine, &coarse);
+        bundle_fit_albedo(&fine);
+        s = refine(&fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
+    }
+    if (s == OK) s = take_result(&fine, light, depth);
+    bundle_free(&coarse);
+    bundle_free(&fine);
+    return s;
+}
