@@ -3,8 +3,8 @@
  * accepted must have no key twice, and its base put in. */
 #include <string.h>
 
-#include "base/text/json_file.h"
 #include "base/status.h"
+#include "base/text/json_file.h"
 #include "fuzz_file.h"
 
 static const char between[] = "\n---\n";

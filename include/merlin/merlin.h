@@ -33,48 +33,12 @@
 #ifndef MERLIN_MERLIN_H
 #define MERLIN_MERLIN_H
 
+#include <merlin/image.h>
+#include <merlin/status.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-typedef enum merlin_status {
-    MERLIN_OK = 0,
-    MERLIN_WRONG_USE, /* the call makes no sense: sizes that do not fit, values out of range */
-    MERLIN_BAD_INPUT, /* a file or its content is missing, damaged or of another kind */
-    MERLIN_CANNOT_WRITE,
-    MERLIN_NO_MEMORY,
-    MERLIN_DEVICE_FAILED,
-    MERLIN_STOPPED, /* params.stop said so */
-} merlin_status;
-
-/* The message of this thread's last failure. Valid until the next call in this thread. */
-const char *merlin_error(void);
-
-/* Of the library that runs, "0.1.0". Before 1.0 another minor version is another library (soname). */
-const char *merlin_version(void);
-
-/* How many threads work for each that calls the library, from its next call on: 1 to 1024, or as many of them as can be
- * had. Without it OMP_NUM_THREADS, else one a processor. */
-merlin_status merlin_set_threads(int count);
-
-/* ---- images ---- */
-
-typedef struct merlin_image {
-    int width, height, channels;
-    float *data; /* height × width × channels; NULL: no image */
-} merlin_image;
-
-/* PNG, JPEG, TIFF, WebP, HEIC, GIF, BMP, TGA, netpbm, EXR, Radiance HDR or raw, by content, into 3 linear channels.
- * More than 64 million pixels, or 16384 a side, are read at a reduced size, which merlin_mask_read gives a mask of the
- * same size, too. alpha (may be NULL) gets 1 channel in [0, 1] where the file has one that is not opaque everywhere,
- * else no image. An alpha that nowhere reaches one half shows no object: MERLIN_BAD_INPUT, unless alpha is NULL. */
-merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha);
-/* Coverage, 1 channel in [0, 1]: by the file's alpha unless that is even, else of two values, whatever they are, the
- * greater one, else white on black. Areas of more than two values are MERLIN_BAD_INPUT. */
-merlin_status merlin_mask_read(const char *path, merlin_image *mask);
-/* 8-bit sRGB PNG, values clamped to [0, 1]; path ends in .png. */
-merlin_status merlin_image_write(const char *path, const merlin_image *image);
-void merlin_image_free(merlin_image *image);
 
 /* ---- the model ---- */
 

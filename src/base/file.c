@@ -40,10 +40,11 @@ bool file_is_same(const char *one, const char *other)
 static status check_size(int descriptor, const char *path, size_t limit, size_t *size)
 {
     struct stat s;
-    if (fstat(descriptor, &s) != 0 || !S_ISREG(s.st_mode)) return fail(ERROR_INPUT, "%s is not a plain file", path);
+    if (fstat(descriptor, &s) != 0 || !S_ISREG(s.st_mode))
+        return fail(MERLIN_BAD_INPUT, "%s is not a plain file", path);
     *size = (size_t)s.st_size;
     if (*size <= limit) return OK;
-    return fail(ERROR_INPUT, "%s is %zu bytes, more than the %zu expected at most", path, *size, limit);
+    return fail(MERLIN_BAD_INPUT, "%s is %zu bytes, more than the %zu expected at most", path, *size, limit);
 }
 
 static status read_open(FILE *f, const char *path, size_t limit, char **data, size_t *size)
@@ -52,11 +53,11 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
     status s = check_size(fileno(f), path, limit, &expected);
     if (s != OK) return s;
     char *buffer = malloc(expected + 1);
-    if (!buffer) return fail(ERROR_MEMORY, "no memory to read %s (%zu bytes)", path, expected);
+    if (!buffer) return fail(MERLIN_NO_MEMORY, "no memory to read %s (%zu bytes)", path, expected);
     size_t got = fread(buffer, 1, expected, f);
     if (got != expected) {
         free(buffer);
-        return fail(ERROR_INPUT, "cannot read all of %s", path);
+        return fail(MERLIN_BAD_INPUT, "cannot read all of %s", path);
     }
     buffer[got] = 0;
     *data = buffer;
@@ -76,8 +77,8 @@ static int open_descriptor(const char *path)
 status file_check_plain(const char *path)
 {
     struct stat s;
-    if (stat(path, &s) != 0) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
-    return S_ISREG(s.st_mode) ? OK : fail(ERROR_INPUT, "%s is not a plain file", path);
+    if (stat(path, &s) != 0) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
+    return S_ISREG(s.st_mode) ? OK : fail(MERLIN_BAD_INPUT, "%s is not a plain file", path);
 }
 
 FILE *file_open(const char *path)
@@ -91,7 +92,7 @@ FILE *file_open(const char *path)
 status file_read(const char *path, size_t limit, char **data, size_t *size)
 {
     FILE *f = file_open(path);
-    if (!f) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
+    if (!f) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
     status s = read_open(f, path, limit, data, size);
     fclose(f);
     return s;
@@ -130,7 +131,7 @@ static status map_open(int descriptor, const char *path, size_t limit, file_view
     status s = check_size(descriptor, path, limit, &size);
     if (s != OK || size == 0) return s;
     void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
-    if (data == MAP_FAILED) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (data == MAP_FAILED) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
     *out = (file_view){data, size};
     return OK;
 }
@@ -139,7 +140,7 @@ status file_map(const char *path, size_t limit, file_view *out)
 {
     *out = (file_view){0};
     int descriptor = open_descriptor(path);
-    if (descriptor < 0) return fail(ERROR_INPUT, "cannot open %s: %s", path, strerror(errno));
+    if (descriptor < 0) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
     status s = map_open(descriptor, path, limit, out);
     close(descriptor);
     return s;
@@ -157,7 +158,8 @@ static status check_replaceable(const char *path)
 {
     struct stat s;
     if (stat(path, &s) != 0 || S_ISREG(s.st_mode)) return OK;
-    return fail(ERROR_OUTPUT, "cannot write %s: it is %s", path, S_ISDIR(s.st_mode) ? "a folder" : "not a plain file");
+    return fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is %s", path,
+                S_ISDIR(s.st_mode) ? "a folder" : "not a plain file");
 }
 
 /* The end of a name that leaves room for what is put in front of it: its ending says which format it has. */
@@ -195,7 +197,7 @@ status file_temporary(const char *path, char **temporary)
     char front[LEFTOVERS_FRONT];
     leftovers_file_front(front);
     if (asprintf(&out, "%.*s%s%s", (int)(name - path), path, front, end_of_long_name(name)) < 0)
-        return fail(ERROR_MEMORY, "no memory for a file name");
+        return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     clear_folder_of(path);
     leftovers_note(out, 0);
     *temporary = out;
@@ -213,7 +215,7 @@ status file_commit(char *temporary, const char *path)
 {
     status s = OK;
     if (rename(temporary, path) != 0) {
-        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
         unlink(temporary);
     }
     forget(temporary);
@@ -227,7 +229,7 @@ static status write_through_temporary(const char *path, const void *data, size_t
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
     if (!f) {
-        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
         forget(temporary);
         return s;
     }
@@ -235,7 +237,7 @@ static status write_through_temporary(const char *path, const void *data, size_t
     if (written && durable) written = fflush(f) == 0 && fsync(fileno(f)) == 0;
     bool closed = fclose(f) == 0;
     if (!written || !closed) {
-        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
         file_discard(temporary);
         return s;
     }
@@ -248,7 +250,7 @@ status file_check_writable(const char *path)
     status s = file_temporary(path, &temporary);
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
-    if (!f) s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    if (!f) s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
     if (f) fclose(f);
     file_discard(temporary);
     return s;
@@ -271,7 +273,7 @@ status file_print(const char *path, file_printer *print, const void *context)
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
     if (!f) {
-        s = fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
         forget(temporary);
         return s;
     }
@@ -282,14 +284,14 @@ status file_print(const char *path, file_printer *print, const void *context)
     written &= fclose(f) == 0;
     if (written) return file_commit(temporary, path);
     file_discard(temporary);
-    return fail(ERROR_OUTPUT, "cannot write %s: is the disk full?", path);
+    return fail(MERLIN_CANNOT_WRITE, "cannot write %s: is the disk full?", path);
 }
 
 status file_make_folder(const char *path)
 {
-    if (!*path) return fail(ERROR_OUTPUT, "cannot make a folder that has no name");
+    if (!*path) return fail(MERLIN_CANNOT_WRITE, "cannot make a folder that has no name");
     char *copy = strdup(path);
-    if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!copy) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = OK;
     for (char *p = copy + 1; s == OK; p++) {
         if (*p != '/' && *p != 0) continue;
@@ -297,7 +299,7 @@ status file_make_folder(const char *path)
         *p = 0;
         int why = mkdir(copy, 0777) == 0 ? 0 : errno;
         if (why && !file_is_folder(copy))
-            s = fail(ERROR_OUTPUT, "cannot make the folder %s: %s", copy,
+            s = fail(MERLIN_CANNOT_WRITE, "cannot make the folder %s: %s", copy,
                      why == EEXIST ? "a file of that name is in the way" : strerror(why));
         *p = end;
         if (end == 0) break;
@@ -386,7 +388,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
                         size_t *room)
 {
     DIR *d = opendir(folder);
-    if (!d) return fail(ERROR_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
+    if (!d) return fail(MERLIN_BAD_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
     for (struct dirent *e; s == OK && (errno = 0, e = readdir(d));) {
         if (e->d_name[0] == '.') continue; /* temporary files, too */
@@ -399,10 +401,10 @@ static status list_into(const char *folder, const char *const *endings, bool dee
         }
         if (!path || !append(names, count, room, path)) {
             free(path);
-            s = fail(ERROR_MEMORY, "no memory for the names in %s", folder);
+            s = fail(MERLIN_NO_MEMORY, "no memory for the names in %s", folder);
         }
     }
-    if (s == OK && errno) s = fail(ERROR_INPUT, "cannot read the folder %s: %s", folder, strerror(errno));
+    if (s == OK && errno) s = fail(MERLIN_BAD_INPUT, "cannot read the folder %s: %s", folder, strerror(errno));
     closedir(d);
     return s;
 }

@@ -13,7 +13,8 @@
 /* Opens a file for reading in binary; NULL and errno as fopen's. Pipes, sockets and devices are not opened: what comes
  * of them can be told by fstat, to be refused, and not be read. */
 FILE *file_open(const char *path);
-/* For libraries that open by name: ERROR_INPUT for what is missing or is no plain file, which opening could wait for.
+/* For libraries that open by name: MERLIN_BAD_INPUT for what is missing or is no plain file, which opening could wait
+ * for.
  */
 status file_check_plain(const char *path);
 

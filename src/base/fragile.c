@@ -10,7 +10,7 @@ static atomic_int anywhere;
 
 status fragile_begin(const char *what, size_t bytes)
 {
-    if (!memory_is_left(bytes)) return fail(ERROR_MEMORY, "no memory for %s", what);
+    if (!memory_is_left(bytes)) return fail(MERLIN_NO_MEMORY, "no memory for %s", what);
     here++;
     atomic_fetch_add(&anywhere, 1);
     return OK;

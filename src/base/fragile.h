@@ -16,7 +16,7 @@
 
 #include "base/status.h"
 
-/* ERROR_MEMORY where so many bytes are not to be had; then there is nothing to end. Any thread, in pairs. */
+/* MERLIN_NO_MEMORY where so many bytes are not to be had; then there is nothing to end. Any thread, in pairs. */
 status fragile_begin(const char *what, size_t bytes);
 void fragile_end(void);
 

@@ -34,5 +34,5 @@ status library_need(library *l)
     bool found = atomic_load(&l->loaded) || load(l, reason);
     atomic_store(&l->loaded, found);
     pthread_mutex_unlock(&one_at_a_time);
-    return found ? OK : fail(ERROR_DEVICE, "the library %s cannot be loaded: %s", l->file, reason);
+    return found ? OK : fail(MERLIN_DEVICE_FAILED, "the library %s cannot be loaded: %s", l->file, reason);
 }

@@ -29,8 +29,8 @@ typedef struct library {
     atomic_bool loaded; /* library_need's */
 } library;
 
-/* Loads it the first time, for good; from any thread, and cheap when it is there. ERROR_DEVICE if the library or one of
- * the functions is not. */
+/* Loads it the first time, for good; from any thread, and cheap when it is there. MERLIN_DEVICE_FAILED if the library
+ * or one of the functions is not. */
 status library_need(library *l);
 
 #endif

@@ -36,7 +36,7 @@ status ranks_sum(const ranks *r, double *values, size_t count)
 {
     if (is_alone(r)) return OK;
     double *all = malloc((size_t)r->count * count * sizeof *all);
-    if (!all) return fail(ERROR_MEMORY, "no memory for %zu sums of %d ranks", count, r->count);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu sums of %d ranks", count, r->count);
     r->gather(values, all, count * sizeof *values);
     for (size_t i = 0; i < count; i++) {
         values[i] = 0;
@@ -79,7 +79,7 @@ status ranks_sum_floats(const ranks *r, float *values, size_t count)
     if (is_alone(r)) return OK;
     const size_t n = (size_t)r->count;
     float *room = malloc((n + 1) * PIECE * sizeof *room);
-    if (!room) return fail(ERROR_MEMORY, "no memory for the sums of %d ranks", r->count);
+    if (!room) return fail(MERLIN_NO_MEMORY, "no memory for the sums of %d ranks", r->count);
     while (count >= n) {
         size_t piece = count / n < PIECE ? count / n : PIECE;
         sum_round(r, values, piece, room);
@@ -102,12 +102,12 @@ status ranks_agree(const ranks *r, status s)
     int mine = (int)s, *all = malloc((size_t)r->count * sizeof *all), first = 0;
     if (!all) { /* the others wait in vain */
         r->abandon();
-        return fail(ERROR_MEMORY, "no memory to hear from %d ranks", r->count);
+        return fail(MERLIN_NO_MEMORY, "no memory to hear from %d ranks", r->count);
     }
     r->gather(&mine, all, sizeof mine);
     while (first < r->count && all[first] == (int)OK)
         first++;
     free(all);
     if (first == r->count) return OK;
-    return first == r->index ? s : ERROR_ELSEWHERE;
+    return first == r->index ? s : STATUS_ELSEWHERE;
 }

@@ -29,8 +29,8 @@ typedef struct ranks {
     void (*abandon)(void); /* ends every rank with exit status 1; does not return */
 } ranks;
 
-/* By the plug-in merlin_mpi.so beside the program or where it was installed. ERROR_DEVICE where it is missing, which it
- * is where merlin was built without MPI. */
+/* By the plug-in merlin_mpi.so beside the program or where it was installed. MERLIN_DEVICE_FAILED where it is missing,
+ * which it is where merlin was built without MPI. */
 status ranks_open_mpi(ranks **out);
 /* Behind the last call of all ranks. */
 void ranks_close(ranks *r);
@@ -40,15 +40,15 @@ void ranks_abandon(ranks *r);
 int ranks_count(const ranks *r);
 int ranks_index(const ranks *r);
 
-/* values[i] becomes the sum of every rank's. ERROR_MEMORY. */
+/* values[i] becomes the sum of every rank's. MERLIN_NO_MEMORY. */
 status ranks_sum(const ranks *r, double *values, size_t count);
-/* The same of many: in double, rounded once; in pieces, of which every rank adds up its share. ERROR_MEMORY. */
+/* The same of many: in double, rounded once; in pieces, of which every rank adds up its share. MERLIN_NO_MEMORY. */
 status ranks_sum_floats(const ranks *r, float *values, size_t count);
 /* What rank 0 has, to all. */
 void ranks_share(const ranks *r, void *what, size_t bytes);
 
 /* What came of something that every rank did by itself: OK where all have succeeded. The first that failed hears what
- * it said, the others ERROR_ELSEWHERE. */
+ * it said, the others STATUS_ELSEWHERE. */
 status ranks_agree(const ranks *r, status s);
 
 #endif

@@ -28,14 +28,14 @@ status ranks_open_mpi(ranks **out)
     void *plugin = find_plugin();
     if (!plugin) {
         const char *why = dlerror();
-        return fail(ERROR_DEVICE, "there is no MPI: %s",
+        return fail(MERLIN_DEVICE_FAILED, "there is no MPI: %s",
                     why ? why : "install openmpi-bin and libopenmpi-dev and build merlin again");
     }
     /* dlsym gives functions as objects, which C does not turn into each other */
     ranks *(*begin)(void);
     void *function = dlsym(plugin, "merlin_ranks_begin");
     memcpy(&begin, &function, sizeof begin);
-    if (!function) return fail(ERROR_DEVICE, "merlin_mpi.so is of another version: %s", dlerror());
+    if (!function) return fail(MERLIN_DEVICE_FAILED, "merlin_mpi.so is of another version: %s", dlerror());
     *out = begin();
-    return *out ? OK : fail(ERROR_DEVICE, "MPI does not start");
+    return *out ? OK : fail(MERLIN_DEVICE_FAILED, "MPI does not start");
 }

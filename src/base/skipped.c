@@ -15,7 +15,7 @@ enum { ROOM_FOR_MORE = 32 };
 static status make_room(skipped_files *list, size_t more)
 {
     skipped_file *larger = realloc(list->at, (list->count + more) * sizeof *larger);
-    if (!larger) return fail(ERROR_MEMORY, "no memory for file names");
+    if (!larger) return fail(MERLIN_NO_MEMORY, "no memory for file names");
     list->at = larger;
     return OK;
 }
@@ -31,7 +31,7 @@ status skipped_add(skipped_files *list, const char *name, const char *why)
     }
     free(one.name);
     free(one.why);
-    return fail(ERROR_MEMORY, "no memory for file names");
+    return fail(MERLIN_NO_MEMORY, "no memory for file names");
 }
 
 status skipped_append(skipped_files *list, skipped_files *more)

@@ -12,16 +12,14 @@
 #ifndef MERLIN_BASE_STATUS_H
 #define MERLIN_BASE_STATUS_H
 
-typedef enum status {
-    OK = 0,
-    ERROR_USAGE,     /* the caller asked for something that makes no sense */
-    ERROR_INPUT,     /* a file or its content is missing, damaged or of another kind */
-    ERROR_OUTPUT,    /* something could not be written */
-    ERROR_MEMORY,    /* memory ran out */
-    ERROR_DEVICE,    /* the compute library or device refused */
-    ERROR_STOPPED,   /* interrupted by the user */
-    ERROR_ELSEWHERE, /* another process of the same work has failed, and says why (base/ranks.h) */
-} status;
+#include "merlin/status.h"
+
+/* The library's own status, by a short name for the inside. */
+typedef merlin_status status;
+
+#define OK MERLIN_OK
+/* Another process of the same work has failed, and says why (base/ranks.h). No public function returns it. */
+#define STATUS_ELSEWHERE ((status)(MERLIN_STOPPED + 1))
 
 /* Records the message and returns s. */
 status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));

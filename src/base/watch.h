@@ -2,7 +2,7 @@
 /* A watch tells how far long work is to whoever waits for it. Libraries take one and never print:
  *
  *     watch_tell(w, "solving", 0.4);                                    w may be NULL
- *     if (watch_stops(w)) return fail(ERROR_STOPPED, "stopped"); */
+ *     if (watch_stops(w)) return fail(MERLIN_STOPPED, "stopped"); */
 #ifndef MERLIN_BASE_WATCH_H
 #define MERLIN_BASE_WATCH_H
 

@@ -13,7 +13,7 @@
 
 static status refuse(const char *folder, const char *name)
 {
-    return fail(ERROR_OUTPUT,
+    return fail(MERLIN_CANNOT_WRITE,
                 "cannot write into %s: its %s is no earlier result, for there is no maps.exr beside it, and would be "
                 "replaced; choose another folder",
                 folder, name);
@@ -71,7 +71,7 @@ status check_replaced(const char *folder, bool meshes)
     if (!name && meshes) name = first_in(folder, surface);
     if (name) return refuse(folder, name);
     if (!holds_capture(folder)) return OK;
-    return fail(ERROR_OUTPUT,
+    return fail(MERLIN_CANNOT_WRITE,
                 "cannot write into %s: it holds a capture, whose pictures and mask the results would be taken for the "
                 "next time; choose another folder",
                 folder);
@@ -111,10 +111,10 @@ bool list_begins_with(const char *folder, const char *words)
 status check_list_replaced(const char *folder)
 {
     char *path = file_join(folder, "lights.txt"), line[FIRST_LINE];
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = OK;
     if (read_first_line(path, line) && !is_ours(line))
-        s = fail(ERROR_OUTPUT,
+        s = fail(MERLIN_CANNOT_WRITE,
                  "cannot write %s: it is no earlier result, and would be replaced; rename it, or choose another folder",
                  path);
     free(path);

@@ -8,9 +8,9 @@
 
 #include "base/status.h"
 
-/* ERROR_OUTPUT where the folder of results to write has files of these names that no run has left, for neither maps.exr
- * nor report.json is beside them, or holds another capture, which would take them for its own. meshes: mesh.ply and the
- * like will be written, too. */
+/* MERLIN_CANNOT_WRITE where the folder of results to write has files of these names that no run has left, for neither
+ * maps.exr nor report.json is beside them, or holds another capture, which would take them for its own. meshes:
+ * mesh.ply and the like will be written, too. */
 status check_replaced(const char *folder, bool meshes);
 
 /* The first words of a list of a near dome's lamps, by which relight knows it again. */
@@ -18,7 +18,7 @@ status check_replaced(const char *folder, bool meshes);
 /* Tells whether the folder has a lights.txt that begins with these words. */
 bool list_begins_with(const char *folder, const char *words);
 
-/* ERROR_OUTPUT where the folder has a lights.txt that neither stereo calibrate nor relight --dome wrote. */
+/* MERLIN_CANNOT_WRITE where the folder has a lights.txt that neither stereo calibrate nor relight --dome wrote. */
 status check_list_replaced(const char *folder);
 
 #endif

@@ -25,8 +25,8 @@
 #include "command/photos.h"
 #include "command/standard_input.h"
 #include "estimate/api.h"
-#include "estimate/photo/doubts.h"
 #include "estimate/light/light_words.h"
+#include "estimate/photo/doubts.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -85,9 +85,9 @@ static status take_standard_input(const request *r, int count, char **photos)
 {
     for (int i = 0; i < count; i++) {
         if (strcmp(photos[i], "-") != 0) continue;
-        if (count > 1) return fail(ERROR_USAGE, "a photograph from standard input comes alone");
+        if (count > 1) return fail(MERLIN_WRONG_USE, "a photograph from standard input comes alone");
         if (!r->output)
-            return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+            return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
         return standard_input_take(&photos[i]);
     }
     return OK;
@@ -117,10 +117,10 @@ static status parse(int *argc, char ***argv, request *r)
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
     r->params.flash = r->flash;
-    if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
+    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no photograph given");
     if (r->meshes.count && (*argc > 1 || file_is_folder((*argv)[0])))
         return fail(
-            ERROR_USAGE,
+            MERLIN_WRONG_USE,
             "--mesh %s names the mesh of one photograph; of several --mesh alone writes a mesh.glb in each one's "
             "folder",
             r->meshes.at[0]);
@@ -319,12 +319,12 @@ static int estimate_all(request *r, const photo_list *photos)
     for (size_t i = 0; i < photos->count; i++) {
         const photo_job *job = &photos->at[i];
         begin_photo(r, photos, i, &done, all);
-        status s = cli_interrupted() ? ERROR_STOPPED : check_photo_and_mask(job->photo, job->mask);
+        status s = cli_interrupted() ? MERLIN_STOPPED : check_photo_and_mask(job->photo, job->mask);
         if (s == OK) s = check_replaced(job->output, false);
         if (s == OK) s = check_output(job->output);
         if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, &ready, &broken);
         if (s != OK) stage_bar_hide(r->bar);
-        if (s == ERROR_STOPPED)
+        if (s == MERLIN_STOPPED)
             return cli_fail("estimate", fail(s, "interrupted; nothing was written for %s", job->photo));
         if (s == OK) continue;
         cli_fail("estimate", s);

@@ -11,7 +11,7 @@
 status mesh_take_name(const char *path, void *into)
 {
     mesh_names *names = into;
-    if (names->count == MESH_MOST_FILES) return fail(ERROR_USAGE, "--mesh may be given %d times", MESH_MOST_FILES);
+    if (names->count == MESH_MOST_FILES) return fail(MERLIN_WRONG_USE, "--mesh may be given %d times", MESH_MOST_FILES);
     names->at[names->count++] = path;
     return pst_mesh_check_name(path);
 }
@@ -32,21 +32,22 @@ static status check_texture(const mesh_file *m, const char *folder)
     if (!file_ends_in(name, ".obj")) return OK;
     snprintf(texture, sizeof texture, "%.*s.png", (int)strlen(name) - 4, name);
     if (file_is_same(folder, m->folder) && file_exists(staging_path(m->maps, texture, aside)))
-        return fail(ERROR_OUTPUT, "cannot write %s: its texture would replace the map %s; choose another name", m->path,
-                    texture);
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: its texture would replace the map %s; choose another name",
+                    m->path, texture);
     if (file_is_folder(input) && file_is_same(folder, input) &&
         (file_is_in(input, texture) || !file_is_in(input, "maps.exr")))
-        return fail(ERROR_OUTPUT, "cannot write %s: its texture %s would lie among what is read; choose another folder",
-                    m->path, texture);
+        return fail(MERLIN_CANNOT_WRITE,
+                    "cannot write %s: its texture %s would lie among what is read; choose another folder", m->path,
+                    texture);
     return OK;
 }
 
 status mesh_file_stage(const mesh_file *m, staging **out)
 {
     *out = NULL;
-    if (file_is_folder(m->path)) return fail(ERROR_OUTPUT, "cannot write %s: it is a folder", m->path);
+    if (file_is_folder(m->path)) return fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is a folder", m->path);
     char *folder = file_folder_of(m->path);
-    status s = folder ? staging_begin(folder, m->inputs, out) : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = folder ? staging_begin(folder, m->inputs, out) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     s = s == OK ? check_texture(m, folder) : fail_in(s, "cannot write %s", m->path);
     free(folder);
     if (s != OK) return s;

@@ -7,7 +7,7 @@
 status check_named(const char *what, const char *path)
 {
     if (!path || file_exists(path)) return OK;
-    return fail(ERROR_INPUT, "there is no %s %s", what, path);
+    return fail(MERLIN_BAD_INPUT, "there is no %s %s", what, path);
 }
 
 status check_photo_and_mask(const char *photo, const char *mask)

@@ -5,12 +5,12 @@
 
 #include "base/status.h"
 
-/* ERROR_INPUT where there is no file or folder of that name: "there is no mesh x.obj". path may be NULL: none was
+/* MERLIN_BAD_INPUT where there is no file or folder of that name: "there is no mesh x.obj". path may be NULL: none was
  * given. */
 status check_named(const char *what, const char *path);
-/* ERROR_INPUT where there is no photograph or no mask of that name; mask may be NULL. */
+/* MERLIN_BAD_INPUT where there is no photograph or no mask of that name; mask may be NULL. */
 status check_photo_and_mask(const char *photo, const char *mask);
-/* ERROR_OUTPUT where a folder cannot be written into; it is made for the trial, and removed again. */
+/* MERLIN_CANNOT_WRITE where a folder cannot be written into; it is made for the trial, and removed again. */
 status check_output(const char *folder);
 
 #endif

@@ -18,7 +18,7 @@ int cli_fail(const char *command, status s)
     char words[1024];
     standard_input_tell(status_message(), words, sizeof words);
     fprintf(messages(), "%s %s: %s\n", messages_program(), command, words);
-    return s == ERROR_USAGE ? 2 : 1;
+    return s == MERLIN_WRONG_USE ? 2 : 1;
 }
 
 int cli_usage(const char *command, const char *format, ...)
@@ -35,7 +35,7 @@ int cli_usage(const char *command, const char *format, ...)
 
 int cli_refuse(const char *command, status s)
 {
-    return s == ERROR_USAGE ? cli_usage(command, "%s", status_message()) : cli_fail(command, s);
+    return s == MERLIN_WRONG_USE ? cli_usage(command, "%s", status_message()) : cli_fail(command, s);
 }
 
 status cli_int(const char *option, const char *text, long low, long high, long *out)
@@ -44,7 +44,7 @@ status cli_int(const char *option, const char *text, long low, long high, long *
     errno = 0;
     long value = strtol(text, &end, 10);
     if (end == text || *end || errno || value < low || value > high)
-        return fail(ERROR_USAGE, "%s wants a whole number from %ld to %ld, not \"%s\"", option, low, high, text);
+        return fail(MERLIN_WRONG_USE, "%s wants a whole number from %ld to %ld, not \"%s\"", option, low, high, text);
     *out = value;
     return OK;
 }
@@ -55,7 +55,7 @@ status cli_float(const char *option, const char *text, double low, double high, 
     errno = 0;
     double value = strtod(text, &end);
     if (end == text || *end || errno || !(value >= low && value <= high))
-        return fail(ERROR_USAGE, "%s wants a number from %g to %g, not \"%s\"", option, low, high, text);
+        return fail(MERLIN_WRONG_USE, "%s wants a number from %g to %g, not \"%s\"", option, low, high, text);
     *out = value;
     return OK;
 }
@@ -68,7 +68,7 @@ status cli_vec3(const char *option, const char *text, float out[3])
         errno = 0;
         float value = strtof(at, &end);
         if (end == at || errno || !isfinite(value) || *end != (i < 2 ? ',' : '\0'))
-            return fail(ERROR_USAGE, "%s wants three numbers x,y,z, not \"%s\"", option, text);
+            return fail(MERLIN_WRONG_USE, "%s wants three numbers x,y,z, not \"%s\"", option, text);
         out[i] = value;
         at = end + 1;
     }

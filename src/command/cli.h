@@ -15,11 +15,11 @@ typedef struct cli_command {
     int (*run)(int argc, char **argv);
 } cli_command;
 
-/* Prints "PROGRAM COMMAND: " and the status's message; returns 2 for ERROR_USAGE, else 1. */
+/* Prints "PROGRAM COMMAND: " and the status's message; returns 2 for MERLIN_WRONG_USE, else 1. */
 int cli_fail(const char *command, status s);
 /* Prints "PROGRAM COMMAND: message (try PROGRAM COMMAND --help)"; returns 2. */
 int cli_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* One of both, for a command's arguments that were refused: cli_usage for ERROR_USAGE, else cli_fail. */
+/* One of both, for a command's arguments that were refused: cli_usage for MERLIN_WRONG_USE, else cli_fail. */
 int cli_refuse(const char *command, status s);
 /* Whole-text numbers within [low, high]; the message names the option. */
 status cli_int(const char *option, const char *text, long low, long high, long *out);

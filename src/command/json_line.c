@@ -30,7 +30,7 @@ void json_line_files(cJSON *object, const char *folder, const staged_files *writ
 
 status json_report_print(char *text)
 {
-    if (!text) return fail(ERROR_MEMORY, "no memory for the report");
+    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for the report");
     puts(text);
     fflush(stdout); /* whoever reads a batch's lines has each when its work is done */
     free(text);

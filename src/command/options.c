@@ -91,8 +91,8 @@ static status refuse_unknown(const cli_option *options, const char *given)
     for (; options->name; options++)
         names[count++] = options->name;
     const char *meant = suggest(given + 2, strcspn(given + 2, "="), names, count);
-    return meant ? fail(ERROR_USAGE, "unknown option %s: did you mean --%s?", given, meant)
-                 : fail(ERROR_USAGE, "unknown option %s", given);
+    return meant ? fail(MERLIN_WRONG_USE, "unknown option %s: did you mean --%s?", given, meant)
+                 : fail(MERLIN_WRONG_USE, "unknown option %s", given);
 }
 
 /* What getopt_long did not take, value being its answer. A letter it names itself; a long option it has just passed. */
@@ -101,10 +101,11 @@ static status refuse(const cli_option *options, int value, char *const *argv)
     char letter[] = {'-', (char)optopt, 0};
     bool is_letter = optopt > ' ' && optopt < 127, is_long = optopt == 0 || optopt >= FIRST_LONG;
     const char *given = is_letter ? letter : is_long ? argv[optind - 1] : "that is no letter";
-    if (value == ':') return fail(ERROR_USAGE, "%s wants a value", given);
-    if (optopt >= FIRST_LONG) return fail(ERROR_USAGE, "%s: this option takes no value", given);
-    if (is_long && is_ambiguous(options, given)) return fail(ERROR_USAGE, "%s is short for several options", given);
-    return is_long ? refuse_unknown(options, given) : fail(ERROR_USAGE, "unknown option %s", given);
+    if (value == ':') return fail(MERLIN_WRONG_USE, "%s wants a value", given);
+    if (optopt >= FIRST_LONG) return fail(MERLIN_WRONG_USE, "%s: this option takes no value", given);
+    if (is_long && is_ambiguous(options, given))
+        return fail(MERLIN_WRONG_USE, "%s is short for several options", given);
+    return is_long ? refuse_unknown(options, given) : fail(MERLIN_WRONG_USE, "unknown option %s", given);
 }
 
 static status take_number(const cli_option *o, const char *value)
@@ -131,9 +132,10 @@ static status take_folder(const cli_option *o, const char *value)
     static const char *const pictures[] = {".png",  ".jpg",  ".jpeg", ".exr", ".tif",
                                            ".tiff", ".webp", ".gif",  ".hdr", NULL};
     if (file_ends_in_any(value, pictures))
-        return fail(ERROR_USAGE, "--%s names a folder for several files, but %s ends like a picture", o->name, value);
+        return fail(MERLIN_WRONG_USE, "--%s names a folder for several files, but %s ends like a picture", o->name,
+                    value);
     if (strcmp(value, "-") == 0 && !o->printed)
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--%s names a folder for several files, which standard output cannot hold; ./- is one "
                     "called -",
                     o->name);
@@ -145,7 +147,7 @@ static status take_folder(const cli_option *o, const char *value)
 static status take_picture(const cli_option *o, const char *value)
 {
     if (!file_ends_in(value, ".png"))
-        return fail(ERROR_USAGE, "--%s names a picture to write, a PNG: let %s end in .png", o->name, value);
+        return fail(MERLIN_WRONG_USE, "--%s names a picture to write, a PNG: let %s end in .png", o->name, value);
     *o->picture = value;
     return OK;
 }
@@ -185,9 +187,10 @@ status cli_read_options(int *argc, char ***argv, const cli_option *own)
         if (value == ':' || value == '?') return refuse(options, value, *argv);
         const cli_option *option = find(options, value);
         const char *given = value_of(option, *argc, *argv);
-        if (given && !*given) return fail(ERROR_USAGE, "--%s wants a value", option->name); /* "$UNSET" */
+        if (given && !*given) return fail(MERLIN_WRONG_USE, "--%s wants a value", option->name); /* "$UNSET" */
         bool *before = &met[option - options];
-        if (*before && !option->many && !option->flag) return fail(ERROR_USAGE, "--%s is given twice", option->name);
+        if (*before && !option->many && !option->flag)
+            return fail(MERLIN_WRONG_USE, "--%s is given twice", option->name);
         *before = true;
         status s = take(option, given);
         if (s != OK) return s;

@@ -34,7 +34,7 @@ typedef struct cli_option {
     uint64_t *whole;      /* from low to high */
     float *real;          /* from low to high */
     long low, high;
-    status (*take)(const char *value, void *into); /* ERROR_USAGE for a value it refuses */
+    status (*take)(const char *value, void *into); /* MERLIN_WRONG_USE for a value it refuses */
     void *into;
     bool printed;                       /* a folder may be -, standard output */
     bool many;                          /* may be given again; flags may, too */
@@ -44,8 +44,8 @@ typedef struct cli_option {
 enum { CLI_MOST_OPTIONS = 40 }; /* with those of every command */
 
 /* Reads options wherever they stand, as getopt_long does; *argc and *argv are then the operands alone. What is
- * not `many` is refused the second time: a value that replaced another would be a guess. ERROR_USAGE names the option.
- * At most CLI_MOST_OPTIONS rows. */
+ * not `many` is refused the second time: a value that replaced another would be a guess. MERLIN_WRONG_USE names the
+ * option. At most CLI_MOST_OPTIONS rows. */
 status cli_read_options(int *argc, char ***argv, const cli_option *own);
 
 #endif

@@ -26,7 +26,7 @@ static bool is_result_name(const char *name)
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory for file names");
+    return fail(MERLIN_NO_MEMORY, "no memory for file names");
 }
 
 status photo_list_add(photo_list *list, const char *photo)
@@ -161,7 +161,7 @@ static status refuse_empty(const char *folder, const skipped_files *skipped)
 {
     char left[512];
     skipped_words(skipped, left, sizeof left);
-    return fail(ERROR_INPUT, "no photographs in the folder %s%s%s", folder, *left ? ": " : "", left);
+    return fail(MERLIN_BAD_INPUT, "no photographs in the folder %s%s%s", folder, *left ? ": " : "", left);
 }
 
 static status add_to_folders(photo_list *list, const char *folder, skipped_files *skipped)
@@ -241,8 +241,9 @@ static status refuse_maskless(const char *photo, const char *folder)
 {
     char names[512];
     mask_names_list(file_name_of(photo), true, names, sizeof names);
-    return fail(ERROR_INPUT, "no mask for %s in %s: looked for %s and the like, of any picture's kind, in any case",
-                photo, folder, names);
+    return fail(MERLIN_BAD_INPUT,
+                "no mask for %s in %s: looked for %s and the like, of any picture's kind, in any case", photo, folder,
+                names);
 }
 
 status photo_folder_find_masks(photo_list *list, const char *folder)

@@ -14,7 +14,8 @@ status photo_list_add(photo_list *list, const char *photo);
  * nothing is added: estimate * finds those that it has made the last time. masks: a folder of them, or NULL. */
 status photo_folder_add(photo_list *list, const char *folder, const char *masks);
 
-/* Gives each photograph its mask from a folder of masks; ERROR_INPUT, with the names looked for, if one lacks it. */
+/* Gives each photograph its mask from a folder of masks; MERLIN_BAD_INPUT, with the names looked for, if one lacks it.
+ */
 status photo_folder_find_masks(photo_list *list, const char *folder);
 
 /* Takes out what is the mask of another one by its name: estimate * names masks, too. */

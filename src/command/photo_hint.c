@@ -24,9 +24,9 @@ status photo_take_point(const char *text, void *into)
     merlin_hint *hint = into;
     int at[2];
     if (!read_numbers(text, at, 2))
-        return fail(ERROR_USAGE, "--point wants X,Y, whole pixels from the upper left corner, not \"%s\"", text);
+        return fail(MERLIN_WRONG_USE, "--point wants X,Y, whole pixels from the upper left corner, not \"%s\"", text);
     if (hint->point_count == MERLIN_MOST_POINTS)
-        return fail(ERROR_USAGE, "at most %d times --point", MERLIN_MOST_POINTS);
+        return fail(MERLIN_WRONG_USE, "at most %d times --point", MERLIN_MOST_POINTS);
     hint->point[hint->point_count].x = at[0];
     hint->point[hint->point_count++].y = at[1];
     return OK;
@@ -37,7 +37,7 @@ status photo_take_box(const char *text, void *into)
     merlin_hint *hint = into;
     int at[4];
     if (!read_numbers(text, at, 4) || at[2] == 0 || at[3] == 0)
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--box wants X,Y,WIDTH,HEIGHT, whole pixels from the upper left corner and at least one a side, "
                     "not \"%s\"",
                     text);
@@ -56,7 +56,8 @@ bool photo_hint_given(const merlin_hint *hint)
 status photo_check_hint(const merlin_hint *hint, const char *mask, bool several)
 {
     if (!photo_hint_given(hint)) return OK;
-    if (mask) return fail(ERROR_USAGE, "--mask says where the object is; --point and --box are for the search for it");
-    if (several) return fail(ERROR_USAGE, "--point and --box are of one photograph, not of several");
+    if (mask)
+        return fail(MERLIN_WRONG_USE, "--mask says where the object is; --point and --box are for the search for it");
+    if (several) return fail(MERLIN_WRONG_USE, "--point and --box are of one photograph, not of several");
     return OK;
 }

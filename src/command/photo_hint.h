@@ -14,7 +14,7 @@ status photo_take_point(const char *text, void *into);
 status photo_take_box(const char *text, void *into);
 /* Tells whether there is any. */
 bool photo_hint_given(const merlin_hint *hint);
-/* ERROR_USAGE where hints go with a mask, or with more than one photograph. */
+/* MERLIN_WRONG_USE where hints go with a mask, or with more than one photograph. */
 status photo_check_hint(const merlin_hint *hint, const char *mask, bool several);
 
 #endif

@@ -85,14 +85,14 @@ void photo_list_free(photo_list *list)
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory for file names");
+    return fail(MERLIN_NO_MEMORY, "no memory for file names");
 }
 
 static status choose_masks(photo_list *list, const char *mask, bool batch)
 {
     if (!mask) return OK;
     if (file_is_folder(mask)) return photo_folder_find_masks(list, mask);
-    if (batch) return fail(ERROR_USAGE, "--mask wants a folder of masks for several photographs, not %s", mask);
+    if (batch) return fail(MERLIN_WRONG_USE, "--mask wants a folder of masks for several photographs, not %s", mask);
     free(list->at[0].mask);
     list->at[0].mask = strdup(mask);
     return list->at[0].mask ? OK : no_memory();
@@ -152,7 +152,7 @@ static status choose_output(photo_list *list, void **names, size_t i, const char
         }
         free(name);
     }
-    return fail(ERROR_USAGE, "too many photographs are called %s", job->photo);
+    return fail(MERLIN_WRONG_USE, "too many photographs are called %s", job->photo);
 }
 
 static void keep(void *name)
@@ -188,7 +188,7 @@ static status fill_list(char *const *arguments, int count, const char *mask, con
     }
     if (s == OK && count > 1 && !mask) photo_list_drop_masks(out);
     if (s == OK && out->count == 0)
-        s = fail(ERROR_INPUT, "no photographs, but maps that were made of one in the folder %s", arguments[0]);
+        s = fail(MERLIN_BAD_INPUT, "no photographs, but maps that were made of one in the folder %s", arguments[0]);
     if (s == OK) s = choose_masks(out, mask, batch);
     if (s != OK) return s;
     if (!batch && output) {
@@ -286,7 +286,7 @@ status photo_take_share(const char *text, void *into)
     if (sscanf(text, "%zu/%zu%n", &share->which, &share->of, &used) == 2 && !text[used] && !strchr(text, '-') &&
         share->which >= 1 && share->which <= share->of)
         return OK;
-    return fail(ERROR_USAGE, "--share wants K/N, the K-th of N shares, such as 1/4, not '%s'", text);
+    return fail(MERLIN_WRONG_USE, "--share wants K/N, the K-th of N shares, such as 1/4, not '%s'", text);
 }
 
 /* NAME.safetensors where the program's own weights are; *path is NULL if there is none. */
@@ -312,7 +312,7 @@ status photo_find_model(const char *asked, char **path)
         asked = environment;
         by = "MERLIN_MODEL: ";
         if (strchr(asked, '/') && !file_exists(asked))
-            return fail(ERROR_INPUT, "%sthere is no weights file %s", by, asked);
+            return fail(MERLIN_BAD_INPUT, "%sthere is no weights file %s", by, asked);
     }
     /* the folder of what merlin-env found may well be called so */
     bool is_file =
@@ -321,8 +321,10 @@ status photo_find_model(const char *asked, char **path)
     status s = find_shipped(asked ? asked : "merlin-point", path);
     if (s != OK || *path) return s;
     if (asked)
-        return fail(ERROR_INPUT, "%sthere is no weights file %s, nor are weights of that name with merlin", by, asked);
-    return fail(ERROR_INPUT, "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
+        return fail(MERLIN_BAD_INPUT, "%sthere is no weights file %s, nor are weights of that name with merlin", by,
+                    asked);
+    return fail(MERLIN_BAD_INPUT,
+                "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
 }
 
 status photo_find_models(const char *asked, char **path, char **flash)
@@ -341,7 +343,7 @@ status photo_take_size(const char *text, void *into)
     long size;
     status s = cli_int("--size", text, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, &size);
     if (s == OK && size % MODEL_SIZE_MULTIPLE != 0)
-        s = fail(ERROR_USAGE, "--size must be a multiple of %d, not %ld", MODEL_SIZE_MULTIPLE, size);
+        s = fail(MERLIN_WRONG_USE, "--size must be a multiple of %d, not %ld", MODEL_SIZE_MULTIPLE, size);
     if (s == OK) params->size = (int)size;
     return s;
 }
@@ -366,7 +368,7 @@ bool photo_params_given(const merlin_params *params)
 status photo_check_maps(const char *folder, const char *mask, const merlin_params *params)
 {
     if (!mask && !photo_params_given(params)) return OK;
-    return fail(ERROR_USAGE,
+    return fail(MERLIN_WRONG_USE,
                 "--mask, --point, --box, --size, --views and --exposure are for a photograph; %s holds maps already",
                 folder);
 }

@@ -55,7 +55,7 @@ status photo_take_share(const char *text, void *into);
 status photo_take_exposure(const char *text, void *into);
 /* Whether --size, --views, --exposure, --point or --box ask for anything but the defaults. */
 bool photo_params_given(const merlin_params *params);
-/* ERROR_USAGE where these options go with a folder of maps, which is not estimated again; mask may be NULL. */
+/* MERLIN_WRONG_USE where these options go with a folder of maps, which is not estimated again; mask may be NULL. */
 status photo_check_maps(const char *folder, const char *mask, const merlin_params *params);
 
 #endif

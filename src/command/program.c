@@ -55,13 +55,13 @@ static int refuse_command(const program *p, const char *name)
 {
     const char *meant = suggested(p, name), *kind = name[0] == '-' ? "option" : "command";
     if (is_elsewhere(p, name))
-        (void)fail(ERROR_USAGE, "%s is a command of another program: %s %s", name, p->other, name);
+        (void)fail(MERLIN_WRONG_USE, "%s is a command of another program: %s %s", name, p->other, name);
     else if (meant)
-        (void)fail(ERROR_USAGE, "no %s \"%s\": did you mean %s?", kind, name, meant);
+        (void)fail(MERLIN_WRONG_USE, "no %s \"%s\": did you mean %s?", kind, name, meant);
     else if (file_exists(name))
-        (void)fail(ERROR_USAGE, "no command \"%s\": for a photograph, merlin estimate %s", name, name);
+        (void)fail(MERLIN_WRONG_USE, "no command \"%s\": for a photograph, merlin estimate %s", name, name);
     else
-        (void)fail(ERROR_USAGE, "no %s \"%s\"", kind, name);
+        (void)fail(MERLIN_WRONG_USE, "no %s \"%s\"", kind, name);
     fprintf(messages(), "%s: %s (try %s --help)\n", p->name, status_message(), p->name);
     return 2;
 }

@@ -3,18 +3,19 @@
 #ifndef MERLIN_ESTIMATE_API_H
 #define MERLIN_ESTIMATE_API_H
 
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "base/watch.h"
-#include "estimate/surface/crop.h"
+#include "estimate/files/staging.h"
 #include "estimate/light/env_map.h"
 #include "estimate/light/horizon.h"
-#include "estimate/photo/light_cues.h"
-#include "estimate/object/mask.h"
-#include "estimate/photo/network.h"
 #include "estimate/light/shadow.h"
-#include "estimate/files/staging.h"
+#include "estimate/object/mask.h"
+#include "estimate/photo/light_cues.h"
+#include "estimate/photo/network.h"
+#include "estimate/surface/crop.h"
 #include "estimate/surface/surface.h"
 #include "image/exr/exr.h"
-#include "image/public.h"
 
 struct merlin_model {
     network *network;
@@ -44,7 +45,7 @@ static inline crop_square crop_of(const merlin_maps *maps)
     return (crop_square){maps->crop.x, maps->crop.y, maps->crop.side};
 }
 
-/* ERROR_USAGE if the maps are not what merlin_estimate or merlin_maps_read gave. */
+/* MERLIN_WRONG_USE if the maps are not what merlin_estimate or merlin_maps_read gave. */
 status maps_check(const merlin_maps *maps);
 
 /* The maps of the crop, brought to side × side pixels, their mask 0 or 1. */
@@ -99,7 +100,7 @@ status stage_make_matte(stage *s);
 status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white);
 /* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
 status stage_surround(stage *s, const env_map *environment);
-/* ERROR_USAGE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
+/* MERLIN_WRONG_USE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
 status stage_check(merlin_relighting how, const lamp *light, bool environment);
 /* Renders the square under so many lamps together and the stage's environment, one of all at least and as stage_check
  * wants them, bounces included: 3 channels in [0, 1] of `white`. */
@@ -124,7 +125,7 @@ status maps_write_exr(const merlin_maps *maps, const char *path);
 /* Makes the attribute of maps.exr that tells, after an editor has had it, whether it still is of the size it was. */
 exr_attribute maps_picture_size(int width, int height);
 /* All maps of the file's size and what it holds of them; roughness and photo, unless photographed, are not looked for
- * and stay zero. ERROR_INPUT for maps that nothing can be made of (maps_examine.h); path is for messages. After a
+ * and stay zero. MERLIN_BAD_INPUT for maps that nothing can be made of (maps_examine.h); path is for messages. After a
  * failure, too, merlin_maps_free. */
 status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps);
 /* Maps as the inside promises them: half floats are not quite unit normals, and anybody may have edited the file. */

@@ -93,5 +93,5 @@ status img_box_sums(img *image, int radius)
     box_job job = {image, radius, 0};
     parallel_blocks((size_t)image->height, sum_along_rows, &job);
     parallel_blocks((size_t)image->width * (size_t)image->channels, sum_down, &job);
-    return job.failed ? fail(ERROR_MEMORY, "no memory to filter an image") : OK;
+    return job.failed ? fail(MERLIN_NO_MEMORY, "no memory to filter an image") : OK;
 }

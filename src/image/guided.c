@@ -176,19 +176,20 @@ static status apply(const img *coefficients, const img *guide, const img *mask, 
             }
         free(k);
     }
-    return failed ? fail(ERROR_MEMORY, "no memory to filter an image") : OK;
+    return failed ? fail(MERLIN_NO_MEMORY, "no memory to filter an image") : OK;
 }
 
 static status check_sizes(const img *low, const img *low_mask, const img *guide, const img *mask, int radius,
                           float epsilon)
 {
     if (!low->data || !guide->data || (guide->channels != 1 && guide->channels != GUIDE))
-        return fail(ERROR_USAGE, "a guided filter needs a map and a grey or colour guide");
+        return fail(MERLIN_WRONG_USE, "a guided filter needs a map and a grey or colour guide");
     if (low_mask && (low_mask->width != low->width || low_mask->height != low->height || low_mask->channels != 1))
-        return fail(ERROR_USAGE, "the low mask of a guided filter has another size than the map");
+        return fail(MERLIN_WRONG_USE, "the low mask of a guided filter has another size than the map");
     if (mask && (mask->width != guide->width || mask->height != guide->height || mask->channels != 1))
-        return fail(ERROR_USAGE, "the mask of a guided filter has another size than the guide");
-    if (radius < 1 || !(epsilon > 0)) return fail(ERROR_USAGE, "a guided filter needs a radius and an epsilon above 0");
+        return fail(MERLIN_WRONG_USE, "the mask of a guided filter has another size than the guide");
+    if (radius < 1 || !(epsilon > 0))
+        return fail(MERLIN_WRONG_USE, "a guided filter needs a radius and an epsilon above 0");
     return OK;
 }
 
@@ -216,7 +217,7 @@ status img_guided_upsample(const img *low, const img *low_mask, const img *guide
     status s = check_sizes(low, low_mask, guide, mask, radius, epsilon);
     if (s != OK) return s;
     float *mean = calloc((size_t)low->channels, sizeof *mean);
-    if (!mean) s = fail(ERROR_MEMORY, "no memory to filter an image");
+    if (!mean) s = fail(MERLIN_NO_MEMORY, "no memory to filter an image");
     if (s == OK) s = shrink_guide(guide, mask, low->width, low->height, &small);
     if (s == OK) s = find_coefficients(low, low_mask, &small, radius, epsilon, &coefficients);
     if (s == OK) s = img_new(out, guide->width, guide->height, low->channels);

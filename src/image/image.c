@@ -11,13 +11,13 @@ static status make(img *out, int width, int height, int channels, void *(*alloca
 {
     *out = (img){0};
     if (width < 1 || height < 1 || channels < 1)
-        return fail(ERROR_USAGE, "an image of %d x %d pixels and %d channels cannot be", width, height, channels);
+        return fail(MERLIN_WRONG_USE, "an image of %d x %d pixels and %d channels cannot be", width, height, channels);
     size_t count = 0, bytes = 0;
     if (__builtin_mul_overflow((size_t)width * (size_t)height, (size_t)channels, &count) ||
         __builtin_mul_overflow(count, sizeof(float), &bytes) || bytes > PTRDIFF_MAX)
-        return fail(ERROR_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
+        return fail(MERLIN_NO_MEMORY, "an image of %d x %d x %d is beyond memory", width, height, channels);
     out->data = allocate(bytes);
-    if (!out->data) return fail(ERROR_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
+    if (!out->data) return fail(MERLIN_NO_MEMORY, "no memory for an image of %d x %d x %d", width, height, channels);
     out->width = width;
     out->height = height;
     out->channels = channels;

@@ -9,11 +9,10 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "merlin/image.h"
 
-typedef struct img {
-    int width, height, channels;
-    float *data; /* height × width × channels */
-} img;
+/* The library's own image, by a short name for the inside. */
+typedef merlin_image img;
 
 /* Zero-filled. Refuses sizes below 1 or beyond memory. img_free leaves an empty image; freeing one is fine. */
 status img_new(img *out, int width, int height, int channels);

@@ -56,7 +56,7 @@ static status kernel_new(kernel *k, int from, int to)
     k->taps = wanted < from ? wanted : from;
     k->first = malloc((size_t)to * sizeof *k->first);
     k->weights = calloc((size_t)to * (size_t)k->taps, sizeof *k->weights);
-    if (!k->first || !k->weights) return fail(ERROR_MEMORY, "no memory to resize an image");
+    if (!k->first || !k->weights) return fail(MERLIN_NO_MEMORY, "no memory to resize an image");
     fill_weights(k, from, to);
     return OK;
 }
@@ -121,7 +121,7 @@ static status resize_rows(const img *from, const img *mask, const kernel *k, img
         }
         free(product);
     }
-    return failed ? fail(ERROR_MEMORY, "no memory to resize an image") : OK;
+    return failed ? fail(MERLIN_NO_MEMORY, "no memory to resize an image") : OK;
 }
 
 /* cover may be NULL. */
@@ -146,8 +146,8 @@ static status resize(const img *from, const img *mask, const img *cover, int wid
 {
     *out = (img){0};
     if (!from->data || width < 1 || height < 1)
-        return fail(ERROR_USAGE, "an image of %d x %d pixels cannot become %d x %d", from->width, from->height, width,
-                    height);
+        return fail(MERLIN_WRONG_USE, "an image of %d x %d pixels cannot become %d x %d", from->width, from->height,
+                    width, height);
     img wide = {0};
     kernel across = {0}, down = {0};
     status s = kernel_new(&across, from->width, width);
@@ -187,7 +187,7 @@ status img_resize_covered(const img *from, const img *cover, img *out)
 status img_resize_masked(const img *from, const img *mask, int width, int height, img *out)
 {
     if (!mask->data || mask->channels != 1 || mask->width != from->width || mask->height != from->height)
-        return fail(ERROR_USAGE, "an image of %d x %d pixels cannot be masked by one of %d x %d", from->width,
+        return fail(MERLIN_WRONG_USE, "an image of %d x %d pixels cannot be masked by one of %d x %d", from->width,
                     from->height, mask->width, mask->height);
     if (width != from->width || height != from->height) return resize(from, mask, NULL, width, height, out);
     status s = img_new(out, width, height, from->channels);

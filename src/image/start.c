@@ -37,8 +37,8 @@ static status check_room(void)
 {
     static const size_t some = (size_t)64 << 20;
     enum { THREADS = 3 };
-    if (!memory_is_left(some)) return fail(ERROR_MEMORY, "no memory for the image library " MERLIN_VIPS);
-    if (!threads_are_left(THREADS)) return fail(ERROR_MEMORY, "no threads for the image library " MERLIN_VIPS);
+    if (!memory_is_left(some)) return fail(MERLIN_NO_MEMORY, "no memory for the image library " MERLIN_VIPS);
+    if (!threads_are_left(THREADS)) return fail(MERLIN_NO_MEMORY, "no threads for the image library " MERLIN_VIPS);
     return OK;
 }
 
@@ -48,7 +48,7 @@ status vips_begin(void)
     if (s == OK) s = check_room();
     if (s != OK) return s;
     pthread_once(&once, start);
-    return started ? OK : fail(ERROR_DEVICE, "the image library " MERLIN_VIPS " did not start");
+    return started ? OK : fail(MERLIN_DEVICE_FAILED, "the image library " MERLIN_VIPS " did not start");
 }
 
 void vips_without_modules(void)

@@ -9,7 +9,7 @@
 
 #include "base/status.h"
 
-/* From any thread. ERROR_DEVICE if it is not installed. */
+/* From any thread. MERLIN_DEVICE_FAILED if it is not installed. */
 status vips_begin(void);
 
 /* "cannot VERB PATH: the library's first words" with status s; forgets the library's words. */

@@ -94,8 +94,8 @@ void mesh_weld(scn_mesh *mesh);
 void mesh_drop_repeated(scn_mesh *mesh);
 
 /* Drops triangles without area and unused vertices; gives vertices normals (unless they have them), splitting those at
- * edges where faces meet at more than the angle whose cosine is given. ERROR_MEMORY; ERROR_INPUT when no triangle is
- * left. */
+ * edges where faces meet at more than the angle whose cosine is given. MERLIN_NO_MEMORY; MERLIN_BAD_INPUT when no
+ * triangle is left. */
 status mesh_finish(scn_mesh *mesh, float crease_cosine);
 
 #endif

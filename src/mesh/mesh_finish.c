@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/mesh.h"
 #include "base/number.h"
+#include "mesh/mesh.h"
 
 /* Everything one pass over the vertices needs; faces around vertex v are face[start[v]] .. face[start[v + 1] - 1]. */
 typedef struct finisher {
@@ -129,7 +129,7 @@ static void take_over(finisher *f)
 
 status mesh_finish(scn_mesh *mesh, float crease_cosine)
 {
-    if (mesh->failed) return fail(ERROR_MEMORY, "no memory for a shape");
+    if (mesh->failed) return fail(MERLIN_NO_MEMORY, "no memory for a shape");
     /* a corner makes at most one vertex */
     uint32_t corners = 3 * mesh->triangle_count + 1;
     finisher f = {.mesh = mesh, .capacity = corners};
@@ -142,9 +142,9 @@ status mesh_finish(scn_mesh *mesh, float crease_cosine)
     f.normal = malloc(corners * sizeof *f.normal);
     status s = OK;
     if (!f.start || !f.face || !f.unit || !f.area || !f.position || !f.reference || !f.normal) {
-        s = fail(ERROR_MEMORY, "no memory for a shape of %u triangles", mesh->triangle_count);
+        s = fail(MERLIN_NO_MEMORY, "no memory for a shape of %u triangles", mesh->triangle_count);
     } else if (!drop_degenerate(&f)) {
-        s = fail(ERROR_INPUT, "a shape without a triangle that has an area");
+        s = fail(MERLIN_BAD_INPUT, "a shape without a triangle that has an area");
     } else {
         collect_faces(&f);
         split(&f, crease_cosine);

@@ -17,7 +17,7 @@ static status check_widths(const char *where, const char *key, const int *widths
 {
     /* the vector units work on blocks of 8 channels and more, and a gate's inner width is half of its level's */
     for (int i = 0; i < MODEL_LEVELS; i++)
-        if (widths[i] % 8) return fail(ERROR_INPUT, "%s: \"%s\" must be multiples of 8", where, key);
+        if (widths[i] % 8) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be multiples of 8", where, key);
     return OK;
 }
 
@@ -26,7 +26,7 @@ static status check_name(const char *name, const char *where)
 {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
     if (strspn(name, allowed) == strlen(name)) return OK;
-    return fail(ERROR_INPUT, "%s: \"name\" may have letters, digits, '.', '_' and '-'", where);
+    return fail(MERLIN_BAD_INPUT, "%s: \"name\" may have letters, digits, '.', '_' and '-'", where);
 }
 
 static status read_keys(json_object *o, const char *where, model_config *out)
@@ -37,7 +37,7 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = json_bool(o, "input_global", &out->input_global);
     if (s == OK) s = json_int(o, "material_decoders", 1, 4, &out->material_decoders);
     if (s == OK && out->material_decoders != 1 && out->material_decoders != 4)
-        s = fail(ERROR_INPUT, "%s: \"material_decoders\" must be 1 or 4", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"material_decoders\" must be 1 or 4", where);
     if (s == OK) s = json_bool(o, "feature_sharing", &out->feature_sharing);
     if (s == OK) s = json_bool(o, "gated_attention", &out->gated_attention);
     if (s == OK) s = json_choice(o, "relight", relight_words, 2, &relight);
@@ -52,7 +52,7 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     out->relight = (model_relight)relight;
     out->lighting = (model_lighting)lighting;
     if (s == OK && out->feature_sharing && out->relight != MODEL_RELIGHT_NETWORK)
-        s = fail(ERROR_INPUT, "%s: \"feature_sharing\" needs \"relight\": \"network\"", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"feature_sharing\" needs \"relight\": \"network\"", where);
     return s == OK ? json_finish(o) : s;
 }
 

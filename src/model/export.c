@@ -33,7 +33,7 @@ status model_export(const char *path, nn_params *params, const char *const (*met
     size_t count = nn_params_count(params);
     st_tensor *tensors = calloc(count, sizeof *tensors);
     uint16_t *halves = malloc((nn_params_values(params) + 1) * sizeof *halves);
-    status s = tensors && halves ? OK : fail(ERROR_MEMORY, "out of memory writing %s", path);
+    status s = tensors && halves ? OK : fail(MERLIN_NO_MEMORY, "out of memory writing %s", path);
     if (s == OK) {
         convert(params, tensors, halves);
         s = st_write(path, tensors, count, metadata, metadata_count);

@@ -398,7 +398,7 @@ static void add_losses(network *n, model_part part)
 static status build_indirect(nn_graph *g, const model_config *config)
 {
     if (!config->global_illumination)
-        return fail(ERROR_USAGE, "model \"%s\" has no global-illumination network", config->name);
+        return fail(MERLIN_WRONG_USE, "model \"%s\" has no global-illumination network", config->name);
     nn_node *direct = nn_input(g, "direct", 3, 1);
     maps m = {.albedo = nn_input(g, "albedo", 3, 1)};
     m.normal = nn_input(g, "normal", 3, 1);
@@ -412,7 +412,7 @@ static status build_indirect(nn_graph *g, const model_config *config)
 static status build_relighting(nn_graph *g, const model_config *config)
 {
     if (config->relight != MODEL_RELIGHT_NETWORK)
-        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder", config->name);
+        return fail(MERLIN_WRONG_USE, "model \"%s\" has no relighting decoder", config->name);
     network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
     for (int i = 0; i < feature_count(config); i++) {
         int level = feature_level(i);
@@ -428,7 +428,7 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
 {
     *out = NULL;
     nn_graph *g = nn_graph_new();
-    if (!g) return fail(ERROR_MEMORY, "out of memory while building model \"%s\"", config->name);
+    if (!g) return fail(MERLIN_NO_MEMORY, "out of memory while building model \"%s\"", config->name);
     status s = OK;
     if (part == MODEL_INDIRECT) {
         s = build_indirect(g, config);
@@ -452,12 +452,12 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
 static status read_config(const st_file *file, const char *weights, model_config *config)
 {
     if (st_metadata(file, "checkpoint"))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s is a checkpoint of training, no model: that is weights.safetensors, once training wrote it",
                     weights);
     const char *json = st_metadata(file, "config");
     if (json) return model_config_parse(json, strlen(json), weights, config);
-    return fail(ERROR_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
+    return fail(MERLIN_BAD_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
 }
 
 static status load(const st_file *file, const char *weights, model_config *config, nn_params **params)

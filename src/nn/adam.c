@@ -19,15 +19,15 @@ struct nn_adam {
 status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out)
 {
     if (!(options->beta1 >= 0 && options->beta1 < 1 && options->beta2 >= 0 && options->beta2 < 1))
-        return fail(ERROR_USAGE, "Adam's betas must be at least 0 and below 1");
+        return fail(MERLIN_WRONG_USE, "Adam's betas must be at least 0 and below 1");
     if (!(options->epsilon > 0 && options->clip_norm >= 0))
-        return fail(ERROR_USAGE, "Adam's epsilon must be positive and its clipping norm at least 0");
+        return fail(MERLIN_WRONG_USE, "Adam's epsilon must be positive and its clipping norm at least 0");
     nn_adam *adam = calloc(1, sizeof *adam);
     float *moments = calloc(2 * nn_params_values(params) + 1, sizeof *moments);
     if (!adam || !moments) {
         free(adam);
         free(moments);
-        return fail(ERROR_MEMORY, "no memory for the optimizer's moments of %zu values", nn_params_values(params));
+        return fail(MERLIN_NO_MEMORY, "no memory for the optimizer's moments of %zu values", nn_params_values(params));
     }
     *adam = (nn_adam){.device = cpu_device(), .params = params, .options = *options, .moments = moments};
     *out = adam;
@@ -58,7 +58,7 @@ static const double LARGEST_NORM = 1e19;
 status nn_adam_step(nn_adam *adam, float learning_rate)
 {
     if (!(learning_rate >= 0) || isinf(learning_rate))
-        return fail(ERROR_USAGE, "the learning rate must be a number of at least 0");
+        return fail(MERLIN_WRONG_USE, "the learning rate must be a number of at least 0");
     double norm = gradient_norm(adam), clip = (double)adam->options.clip_norm;
     double scale = clip > 0 && norm > clip ? clip / norm : 1;
     if (!(norm * scale <= LARGEST_NORM)) {

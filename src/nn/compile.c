@@ -55,7 +55,7 @@ static status fill_step(compilation *c, int index)
     else
         snprintf(name, sizeof name, "%s.%d", op_name(step->op), from->head);
     step->name = strdup(name);
-    if (!step->name) return fail(ERROR_MEMORY, "no memory for a step");
+    if (!step->name) return fail(MERLIN_NO_MEMORY, "no memory for a step");
     for (int k = 0; k < step->inputs; k++) {
         const value *x = input_of(c, index, k);
         step->in[k] = step->in_gradient[k] = x->tensor;
@@ -71,7 +71,7 @@ static status create_steps(compilation *c)
 {
     nn_program *p = c->program;
     p->steps = calloc((size_t)c->low.step_count + 1, sizeof *p->steps);
-    if (!p->steps) return fail(ERROR_MEMORY, "no memory for %d steps", c->low.step_count);
+    if (!p->steps) return fail(MERLIN_NO_MEMORY, "no memory for %d steps", c->low.step_count);
     for (int i = 0; i < c->low.step_count; i++) {
         p->step_count = i + 1;
         status s = fill_step(c, i);
@@ -150,7 +150,7 @@ static status take_arena(nn_program *p, const nn_program *beside)
     }
     program_arena *a = p->arena = calloc(1, sizeof *a);
     if (a) *a = (program_arena){p->device->allocate(p->arena_bytes + 1), p->arena_bytes, 1};
-    return a && a->memory ? OK : fail(ERROR_MEMORY, "no memory for activations (%zu MB)", p->arena_bytes >> 20);
+    return a && a->memory ? OK : fail(MERLIN_NO_MEMORY, "no memory for activations (%zu MB)", p->arena_bytes >> 20);
 }
 
 static status plan(compilation *c)
@@ -223,7 +223,7 @@ static status make_port(compilation *c, program_port *port, const char *name, co
         port->owned = true;
         port->host = c->program->device->allocate(tensor_count(&tensor) * sizeof(float));
     }
-    return port->name && port->host ? OK : fail(ERROR_MEMORY, "no memory for \"%s\"", name);
+    return port->name && port->host ? OK : fail(MERLIN_NO_MEMORY, "no memory for \"%s\"", name);
 }
 
 static status make_ports(compilation *c)
@@ -232,7 +232,7 @@ static status make_ports(compilation *c)
     const nn_graph *g = c->low.graph;
     p->inputs = calloc((size_t)g->count + 1, sizeof *p->inputs);
     p->outputs = calloc((size_t)g->output_count + 1, sizeof *p->outputs);
-    if (!p->inputs || !p->outputs) return fail(ERROR_MEMORY, "no memory for inputs and outputs");
+    if (!p->inputs || !p->outputs) return fail(MERLIN_NO_MEMORY, "no memory for inputs and outputs");
     status s = OK;
     for (int i = 0; s == OK && i < g->count; i++)
         if (g->nodes[i]->op == OP_INPUT)
@@ -249,7 +249,7 @@ static status find_untouched(nn_program *p)
 {
     size_t count = nn_params_count(p->params);
     p->untouched = malloc(count + 1);
-    if (!p->untouched) return fail(ERROR_MEMORY, "no memory for a program");
+    if (!p->untouched) return fail(MERLIN_NO_MEMORY, "no memory for a program");
     memset(p->untouched, 1, count);
     for (int i = 0; i < p->step_count; i++) {
         const nn_step *step = &p->steps[i];
@@ -270,7 +270,7 @@ static status build(compilation *c, const nn_graph *g, const nn_options *options
     /* a value and its gradient for each node, two for each step */
     c->buffers = calloc((size_t)g->count * 4 + 1, sizeof *c->buffers);
     c->step_buffers = calloc((size_t)g->count * 2 + 1, sizeof *c->step_buffers);
-    if (!c->buffers || !c->step_buffers) return fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
+    if (!c->buffers || !c->step_buffers) return fail(MERLIN_NO_MEMORY, "no memory to compile %d nodes", g->count);
     order_gradients(c);
     s = plan(c);
     if (s == OK) s = bind_steps(c);
@@ -283,9 +283,9 @@ status nn_compile(const nn_graph *g, nn_params *params, const nn_options *option
 {
     *out = NULL;
     if (options->purpose == NN_TRAIN && !can_be_trained(params))
-        return fail(ERROR_USAGE, "parameters of nn_params_open are not for training");
+        return fail(MERLIN_WRONG_USE, "parameters of nn_params_open are not for training");
     nn_program *p = calloc(1, sizeof *p);
-    if (!p) return fail(ERROR_MEMORY, "no memory for a program");
+    if (!p) return fail(MERLIN_NO_MEMORY, "no memory for a program");
     p->device = cpu_device();
     p->params = params;
     p->options = *options;

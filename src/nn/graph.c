@@ -28,14 +28,14 @@ void nn_graph_free(nn_graph *g)
 
 status graph_check(const nn_graph *g)
 {
-    if (!g) return fail(ERROR_MEMORY, "no memory for a graph");
+    if (!g) return fail(MERLIN_NO_MEMORY, "no memory for a graph");
     return g->error == OK ? OK : fail(g->error, "%s", g->message);
 }
 
 __attribute__((format(printf, 2, 3))) static nn_node *reject(nn_graph *g, const char *format, ...)
 {
     if (g->error == OK) {
-        g->error = ERROR_USAGE;
+        g->error = MERLIN_WRONG_USE;
         va_list list;
         va_start(list, format);
         vsnprintf(g->message, sizeof g->message, format, list);
@@ -47,7 +47,7 @@ __attribute__((format(printf, 2, 3))) static nn_node *reject(nn_graph *g, const 
 static nn_node *out_of_memory(nn_graph *g)
 {
     if (g->error == OK) {
-        g->error = ERROR_MEMORY;
+        g->error = MERLIN_NO_MEMORY;
         snprintf(g->message, sizeof g->message, "no memory for a graph node");
     }
     return NULL;

@@ -18,7 +18,7 @@ static status check_options(const nn_options *o)
 {
     if (o->batch < 1 || o->height < 1 || o->width < 1 || o->batch > SIZE_LIMIT || o->height > SIZE_LIMIT ||
         o->width > SIZE_LIMIT)
-        return fail(ERROR_USAGE, "a program of batch %d, height %d, width %d (1 to %d each)", o->batch, o->height,
+        return fail(MERLIN_WRONG_USE, "a program of batch %d, height %d, width %d (1 to %d each)", o->batch, o->height,
                     o->width, SIZE_LIMIT);
     return OK;
 }
@@ -30,7 +30,7 @@ static status infer_shape(const nn_options *o, value *v)
         (nn_tensor){.type = node->is_float ? NN_FLOAT32 : o->type, .n = o->batch, .h = 1, .w = 1, .c = node->channels};
     if (node->reduction == NN_VECTOR) return OK;
     if (o->height % node->reduction || o->width % node->reduction)
-        return fail(ERROR_USAGE, "%s %s works at 1/%d of the size, which %d by %d is not a multiple of",
+        return fail(MERLIN_WRONG_USE, "%s %s works at 1/%d of the size, which %d by %d is not a multiple of",
                     op_name(node->op), node->name ? node->name : "", node->reduction, o->height, o->width);
     v->tensor.h = o->height / node->reduction;
     v->tensor.w = o->width / node->reduction;
@@ -148,7 +148,7 @@ status lower_graph(const nn_graph *g, const nn_options *options, lowering *out)
     if (s != OK) return s;
     out->values = calloc((size_t)g->count + 1, sizeof *out->values);
     out->steps = calloc((size_t)g->count + 1, sizeof *out->steps);
-    if (!out->values || !out->steps) s = fail(ERROR_MEMORY, "no memory to compile %d nodes", g->count);
+    if (!out->values || !out->steps) s = fail(MERLIN_NO_MEMORY, "no memory to compile %d nodes", g->count);
     for (int i = 0; s == OK && i < g->count; i++) {
         value *v = &out->values[i];
         *v = (value){.node = g->nodes[i], .consumer = -1, .buffer = -1, .gradient_buffer = -1};

@@ -64,7 +64,7 @@ static status measure_steps(nn_program *p, const layer_watch *w)
 
 status nn_measure_layers(nn_program *p, int runs, nn_layer_seen *seen, void *context)
 {
-    if (runs < 1) return fail(ERROR_USAGE, "layers measured by %d runs", runs);
+    if (runs < 1) return fail(MERLIN_WRONG_USE, "layers measured by %d runs", runs);
     status s = nn_forward(p);
     if (s != OK) return s;
     p->forwarded = false; /* what forward left is not kept for a backward */

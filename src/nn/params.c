@@ -97,7 +97,7 @@ static status add_param(nn_params *params, const param_spec *spec, const source 
     for (int i = 0; i < p->rank; i++)
         p->count *= (size_t)p->shape[i];
     p->name = strdup(spec->name);
-    if (!p->name) return fail(ERROR_MEMORY, "no memory for parameter %s", spec->name);
+    if (!p->name) return fail(MERLIN_NO_MEMORY, "no memory for parameter %s", spec->name);
     p->place = needed->values;
     *(stays_half(from, spec) ? &needed->halves : &needed->values) += padded(p->count);
     if (spec->trained) needed->gradients += padded(p->count);
@@ -120,7 +120,7 @@ static status fill_params(nn_params *params, const nn_graph *g, const source *fr
     uint16_t *halves = params->halves = needed->halves ? memory_new(needed->halves * sizeof *halves) : NULL;
     float *gradients = params->gradients = memory_new(needed->gradients * sizeof *gradients);
     if (!params->values || !gradients || (needed->halves && !halves))
-        return fail(ERROR_MEMORY, "no memory for parameters");
+        return fail(MERLIN_NO_MEMORY, "no memory for parameters");
     params->value_count = needed->values;
     params->gradient_count = needed->gradients;
     nn_param *p = params->items;
@@ -152,7 +152,7 @@ static int compare_names(const void *a, const void *b)
 static status index_names(nn_params *params)
 {
     params->by_name = malloc((params->count + 1) * sizeof *params->by_name);
-    if (!params->by_name) return fail(ERROR_MEMORY, "no memory for parameters");
+    if (!params->by_name) return fail(MERLIN_NO_MEMORY, "no memory for parameters");
     for (size_t i = 0; i < params->count; i++)
         params->by_name[i] = &params->items[i];
     qsort(params->by_name, params->count, sizeof *params->by_name, compare_names);
@@ -168,7 +168,7 @@ static status make_params(const nn_graph *g, const source *from, nn_params **out
     if (params) params->items = calloc((size_t)g->count * PARAMS_PER_NODE + 1, sizeof *params->items);
     if (!params || !params->items) {
         nn_params_free(params);
-        return fail(ERROR_MEMORY, "no memory for parameters");
+        return fail(MERLIN_NO_MEMORY, "no memory for parameters");
     }
     params->version = 1;
     room needed = {0};
@@ -251,9 +251,9 @@ status params_of_node(nn_params *params, const nn_node *node, node_params *out)
     *out = (node_params){0};
     for (int k = 0; k < count; k++) {
         nn_param *p = nn_params_find(params, specs[k].name);
-        if (!p) return fail(ERROR_USAGE, "the parameters lack %s, which the graph needs", specs[k].name);
+        if (!p) return fail(MERLIN_WRONG_USE, "the parameters lack %s, which the graph needs", specs[k].name);
         if (p->rank != specs[k].rank || memcmp(p->shape, specs[k].shape, sizeof p->shape) != 0)
-            return fail(ERROR_USAGE, "parameter %s has another shape than the graph's", specs[k].name);
+            return fail(MERLIN_WRONG_USE, "parameter %s has another shape than the graph's", specs[k].name);
         *slots[k] = p;
     }
     return OK;

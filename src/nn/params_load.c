@@ -16,9 +16,10 @@ static bool is_of_shape(const st_tensor *t, const nn_param *p)
 
 static status check_tensor(const nn_param *p, const st_tensor *t, const char *path)
 {
-    if (!t) return fail(ERROR_INPUT, "%s: tensor %s is missing", path, p->name);
-    if (!is_of_shape(t, p)) return fail(ERROR_INPUT, "%s: tensor %s has another shape than the model's", path, p->name);
-    if (t->type == ST_I64) return fail(ERROR_INPUT, "%s: tensor %s is not of a float type", path, p->name);
+    if (!t) return fail(MERLIN_BAD_INPUT, "%s: tensor %s is missing", path, p->name);
+    if (!is_of_shape(t, p))
+        return fail(MERLIN_BAD_INPUT, "%s: tensor %s has another shape than the model's", path, p->name);
+    if (t->type == ST_I64) return fail(MERLIN_BAD_INPUT, "%s: tensor %s is not of a float type", path, p->name);
     return OK;
 }
 
@@ -53,7 +54,7 @@ status params_take(nn_params *params, const st_file *f, const char *path)
     for (size_t i = 0; i < st_count(f); i++) {
         const char *name = st_at(f, i)->name;
         if (!nn_params_find(params, name))
-            return fail(ERROR_INPUT, "%s: the model has no parameter for tensor %s", path, name);
+            return fail(MERLIN_BAD_INPUT, "%s: the model has no parameter for tensor %s", path, name);
     }
     status s = parallel_try(params->count, take_one, &(taking){params, f, path});
     if (s == OK) nn_params_touch(params);
@@ -81,7 +82,7 @@ static status take_shared(nn_params *params, const st_file *f, const char *path)
         if (s != OK) return fail_in(s, "%s: tensor %s", path, p->name);
         taken++;
     }
-    if (taken == 0) return fail(ERROR_INPUT, "%s: no tensor fits the model", path);
+    if (taken == 0) return fail(MERLIN_BAD_INPUT, "%s: no tensor fits the model", path);
     nn_params_touch(params);
     return OK;
 }

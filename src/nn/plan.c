@@ -43,7 +43,7 @@ status plan_memory(plan_buffer *buffers, size_t count, size_t *size)
 {
     *size = 0;
     plan_buffer **order = malloc((2 * count + 1) * sizeof *order);
-    if (!order) return fail(ERROR_MEMORY, "no memory to plan %zu buffers", count);
+    if (!order) return fail(MERLIN_NO_MEMORY, "no memory to plan %zu buffers", count);
     plan_buffer **together = order + count;
     for (size_t i = 0; i < count; i++)
         order[i] = &buffers[i];

@@ -112,7 +112,8 @@ status nn_forward(nn_program *p)
 status nn_backward(nn_program *p)
 {
     if (p->options.purpose != NN_TRAIN || !p->forwarded)
-        return fail(ERROR_USAGE, "nn_backward needs a program compiled for NN_TRAIN and a forward run before each");
+        return fail(MERLIN_WRONG_USE,
+                    "nn_backward needs a program compiled for NN_TRAIN and a forward run before each");
     p->forwarded = false; /* gradients take the memory of what forward left */
     for (size_t i = 0; i < nn_params_count(p->params); i++) {
         nn_param *param = nn_params_at(p->params, i);

@@ -86,22 +86,22 @@ static status read_tensor(const st_file *f, const cJSON *item, st_tensor *t)
     const cJSON *offsets = cJSON_GetObjectItemCaseSensitive(item, "data_offsets");
     *t = (st_tensor){.name = item->string};
     if (!cJSON_IsObject(item) || cJSON_GetArraySize(item) != 3 || !type || !shape || !offsets)
-        return fail(ERROR_INPUT, "%s: the tensor \"%s\" needs dtype, shape and data_offsets", f->where, t->name);
+        return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" needs dtype, shape and data_offsets", f->where, t->name);
     if (!read_type(type, &t->type))
-        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has a type other than F32, F16, BF16 or I64", f->where,
+        return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" has a type other than F32, F16, BF16 or I64", f->where,
                     t->name);
     if (!read_shape(shape, t))
-        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has no shape of up to four sizes", f->where, t->name);
+        return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" has no shape of up to four sizes", f->where, t->name);
     size_t begin, end, bytes;
     if (!cJSON_IsArray(offsets) || cJSON_GetArraySize(offsets) != 2 || !read_size(offsets->child, &begin) ||
         !read_size(offsets->child->next, &end) || begin > end)
-        return fail(ERROR_INPUT, "%s: the tensor \"%s\" has no usable data_offsets", f->where, t->name);
+        return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" has no usable data_offsets", f->where, t->name);
     if (__builtin_mul_overflow(t->count, st_type_size(t->type), &bytes) || bytes != end - begin)
-        return fail(ERROR_INPUT, "%s: the shape of the tensor \"%s\" does not fit its %zu bytes", f->where, t->name,
-                    end - begin);
+        return fail(MERLIN_BAD_INPUT, "%s: the shape of the tensor \"%s\" does not fit its %zu bytes", f->where,
+                    t->name, end - begin);
     if (end > f->data_size)
-        return fail(ERROR_INPUT, "%s is truncated: the tensor \"%s\" ends at byte %zu of %zu", f->where, t->name, end,
-                    f->data_size);
+        return fail(MERLIN_BAD_INPUT, "%s is truncated: the tensor \"%s\" ends at byte %zu of %zu", f->where, t->name,
+                    end, f->data_size);
     t->data = f->data + begin;
     return OK;
 }
@@ -122,12 +122,12 @@ static status check_places(const st_file *f)
     for (size_t i = 0; i < f->count; i++) {
         const st_tensor *t = &f->tensors[i];
         if (begin_of(f, t) != expected)
-            return fail(ERROR_INPUT, "%s: the tensor \"%s\" %s", f->where, t->name,
+            return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" %s", f->where, t->name,
                         begin_of(f, t) < expected ? "overlaps another" : "has a hole before it");
         expected += st_bytes_of(t);
     }
     if (expected != f->data_size)
-        return fail(ERROR_INPUT, "%s has %zu bytes behind its last tensor", f->where, f->data_size - expected);
+        return fail(MERLIN_BAD_INPUT, "%s has %zu bytes behind its last tensor", f->where, f->data_size - expected);
     return OK;
 }
 
@@ -148,29 +148,31 @@ static status check_keys(const st_file *f, const cJSON *object)
 {
     size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
     const char **names = malloc((count + 1) * sizeof *names);
-    if (!names) return fail(ERROR_MEMORY, "no memory for the names in %s", f->where);
+    if (!names) return fail(MERLIN_NO_MEMORY, "no memory for the names in %s", f->where);
     const cJSON *item;
     status s = OK;
     cJSON_ArrayForEach(item, object)
     {
-        if (!is_printable(item->string)) s = fail(ERROR_INPUT, "%s: a name has characters that do not print", f->where);
+        if (!is_printable(item->string))
+            s = fail(MERLIN_BAD_INPUT, "%s: a name has characters that do not print", f->where);
         names[i++] = item->string;
     }
     qsort(names, count, sizeof *names, compare_names);
     for (i = 1; s == OK && i < count; i++)
-        if (strcmp(names[i - 1], names[i]) == 0) s = fail(ERROR_INPUT, "%s: \"%s\" is there twice", f->where, names[i]);
+        if (strcmp(names[i - 1], names[i]) == 0)
+            s = fail(MERLIN_BAD_INPUT, "%s: \"%s\" is there twice", f->where, names[i]);
     free(names);
     return s;
 }
 
 static status check_metadata(const st_file *f, const cJSON *metadata)
 {
-    if (!cJSON_IsObject(metadata)) return fail(ERROR_INPUT, "%s: __metadata__ is not an object", f->where);
+    if (!cJSON_IsObject(metadata)) return fail(MERLIN_BAD_INPUT, "%s: __metadata__ is not an object", f->where);
     const cJSON *item;
     cJSON_ArrayForEach(item, metadata)
     {
         if (!cJSON_IsString(item))
-            return fail(ERROR_INPUT, "%s: the metadata \"%s\" is not a string", f->where, item->string);
+            return fail(MERLIN_BAD_INPUT, "%s: the metadata \"%s\" is not a string", f->where, item->string);
     }
     return check_keys(f, metadata);
 }
@@ -180,7 +182,7 @@ static status read_tensors(st_file *f)
     status s = check_keys(f, f->header);
     if (s != OK) return s;
     f->tensors = calloc((size_t)cJSON_GetArraySize(f->header) + 1, sizeof *f->tensors);
-    if (!f->tensors) return fail(ERROR_MEMORY, "no memory for the tensors of %s", f->where);
+    if (!f->tensors) return fail(MERLIN_NO_MEMORY, "no memory for the tensors of %s", f->where);
     const cJSON *item;
     cJSON_ArrayForEach(item, f->header)
     {
@@ -200,7 +202,7 @@ static int compare_tensors(const void *a, const void *b)
 static status index_names(st_file *f)
 {
     f->by_name = malloc((f->count + 1) * sizeof *f->by_name);
-    if (!f->by_name) return fail(ERROR_MEMORY, "no memory for the names in %s", f->where);
+    if (!f->by_name) return fail(MERLIN_NO_MEMORY, "no memory for the names in %s", f->where);
     for (size_t i = 0; i < f->count; i++)
         f->by_name[i] = &f->tensors[i];
     qsort(f->by_name, f->count, sizeof *f->by_name, compare_tensors);
@@ -214,7 +216,7 @@ static status check_sum(const st_file *f)
     char found[ST_CHECKSUM_SIZE];
     st_format_checksum(libdeflate_crc32(0, f->data, f->data_size), found);
     if (strcmp(written, found) == 0) return OK;
-    return fail(ERROR_INPUT, "%s was altered: its data's checksum is %s, not the recorded one; get the file again",
+    return fail(MERLIN_BAD_INPUT, "%s was altered: its data's checksum is %s, not the recorded one; get the file again",
                 f->where, found);
 }
 
@@ -233,15 +235,15 @@ static status read_header(st_file *f, const unsigned char *bytes, size_t size)
     for (size_t i = 0; i < ST_PREFIX && i < size; i++)
         length |= (uint64_t)bytes[i] << (8 * i);
     if (size <= ST_PREFIX || bytes[ST_PREFIX] != '{' || length < 2 || length > ST_HEADER_LIMIT)
-        return fail(ERROR_INPUT, "%s is not a safetensors file", f->where);
+        return fail(MERLIN_BAD_INPUT, "%s is not a safetensors file", f->where);
     if (length > size - ST_PREFIX)
-        return fail(ERROR_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
+        return fail(MERLIN_BAD_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
     const char *header = (const char *)bytes + ST_PREFIX, *end = NULL;
     f->header = cJSON_ParseWithLengthOpts(header, (size_t)length, &end, false);
     if (!f->header && !memory_is_left(for_header)) /* cJSON does not say why */
-        return fail(ERROR_MEMORY, "no memory to read the header of %s", f->where);
+        return fail(MERLIN_NO_MEMORY, "no memory to read the header of %s", f->where);
     if (!cJSON_IsObject(f->header) || !only_spaces(end, header + length))
-        return fail(ERROR_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);
+        return fail(MERLIN_BAD_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);
     f->data = bytes + ST_PREFIX + length;
     f->data_size = size - ST_PREFIX - (size_t)length;
     status s = read_tensors(f);
@@ -255,7 +257,7 @@ static status parse(const char *where, file_view view, const void *bytes, size_t
     st_file *f = calloc(1, sizeof *f);
     if (!f) {
         file_unmap(&view);
-        return fail(ERROR_MEMORY, "no memory to read %s", where);
+        return fail(MERLIN_NO_MEMORY, "no memory to read %s", where);
     }
     f->view = view;
     f->where = where;
@@ -316,7 +318,7 @@ const char *st_metadata(const st_file *f, const char *key)
 
 status st_to_float(const st_tensor *t, float *out)
 {
-    if (t->type == ST_I64) return fail(ERROR_INPUT, "the tensor \"%s\" holds integers, not weights", t->name);
+    if (t->type == ST_I64) return fail(MERLIN_BAD_INPUT, "the tensor \"%s\" holds integers, not weights", t->name);
     if (t->type == ST_F32) {
         memcpy(out, t->data, t->count * sizeof *out);
         return OK;

@@ -85,12 +85,12 @@ status st_write(const char *path, const st_tensor *tensors, size_t count, const 
     char *header = header_of(tensors, count, metadata, metadata_count);
     if (header && strlen(header) > ST_HEADER_LIMIT - 8) {
         free(header);
-        return fail(ERROR_OUTPUT, "cannot write %s: its header would be over %d bytes", path, ST_HEADER_LIMIT);
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: its header would be over %d bytes", path, ST_HEADER_LIMIT);
     }
     size_t size = 0;
     char *file = header ? assemble(header, tensors, count, &size) : NULL;
     free(header);
-    if (!file) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    if (!file) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
     status s = file_write_durable(path, file, size);
     free(file);
     return s;

@@ -45,7 +45,7 @@ status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surfa
     some.name = calloc(count, sizeof *some.name);
     status s = OK;
     if (!some.picture || !some.light || !some.name) {
-        s = fail(ERROR_MEMORY, "no memory for %d lights", all->count);
+        s = fail(MERLIN_NO_MEMORY, "no memory for %d lights", all->count);
     } else {
         if (some.count > DRAW_PICTURES) some.count = DRAW_PICTURES;
         choose(all, draw, &some);

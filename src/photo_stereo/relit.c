@@ -20,7 +20,7 @@ static status relight_all(network *n, const stage *st, int (*stop)(void), pst_ca
 {
     status s = near_capture_new(&st->full.mask, &st->full.depth, FIELD_OF_VIEW, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
-        if (stop && stop()) return fail(ERROR_STOPPED, "stopped");
+        if (stop && stop()) return fail(MERLIN_STOPPED, "stopped");
         img picture = {0};
         const lamp light = lamp_at(light_at(i));
         s = stage_relight(n, st, &light, 1, &picture);

@@ -6,9 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "image/public.h"
-#include "stereo/fit/albedo_scale.h"
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "mesh/write/mesh_write.h"
+#include "stereo/fit/albedo_scale.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"
 
@@ -30,10 +31,10 @@ struct merlin_capture {
 static status check_camera(float field_of_view, float distance)
 {
     if (!(field_of_view >= 0 && field_of_view <= 170))
-        return fail(ERROR_USAGE, "a capture's field of view is 0 (not known) to 170 degrees, not %g",
+        return fail(MERLIN_WRONG_USE, "a capture's field of view is 0 (not known) to 170 degrees, not %g",
                     (double)field_of_view);
     if (!(distance >= 0 && isfinite(distance)))
-        return fail(ERROR_USAGE, "a capture's distance is 0 (not known) or above, not %g", (double)distance);
+        return fail(MERLIN_WRONG_USE, "a capture's distance is 0 (not known) or above, not %g", (double)distance);
     return OK;
 }
 
@@ -44,9 +45,9 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
     status s = api_needs(__func__, folder && out);
     if (!files) files = &usual;
     if (s == OK) s = check_camera(files->field_of_view, files->distance);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     merlin_capture *c = calloc(1, sizeof *c);
-    if (!c) return result_of(fail(ERROR_MEMORY, "no memory for a capture"));
+    if (!c) return fail(MERLIN_NO_MEMORY, "no memory for a capture");
     const pst_read_options options = {.lights = files->lights,
                                       .mask = files->mask,
                                       .ambient = files->ambient,
@@ -61,22 +62,22 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
         merlin_capture_free(c);
     else
         *out = c;
-    return result_of(s);
+    return s;
 }
 
 static status check_params(const merlin_capture_params *p)
 {
     if (p->lighting < MERLIN_DISTANT_LIGHTS || p->lighting > MERLIN_UNKNOWN_LIGHTS)
-        return fail(ERROR_USAGE, "no lighting has the number %d", (int)p->lighting);
+        return fail(MERLIN_WRONG_USE, "no lighting has the number %d", (int)p->lighting);
     return check_camera(p->field_of_view, p->distance);
 }
 
 static status take_mask(const merlin_image *mask, pst_capture *c)
 {
     if (!mask || !mask->data) return OK;
-    if (mask->width < 1 || mask->height < 1) return fail(ERROR_USAGE, "the mask has no pixels");
-    if (mask->channels != 1) return fail(ERROR_USAGE, "a mask has 1 channel, not %d", mask->channels);
-    img from = img_of(mask);
+    if (mask->width < 1 || mask->height < 1) return fail(MERLIN_WRONG_USE, "the mask has no pixels");
+    if (mask->channels != 1) return fail(MERLIN_WRONG_USE, "a mask has 1 channel, not %d", mask->channels);
+    img from = *mask;
     status s = img_copy(&c->mask, &from);
     for (size_t i = 0; s == OK && i < img_value_count(&c->mask); i++)
         c->mask.data[i] = c->mask.data[i] >= 0.5f;
@@ -92,9 +93,9 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
     status s = api_needs(__func__, out);
     if (!params) params = &usual;
     if (s == OK) s = check_params(params);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     merlin_capture *c = calloc(1, sizeof *c);
-    if (!c) return result_of(fail(ERROR_MEMORY, "no memory for a capture"));
+    if (!c) return fail(MERLIN_NO_MEMORY, "no memory for a capture");
     c->field_of_view = params->field_of_view;
     c->inside = (pst_capture){.lighting = (pst_lighting)params->lighting,
                               .intensities_known = !params->unknown_intensities,
@@ -102,7 +103,7 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
     s = take_mask(mask, &c->inside);
     if (s != OK) {
         merlin_capture_free(c);
-        return result_of(s);
+        return s;
     }
     *out = c;
     return MERLIN_OK;
@@ -110,17 +111,18 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
 
 static status check_picture(const pst_capture *c, const merlin_image *p)
 {
-    if (!p->data || p->width < 1 || p->height < 1) return fail(ERROR_USAGE, "the picture has no pixels");
+    if (!p->data || p->width < 1 || p->height < 1) return fail(MERLIN_WRONG_USE, "the picture has no pixels");
     if (p->channels != 1 && p->channels != 3)
-        return fail(ERROR_USAGE, "a capture's pictures have 1 or 3 channels, not %d", p->channels);
+        return fail(MERLIN_WRONG_USE, "a capture's pictures have 1 or 3 channels, not %d", p->channels);
     if (c->width && (p->width != c->width || p->height != c->height))
-        return fail(ERROR_USAGE, "a picture of %d x %d pixels does not fit a capture of %d x %d", p->width, p->height,
-                    c->width, c->height);
+        return fail(MERLIN_WRONG_USE, "a picture of %d x %d pixels does not fit a capture of %d x %d", p->width,
+                    p->height, c->width, c->height);
     if (c->count && p->channels != c->channels)
-        return fail(ERROR_USAGE, "a picture of %d channels does not fit a capture of %d", p->channels, c->channels);
-    img taken = img_of(p);
+        return fail(MERLIN_WRONG_USE, "a picture of %d channels does not fit a capture of %d", p->channels,
+                    c->channels);
+    img taken = *p;
     for (size_t i = 0; i < img_value_count(&taken); i++)
-        if (!isfinite(p->data[i])) return fail(ERROR_INPUT, "the picture has values that are not finite");
+        if (!isfinite(p->data[i])) return fail(MERLIN_BAD_INPUT, "the picture has values that are not finite");
     return OK;
 }
 
@@ -133,14 +135,14 @@ static status take_light(pst_lighting lighting, const merlin_light *from, pst_li
 {
     static const merlin_light nothing = {0};
     if (!from && lighting != PST_UNKNOWN_LIGHT)
-        return fail(ERROR_USAGE, "a light is missing: this capture's lights are known");
+        return fail(MERLIN_WRONG_USE, "a light is missing: this capture's lights are known");
     if (!from) from = &nothing;
     if (!are_finite(from->direction) || !are_finite(from->position) || !are_finite(from->intensity) ||
         !(from->lobe >= 0 && isfinite(from->lobe)))
-        return fail(ERROR_USAGE, "a light's direction, position, intensity or lobe is not a number");
+        return fail(MERLIN_WRONG_USE, "a light's direction, position, intensity or lobe is not a number");
     vec3 d = vec3_of(from->direction);
     real length = vec3_length(d);
-    if (lighting == PST_DISTANT && !(length > 0)) return fail(ERROR_USAGE, "a distant light has no direction");
+    if (lighting == PST_DISTANT && !(length > 0)) return fail(MERLIN_WRONG_USE, "a distant light has no direction");
     *to = (pst_light){.position = vec3_of(from->position), .lobe = from->lobe};
     if (length > 0) to->direction = vec3_scale(d, 1 / length);
     bool any = from->intensity[0] != 0 || from->intensity[1] != 0 || from->intensity[2] != 0;
@@ -161,14 +163,14 @@ static void take_size(merlin_capture *capture, const merlin_image *picture)
 merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light)
 {
     status s = api_needs(__func__, capture && picture);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     pst_light inside;
     s = check_picture(&capture->inside, picture);
     if (s == OK) s = take_light(capture->inside.lighting, light, &inside);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     take_size(capture, picture);
-    img taken = img_of(picture);
-    return result_of(pst_capture_add(&capture->inside, &taken, &inside));
+    img taken = *picture;
+    return pst_capture_add(&capture->inside, &taken, &inside);
 }
 
 void merlin_capture_free(merlin_capture *capture)
@@ -190,7 +192,7 @@ static merlin_light light_of(const pst_light *l)
 
 static merlin_image moved(img *from)
 {
-    merlin_image to = image_of(from);
+    merlin_image to = *from;
     *from = (img){0};
     return to;
 }
@@ -200,7 +202,7 @@ static status take_surface(const pst_capture *c, pst_surface *from, merlin_surfa
     img mask = {0};
     status s = img_copy(&mask, &c->mask);
     merlin_light *lights = s == OK && from->light ? calloc((size_t)c->count, sizeof *lights) : NULL;
-    if (s == OK && from->light && !lights) s = fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    if (s == OK && from->light && !lights) s = fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     if (s != OK) {
         img_free(&mask);
         return s;
@@ -244,15 +246,15 @@ merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_p
     status s = api_needs(__func__, capture && out);
     if (!params) params = &usual;
     if (s == OK && (params->method < MERLIN_STEREO_AUTO || params->method > MERLIN_STEREO_UNCALIBRATED))
-        s = fail(ERROR_USAGE, "no method of photometric stereo has the number %d", (int)params->method);
-    if (s == OK && !capture->inside.count) s = fail(ERROR_USAGE, "the capture has no pictures");
-    if (s != OK) return result_of(s);
+        s = fail(MERLIN_WRONG_USE, "no method of photometric stereo has the number %d", (int)params->method);
+    if (s == OK && !capture->inside.count) s = fail(MERLIN_WRONG_USE, "the capture has no pictures");
+    if (s != OK) return s;
     pst_capture c = capture->inside; /* borrows all but a mask that is found */
     bool search = !c.mask.data;
     if (search) s = pst_capture_find_mask(&c);
     if (s == OK) s = solve(&c, params, out);
     if (search) img_free(&c.mask);
-    return result_of(s);
+    return s;
 }
 
 void merlin_surface_free(merlin_surface *surface)
@@ -260,7 +262,7 @@ void merlin_surface_free(merlin_surface *surface)
     if (!surface) return;
     merlin_image *images[] = {&surface->normal, &surface->albedo, &surface->depth, &surface->residual, &surface->mask};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
-        img inside = img_of(images[i]);
+        img inside = *images[i];
         img_free(&inside);
     }
     free(surface->lights);
@@ -275,7 +277,7 @@ static status check_surface(const merlin_surface *s)
     for (int i = 0; i < 3; i++)
         sound &= maps[i]->data && maps[i]->channels == channels[i] && maps[i]->width == s->albedo.width &&
                  maps[i]->height == s->albedo.height;
-    return sound ? OK : fail(ERROR_USAGE, "this surface is empty or incomplete");
+    return sound ? OK : fail(MERLIN_WRONG_USE, "this surface is empty or incomplete");
 }
 
 merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
@@ -283,9 +285,9 @@ merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
     status s = api_needs(__func__, path && surface);
     if (s == OK) s = pst_mesh_check_name(path);
     if (s == OK) s = check_surface(surface);
-    if (s != OK) return result_of(s);
-    img normal = img_of(&surface->normal), depth = img_of(&surface->depth), mask = img_of(&surface->mask);
-    img relative = img_of(&surface->albedo), albedo = {0};
+    if (s != OK) return s;
+    img normal = surface->normal, depth = surface->depth, mask = surface->mask;
+    img relative = surface->albedo, albedo = {0};
     float scale, focal = surface->camera.focal;
     s = img_copy(&albedo, &relative);
     if (s == OK) s = pst_scale_albedo(&albedo, &mask, &scale);
@@ -296,5 +298,5 @@ merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
                                     .camera = {.perspective = focal > 0, focal, surface->camera.x, surface->camera.y}};
     if (s == OK) s = pst_mesh_write(path, &source);
     img_free(&albedo);
-    return result_of(s);
+    return s;
 }

@@ -70,7 +70,7 @@ static void what_was_written_is_read(void **state)
     assert_int_equal(file_map(path, 100, &view), OK);
     assert_int_equal(view.size, 0);
     assert_int_equal(file_write(path, "one\0two", 7), OK);
-    assert_int_equal(file_map(path, 6, &view), ERROR_INPUT);
+    assert_int_equal(file_map(path, 6, &view), MERLIN_BAD_INPUT);
     assert_null(view.data);
     assert_int_equal(file_map(path, 7, &view), OK);
     assert_int_equal(view.size, 7);
@@ -87,10 +87,10 @@ static void larger_files_than_wanted_are_refused(void **state)
     char *path = in_folder("a"), *data = NULL;
     size_t size = 0;
     assert_int_equal(file_write(path, "12345", 5), OK);
-    assert_int_equal(file_read(path, 4, &data, &size), ERROR_INPUT);
+    assert_int_equal(file_read(path, 4, &data, &size), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), path));
-    assert_int_equal(file_read(folder, 100, &data, &size), ERROR_INPUT);
-    assert_int_equal(file_read("/nowhere/a", 100, &data, &size), ERROR_INPUT);
+    assert_int_equal(file_read(folder, 100, &data, &size), MERLIN_BAD_INPUT);
+    assert_int_equal(file_read("/nowhere/a", 100, &data, &size), MERLIN_BAD_INPUT);
     unlink(path);
     free(path);
 }
@@ -113,7 +113,7 @@ static void a_write_that_fails_leaves_the_old_file_and_no_other(void **state)
     status s = file_write(path, large, 1 << 20);
     setrlimit(RLIMIT_FSIZE, &before);
     signal(SIGXFSZ, SIG_DFL);
-    assert_int_equal(s, ERROR_OUTPUT);
+    assert_int_equal(s, MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), path));
     assert_int_equal(file_read(path, 100, &data, &size), OK);
     assert_string_equal(data, "old");
@@ -201,7 +201,7 @@ static void a_print_that_fails_says_why(void **state)
     (void)state;
     char *nowhere = in_folder("no/such");
     const double half = 0.5;
-    assert_int_equal(file_print(nowhere, print_a_number, &half), ERROR_OUTPUT);
+    assert_int_equal(file_print(nowhere, print_a_number, &half), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), nowhere));
     assert_non_null(strstr(status_message(), "No such file"));
     free(nowhere);
@@ -213,9 +213,9 @@ static void what_is_no_plain_file_is_not_replaced(void **state)
     char *pipe = in_folder("pipe");
     struct stat about;
     assert_int_equal(mkfifo(pipe, 0600), 0);
-    assert_int_equal(file_write(pipe, "new", 3), ERROR_OUTPUT);
+    assert_int_equal(file_write(pipe, "new", 3), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), pipe));
-    assert_int_equal(file_check_writable(pipe), ERROR_OUTPUT);
+    assert_int_equal(file_check_writable(pipe), MERLIN_CANNOT_WRITE);
     assert_int_equal(stat(pipe, &about), 0);
     assert_true(S_ISFIFO(about.st_mode));
     unlink(pipe);
@@ -239,13 +239,13 @@ static void what_is_no_plain_file_is_not_opened(void **state)
     fclose(f);
     const char *const paths[] = {pipe, "/dev/zero", folder};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        assert_int_equal(file_read(paths[i], 100, &data, &size), ERROR_INPUT);
-        assert_int_equal(file_map(paths[i], 100, &view), ERROR_INPUT);
-        assert_int_equal(file_check_plain(paths[i]), ERROR_INPUT);
+        assert_int_equal(file_read(paths[i], 100, &data, &size), MERLIN_BAD_INPUT);
+        assert_int_equal(file_map(paths[i], 100, &view), MERLIN_BAD_INPUT);
+        assert_int_equal(file_check_plain(paths[i]), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "is not a plain file"));
         assert_non_null(strstr(status_message(), paths[i]));
     }
-    assert_int_equal(file_check_plain("/nowhere/a"), ERROR_INPUT);
+    assert_int_equal(file_check_plain("/nowhere/a"), MERLIN_BAD_INPUT);
     unlink(pipe);
     free(pipe);
 }
@@ -278,9 +278,9 @@ static void whether_a_file_can_be_written_is_known_before_it_is(void **state)
     size_t size;
     assert_int_equal(file_check_writable(path), OK);
     assert_int_equal(entries(), 0);
-    assert_int_equal(file_check_writable(nowhere), ERROR_OUTPUT);
+    assert_int_equal(file_check_writable(nowhere), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), nowhere));
-    assert_int_equal(file_check_writable(folder), ERROR_OUTPUT);
+    assert_int_equal(file_check_writable(folder), MERLIN_CANNOT_WRITE);
     assert_int_equal(file_write(path, "old", 3), OK);
     assert_int_equal(file_check_writable(path), OK);
     assert_int_equal(file_read(path, 10, &data, &size), OK);
@@ -307,7 +307,7 @@ static void committing_replaces_the_file(void **state)
     assert_string_equal(data, "new");
     free(data);
     assert_int_equal(file_temporary(path, &temporary), OK);
-    assert_int_equal(file_commit(temporary, path), ERROR_OUTPUT); /* nobody wrote it */
+    assert_int_equal(file_commit(temporary, path), MERLIN_CANNOT_WRITE); /* nobody wrote it */
     unlink(path);
     free(path);
 }
@@ -315,7 +315,7 @@ static void committing_replaces_the_file(void **state)
 static void a_folder_without_a_name_is_refused(void **state)
 {
     (void)state;
-    assert_int_equal(file_make_folder(""), ERROR_OUTPUT);
+    assert_int_equal(file_make_folder(""), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "no name"));
 }
 
@@ -328,9 +328,9 @@ static void folders_are_made_with_those_above(void **state)
     assert_true(file_is_folder(deep) && file_exists(deep));
     assert_int_equal(file_write(file, "", 0), OK);
     assert_true(file_exists(file) && !file_is_folder(file));
-    assert_int_equal(file_make_folder(below), ERROR_OUTPUT);
+    assert_int_equal(file_make_folder(below), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "a file of that name is in the way"));
-    assert_int_equal(file_make_folder("/proc/self/x/y"), ERROR_OUTPUT);
+    assert_int_equal(file_make_folder("/proc/self/x/y"), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "No such file or directory")); /* what mkdir says there */
     unlink(file);
     for (int i = 0; i < 3; i++, *strrchr(deep, '/') = 0)
@@ -369,7 +369,7 @@ static void lists_are_sorted_as_people_count_and_of_the_wanted_endings(void **st
     for (int i = 0; i < 6; i++)
         assert_string_equal(strrchr(names[i], '/'), listed[i]);
     file_list_free(names, count);
-    assert_int_equal(file_list("/nowhere", endings, &names, &count), ERROR_INPUT);
+    assert_int_equal(file_list("/nowhere", endings, &names, &count), MERLIN_BAD_INPUT);
     for (int i = 0; i < 11; i++) {
         char *path = in_folder(made[i]);
         unlink(path);

@@ -50,7 +50,7 @@ static json_object *inner(json_object *o, const char *key)
 static void refuses(const char *name, const char *const *words)
 {
     json_object *o;
-    assert_int_equal(json_file_read(scratch_path(name), "model", &o), ERROR_INPUT);
+    assert_int_equal(json_file_read(scratch_path(name), "model", &o), MERLIN_BAD_INPUT);
     assert_null(o);
     for (; *words; words++)
         if (!strstr(status_message(), *words)) fail_msg("\"%s\" does not say %s", status_message(), *words);
@@ -183,11 +183,11 @@ static void messages_say_that_there_is_more_than_one_file(void **unused)
     put("base.json", "{\"seed\": 2000}");
     json_object *o = reads("run.json");
     int value;
-    assert_int_equal(json_int(o, "seed", 0, 1000, &value), ERROR_INPUT);
+    assert_int_equal(json_int(o, "seed", 0, 1000, &value), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "run.json with the files it names: \"seed\""));
     json_free(o);
     o = reads("base.json");
-    assert_int_equal(json_int(o, "seed", 0, 1000, &value), ERROR_INPUT);
+    assert_int_equal(json_int(o, "seed", 0, 1000, &value), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "base.json: \"seed\""));
     json_free(o);
 }

@@ -48,7 +48,7 @@ static void a_missing_library_is_named_each_time(void **state)
     (void)state;
     library missing = {.file = "libnone-of-this-name.so.6", .functions = wanted, .count = 2};
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(library_need(&missing), ERROR_DEVICE);
+        assert_int_equal(library_need(&missing), MERLIN_DEVICE_FAILED);
         assert_non_null(strstr(status_message(), "libnone-of-this-name.so.6"));
     }
 }
@@ -59,7 +59,7 @@ static void a_library_without_a_function_is_refused(void **state)
     void *none;
     const library_function more[] = {{"cbrt", &maths.cbrt}, {"no_function_of_this_name", &none}};
     library lacking = {.file = "libm.so.6", .functions = more, .count = 2};
-    assert_int_equal(library_need(&lacking), ERROR_DEVICE);
+    assert_int_equal(library_need(&lacking), MERLIN_DEVICE_FAILED);
 }
 
 int main(void)

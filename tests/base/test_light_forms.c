@@ -60,7 +60,7 @@ static void assert_names(const char *text, const char *first, const char *last)
 static void assert_refused(const char *text, const char *words)
 {
     light_list lights;
-    assert_int_equal(light_list_parse(text, strlen(text), "lights.txt", &lights), ERROR_INPUT);
+    assert_int_equal(light_list_parse(text, strlen(text), "lights.txt", &lights), MERLIN_BAD_INPUT);
     assert_null(lights.at);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" does not say \"%s\"", status_message(), words);
     assert_null(strchr(status_message(), '\n'));

@@ -22,7 +22,7 @@ static status parse(const char *text, light_list *out)
 static void assert_refused(const char *text, const char *words)
 {
     light_list lights;
-    assert_int_equal(parse(text, &lights), ERROR_INPUT);
+    assert_int_equal(parse(text, &lights), MERLIN_BAD_INPUT);
     assert_null(lights.at);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" does not say \"%s\"", status_message(), words);
     assert_null(strchr(status_message(), '\n'));
@@ -188,7 +188,7 @@ static void binary_files_are_refused(void **state)
     (void)state;
     light_list lights;
     static const char bytes[] = "0 0\0 0\n";
-    assert_int_equal(light_list_parse(bytes, sizeof bytes - 1, "lights.txt", &lights), ERROR_INPUT);
+    assert_int_equal(light_list_parse(bytes, sizeof bytes - 1, "lights.txt", &lights), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "not a text file"));
 }
 
@@ -209,7 +209,7 @@ static void missing_files_are_named(void **state)
 {
     (void)state;
     light_list lights;
-    assert_int_equal(light_list_read("no-such-list.lp", &lights), ERROR_INPUT);
+    assert_int_equal(light_list_read("no-such-list.lp", &lights), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no-such-list.lp"));
 }
 

@@ -24,7 +24,7 @@ static status body(void *context, size_t i)
     work *w = context;
     w->done[i]++;
     for (int k = 0; k < 2; k++)
-        if (i == w->failing[k]) return (fail)(ERROR_INPUT, "number %zu", i);
+        if (i == w->failing[k]) return (fail)(MERLIN_BAD_INPUT, "number %zu", i);
     return OK;
 }
 
@@ -44,7 +44,7 @@ static void the_first_failure_is_heard(void **state)
     (void)state;
     for (int round = 0; round < 50; round++) {
         work w = {.failing = {8, 7}};
-        assert_int_equal(parallel_try(COUNT, body, &w), ERROR_INPUT);
+        assert_int_equal(parallel_try(COUNT, body, &w), MERLIN_BAD_INPUT);
         assert_string_equal(status_message(), "number 7");
         for (int i = 0; i < 8; i++)
             assert_int_equal(w.done[i], 1);

@@ -13,7 +13,7 @@ enum { RANKS = 3, MOST = 1000003 };
 /* Before cmocka's macro. */
 static status failure_of(int rank)
 {
-    return fail(ERROR_INPUT, "rank %d", rank);
+    return fail(MERLIN_BAD_INPUT, "rank %d", rank);
 }
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
@@ -94,7 +94,7 @@ static void all_hear_that_one_has_failed(void **state)
     (void)state;
     int *results = forked_memory(3 * RANKS * sizeof *results);
     assert_int_equal(forked_run(RANKS, fail_some, results), RANKS);
-    const int wanted[3 * RANKS] = {ERROR_ELSEWHERE, ERROR_INPUT, ERROR_ELSEWHERE, 0, 1, 0, OK, OK, OK};
+    const int wanted[3 * RANKS] = {STATUS_ELSEWHERE, MERLIN_BAD_INPUT, STATUS_ELSEWHERE, 0, 1, 0, OK, OK, OK};
     assert_memory_equal(results, wanted, sizeof wanted);
 }
 
@@ -107,7 +107,7 @@ static void what_the_first_has_reaches_all_and_one_alone_needs_nobody(void **sta
     assert_int_equal(ranks_index(NULL), 0);
     assert_int_equal(ranks_sum(NULL, values, 2), OK);
     assert_int_equal(ranks_sum_floats(NULL, some, 2), OK);
-    assert_int_equal(ranks_agree(NULL, ERROR_MEMORY), ERROR_MEMORY);
+    assert_int_equal(ranks_agree(NULL, MERLIN_NO_MEMORY), MERLIN_NO_MEMORY);
     ranks_share(NULL, values, sizeof values);
     assert_true(values[0] == 1 && values[1] == 2 && some[0] == 3 && some[1] == 4);
 }

@@ -12,8 +12,8 @@
 static void a_context_stands_before_the_message(void **state)
 {
     (void)state;
-    assert_int_equal((fail)(ERROR_INPUT, "it is %d bytes", 3), ERROR_INPUT);
-    assert_int_equal(fail_in(ERROR_INPUT, "cannot read %s", "a.exr"), ERROR_INPUT);
+    assert_int_equal((fail)(MERLIN_BAD_INPUT, "it is %d bytes", 3), MERLIN_BAD_INPUT);
+    assert_int_equal(fail_in(MERLIN_BAD_INPUT, "cannot read %s", "a.exr"), MERLIN_BAD_INPUT);
     assert_string_equal(status_message(), "cannot read a.exr: it is 3 bytes");
 }
 
@@ -23,8 +23,8 @@ static void messages_are_one_line_however_long_their_context(void **state)
     (void)state;
     char name[3000] = "two\nlines";
     for (size_t length = strlen(name); length < sizeof name - 1; length++) {
-        (fail)(ERROR_INPUT, "no\tsuch file");
-        fail_in(ERROR_INPUT, "%s", name);
+        (fail)(MERLIN_BAD_INPUT, "no\tsuch file");
+        fail_in(MERLIN_BAD_INPUT, "%s", name);
         assert_null(strpbrk(status_message(), "\n\t"));
         assert_ptr_equal(strstr(status_message(), "two?lines"), status_message());
         name[length] = 'a';

@@ -172,7 +172,7 @@ static void nothing_to_find_is_said(void **state)
     mask_choice choice;
     paint(nothing, &photo, &truth);
     status s = mask_choose(&photo, NULL, NULL, &mask, &choice);
-    assert_true(s == ERROR_INPUT || choice.confidence < MASK_LITTLE_CONFIDENCE);
+    assert_true(s == MERLIN_BAD_INPUT || choice.confidence < MASK_LITTLE_CONFIDENCE);
     img_free(&photo);
     img_free(&truth);
     img_free(&mask);
@@ -202,7 +202,7 @@ static void is_refused(const merlin_hint *hint, const char *words)
     img photo, truth, mask;
     mask_choice choice;
     paint(ring, &photo, &truth);
-    assert_int_equal(mask_choose(&photo, NULL, hint, &mask, &choice), ERROR_USAGE);
+    assert_int_equal(mask_choose(&photo, NULL, hint, &mask, &choice), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), words));
     assert_null(mask.data);
     img_free(&photo);
@@ -231,7 +231,7 @@ static void hints_beside_a_mask_are_refused(void **state)
     mask_choice choice;
     paint(ring, &photo, &truth);
     const merlin_hint none = {0}, hint = {.point_count = 1};
-    assert_int_equal(mask_choose(&photo, &truth, &hint, &mask, &choice), ERROR_USAGE);
+    assert_int_equal(mask_choose(&photo, &truth, &hint, &mask, &choice), MERLIN_WRONG_USE);
     assert_int_equal(mask_choose(&photo, &truth, &none, &mask, &choice), OK);
     assert_memory_equal(mask.data, truth.data, img_value_count(&truth) * sizeof(float));
     img_free(&photo);

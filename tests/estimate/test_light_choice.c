@@ -5,8 +5,9 @@
 #include <math.h>
 #include <unistd.h>
 
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "estimate/light/found_light.h"
-#include "image/public.h"
 #include "scratch.h"
 #include "weights.h"
 

@@ -19,7 +19,7 @@ static merlin_maps ball(int width, int height)
     for (int i = 0; i < 6; i++) {
         img one;
         assert_int_equal(img_new(&one, width, height, channels[i]), OK);
-        *images[i] = image_of(&one);
+        *images[i] = one;
     }
     for (int i = 0; i < width * height; i++) {
         float x = ((float)(i % width) + 0.5f - (float)width / 2) / RADIUS;
@@ -32,7 +32,7 @@ static merlin_maps ball(int width, int height)
         m.depth.data[i] = 1 - 0.25f * sqrtf(1 - square);
         m.mask.data[i] = 1;
     }
-    img mask = img_of(&m.mask);
+    img mask = m.mask;
     crop_square c;
     assert_int_equal(crop_around(&mask, &c), OK);
     m.crop.x = c.x;

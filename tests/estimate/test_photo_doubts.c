@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "estimate/photo/doubts.h"
-#include "image/public.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,8 +27,8 @@ static void make(merlin_maps *maps, int left, int top, int right, int bottom)
                 img_at(&photo, x, y)[c] = 0.1f + 0.003f * (float)((7 * x + 13 * y + 29 * c) % 200);
             *img_at(&mask, x, y) = x >= left && x < right && y >= top && y < bottom;
         }
-    maps->photo = image_of(&photo);
-    maps->mask = image_of(&mask);
+    maps->photo = photo;
+    maps->mask = mask;
 }
 
 static unsigned doubts_of(merlin_maps *maps, const merlin_shot *shot)

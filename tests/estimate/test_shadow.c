@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/rng.h"
-#include "estimate/surface/fuse.h"
 #include "estimate/light/shadow.h"
+#include "estimate/surface/fuse.h"
 #include "optics/camera.h"
 
 #include <setjmp.h>

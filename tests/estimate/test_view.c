@@ -210,7 +210,7 @@ static void normals_alone_are_those_of_all_maps(void **state)
         network_estimation_free(&e);
         img_free(&normal);
     }
-    assert_int_equal(network_normals(n, &photo, &mask, NULL, 2, at_once, &normal), ERROR_STOPPED);
+    assert_int_equal(network_normals(n, &photo, &mask, NULL, 2, at_once, &normal), MERLIN_STOPPED);
     assert_null(normal.data);
     img_free(&photo);
     img_free(&mask);
@@ -226,9 +226,9 @@ static void a_wrong_number_of_views_is_refused(void **state)
     assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
-    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 0, NULL, &e), ERROR_USAGE);
-    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 9, NULL, &e), ERROR_USAGE);
-    assert_int_equal(network_normals(n, &photo, &mask, NULL, 0, NULL, &normal), ERROR_USAGE);
+    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 0, NULL, &e), MERLIN_WRONG_USE);
+    assert_int_equal(network_estimate(n, &photo, &mask, NULL, 9, NULL, &e), MERLIN_WRONG_USE);
+    assert_int_equal(network_normals(n, &photo, &mask, NULL, 0, NULL, &normal), MERLIN_WRONG_USE);
     img_free(&photo);
     img_free(&mask);
     network_close(n);

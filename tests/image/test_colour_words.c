@@ -91,7 +91,7 @@ static void assert_pixel(const char *path, double red, double green, double blue
 static void assert_refused(const char *path, const char *words)
 {
     img color = {0};
-    assert_int_equal(img_read(path, &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, NULL), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) fail_msg("%s", status_message());
 }
 

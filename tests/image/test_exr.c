@@ -116,7 +116,7 @@ static void missing_channel_is_named(void **state)
     exr_file *f = NULL;
     assert_int_equal(exr_open(scratch_path("c.exr"), &f), OK);
     const exr_target target = {"normal.X", &y, 1};
-    assert_int_equal(exr_read(f, &target, 1), ERROR_INPUT);
+    assert_int_equal(exr_read(f, &target, 1), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "normal.X"));
     assert_non_null(strstr(status_message(), "c.exr"));
     exr_close(f);
@@ -180,7 +180,7 @@ static void a_small_file_is_not_given_memory_for_very_many_pixels(void **state)
     assert_int_equal(file_write(path, data, size), OK);
     free(data);
     img color;
-    assert_int_equal(img_read(path, &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, NULL), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), "16384 x 16384 pixels would take 4096 MB")) fail_msg("%s", status_message());
 }
 
@@ -188,15 +188,15 @@ static void missing_and_foreign_files_are_refused(void **state)
 {
     (void)state;
     exr_file *f = NULL;
-    assert_int_equal(exr_open(scratch_path("none.exr"), &f), ERROR_INPUT);
+    assert_int_equal(exr_open(scratch_path("none.exr"), &f), MERLIN_BAD_INPUT);
     assert_null(f);
     assert_non_null(strstr(status_message(), "none.exr"));
     assert_int_equal(file_write(scratch_path("text.exr"), "not a picture\n", 14), OK);
-    assert_int_equal(exr_open(scratch_path("text.exr"), &f), ERROR_INPUT);
+    assert_int_equal(exr_open(scratch_path("text.exr"), &f), MERLIN_BAD_INPUT);
     assert_null(f);
     assert_int_equal(mkfifo(scratch_path("pipe.exr"), 0600), 0);
     alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
-    assert_int_equal(exr_open(scratch_path("pipe.exr"), &f), ERROR_INPUT);
+    assert_int_equal(exr_open(scratch_path("pipe.exr"), &f), MERLIN_BAD_INPUT);
     alarm(0);
     assert_non_null(strstr(status_message(), "not a plain file"));
 }
@@ -206,22 +206,22 @@ static void failed_write_leaves_nothing(void **state)
     (void)state;
     float y = 0;
     const exr_channel channel = {"Y", &y, 1, false};
-    assert_int_equal(exr_write(scratch_path("no/such/folder.exr"), 1, 1, &channel, 1, NULL, 0), ERROR_OUTPUT);
+    assert_int_equal(exr_write(scratch_path("no/such/folder.exr"), 1, 1, &channel, 1, NULL, 0), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "folder.exr"));
     assert_null(strchr(status_message(), '~'));
     /* the header is refused after the file was begun: an attribute may not change the type of a standard one */
     const exr_attribute wrong = exr_text("screenWindowWidth", "wide");
-    assert_int_equal(exr_write(scratch_path("wrong.exr"), 1, 1, &channel, 1, &wrong, 1), ERROR_OUTPUT);
+    assert_int_equal(exr_write(scratch_path("wrong.exr"), 1, 1, &channel, 1, &wrong, 1), MERLIN_CANNOT_WRITE);
     assert_false(file_exists(scratch_path("wrong.exr")));
     const exr_channel twice[] = {{"Y", &y, 1, false}, {"Y", &y, 1, false}};
-    assert_int_equal(exr_write(scratch_path("twice.exr"), 1, 1, twice, 2, NULL, 0), ERROR_USAGE);
+    assert_int_equal(exr_write(scratch_path("twice.exr"), 1, 1, twice, 2, NULL, 0), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("twice.exr")));
     static float rgb[3 * COUNT], depth[COUNT];
     fill(rgb, depth);
     limit_file_size(500); /* inside the first chunk */
     status full = write_example(scratch_path("full.exr"), rgb, depth);
     limit_file_size(0);
-    assert_int_equal(full, ERROR_OUTPUT);
+    assert_int_equal(full, MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "full.exr"));
     assert_false(file_exists(scratch_path("full.exr")));
     assert_false(folder_has_leftovers());

@@ -97,7 +97,7 @@ static void what_dwa_packed_is_read_or_refused_with_what_to_do(void **state)
         }
         assert_int_equal(packed, EXR_ERR_FEATURE_NOT_IMPLEMENTED);
         write_line(path, depth, ways[w]);
-        assert_int_equal(read_depth(path, depth2), ERROR_INPUT);
+        assert_int_equal(read_depth(path, depth2), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "dwa.exr"));
         assert_non_null(strstr(status_message(), "save it with ZIP"));
     }
@@ -109,7 +109,7 @@ static void compression_of_another_age_is_refused_with_what_to_do(void **state)
     (void)state;
     float depth[WIDTH] = {1}, depth2[WIDTH];
     write_line(scratch_path("new.exr"), depth, 200);
-    assert_int_equal(read_depth(scratch_path("new.exr"), depth2), ERROR_INPUT);
+    assert_int_equal(read_depth(scratch_path("new.exr"), depth2), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "new.exr"));
     assert_non_null(strstr(status_message(), "save it with ZIP"));
 }

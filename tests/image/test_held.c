@@ -28,7 +28,7 @@ static const char *write_bytes(const char *name, const void *bytes, size_t size)
 static void expect_refusal(const char *path, const char *words)
 {
     img color = {0}, alpha = {0};
-    assert_int_equal(img_read(path, &color, &alpha), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, &alpha), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" does not say \"%s\"", status_message(), words);
     assert_null(color.data);
 }
@@ -80,7 +80,8 @@ static void a_jpeg_in_one_scan_is_not_refused_for_its_size(void **state)
     (void)state;
     unsigned char file[64];
     img color = {0}, alpha = {0};
-    assert_int_equal(img_read(write_bytes("usual.jpg", file, jpeg_of(0xc0, 3, file)), &color, &alpha), ERROR_INPUT);
+    assert_int_equal(img_read(write_bytes("usual.jpg", file, jpeg_of(0xc0, 3, file)), &color, &alpha),
+                     MERLIN_BAD_INPUT);
     assert_null(strstr(status_message(), "held as a whole"));
 }
 

@@ -61,7 +61,7 @@ static void assert_selects_object(const char *path, bool sharply)
 static void assert_refused(const char *path, const char *words)
 {
     img mask;
-    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    assert_int_equal(img_read_mask(path, &mask), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) print_error("%s\n", status_message());
     assert_non_null(strstr(status_message(), words));
     assert_non_null(strstr(status_message(), path));

@@ -60,7 +60,7 @@ static void assert_shows(const char *path, int width, int height, int channels, 
 static void assert_refused(const char *path, const char *words)
 {
     img color = {0};
-    assert_int_equal(img_read(path, &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, NULL), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) print_error("%s\n", status_message());
     assert_non_null(strstr(status_message(), words));
     assert_null(color.data);

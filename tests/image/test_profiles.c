@@ -183,7 +183,7 @@ static void floats_of_a_profile_that_is_not_known_are_refused(void **state)
     img color = {0}, cover = {0};
     memcpy(profile.at + 132, "A2B0", 4); /* its first tag; what it points at does not matter */
     const char *path = write_tiff(&(picture){3, false, true, {0.8, 0.6, 0.4}}, &profile);
-    assert_int_equal(img_read(path, &color, &cover), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, &cover), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "colour profile"));
 }
 

@@ -214,7 +214,7 @@ static void raw_pictures_of_floats_are_balanced_and_upright(void **state)
     assert_colour(&image, 5, 5, orange, 1);
     img_free(&image);
     assert_int_equal(truncate(scratch_path("f.dng"), 9000), 0);
-    assert_int_equal(img_read(scratch_path("f.dng"), &image, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("f.dng"), &image, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "damaged or cut short"));
 }
 
@@ -230,15 +230,15 @@ static void damaged_and_unknown_ones_are_refused_in_one_line(void **state)
     (void)state;
     img image = {0};
     cut("short.dng", 9000);
-    assert_int_equal(img_read(scratch_path("short.dng"), &image, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("short.dng"), &image, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "damaged or cut short"));
     assert_null(image.data);
     cut("head.dng", 600);
-    assert_int_equal(img_read(scratch_path("head.dng"), &image, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("head.dng"), &image, NULL), MERLIN_BAD_INPUT);
     FILE *f = fopen(scratch_path("b.orf"), "wb");
     assert_non_null(f);
     assert_true(fprintf(f, "IIRO%4096d", 0) == 4100 && fclose(f) == 0);
-    assert_int_equal(img_read(scratch_path("b.orf"), &image, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("b.orf"), &image, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "raw picture"));
     assert_null(strchr(status_message(), '\n'));
 }

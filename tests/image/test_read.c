@@ -461,10 +461,10 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     img_free(&alpha);
     const exr_channel two[] = {{"R", picture.data, 1, false}, {"G", picture.data, 1, false}};
     assert_int_equal(exr_write(scratch_path("two.exr"), 5, 3, two, 2, NULL, 0), OK);
-    assert_int_equal(img_read(scratch_path("two.exr"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("two.exr"), &color, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "it has no channel B beside the others of R, G and B"));
     assert_int_equal(exr_write(scratch_path("depth.exr"), 5, 3, layer, 1, NULL, 0), OK);
-    assert_int_equal(img_read(scratch_path("depth.exr"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("depth.exr"), &color, NULL), MERLIN_BAD_INPUT);
     img_free(&picture);
 }
 
@@ -551,7 +551,7 @@ static void the_chromaticities_of_an_exr_are_honoured(void **state)
     assert_memory_equal(color.data, same, sizeof same); /* a measurement stays what it is */
     img_free(&color);
     write_view("view.exr", &window, &window, &none);
-    assert_int_equal(img_read(scratch_path("view.exr"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("view.exr"), &color, NULL), MERLIN_BAD_INPUT);
 }
 
 /* As programs crop their pictures to what is not black, and render more than is to be seen. */
@@ -663,7 +663,7 @@ static void one_pixel_is_a_picture(void **state)
 static void assert_refused(const char *path, const char *words)
 {
     img color = {0}, alpha = {0}, mask = {0};
-    assert_int_equal(img_read(path, &color, &alpha), ERROR_INPUT);
+    assert_int_equal(img_read(path, &color, &alpha), MERLIN_BAD_INPUT);
     const char *name = strrchr(path, '/') + 1;
     if (!strstr(status_message(), name) || !strstr(status_message(), words) || strchr(status_message(), '\n'))
         print_error("message: %s\n", status_message());
@@ -672,7 +672,7 @@ static void assert_refused(const char *path, const char *words)
     assert_null(strchr(status_message(), '\n'));
     assert_null(color.data);
     assert_null(alpha.data);
-    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    assert_int_equal(img_read_mask(path, &mask), MERLIN_BAD_INPUT);
     assert_null(mask.data);
 }
 
@@ -760,7 +760,7 @@ static void *read_damaged_often(void *context)
     (void)context;
     for (int i = 0; i < 900; i++) {
         img color = {0};
-        wrong += img_read(damaged[i % DAMAGED].path, &color, NULL) != ERROR_INPUT ||
+        wrong += img_read(damaged[i % DAMAGED].path, &color, NULL) != MERLIN_BAD_INPUT ||
                  strcmp(status_message(), damaged[i % DAMAGED].words) != 0;
         img_free(&color);
     }
@@ -781,7 +781,7 @@ static void every_thread_has_the_message_of_its_own_picture(void **state)
         put(names[k], data, size / 3);
         free(data);
         snprintf(damaged[k].path, sizeof damaged[k].path, "%s", scratch_path(names[k]));
-        assert_int_equal(img_read(damaged[k].path, &color, NULL), ERROR_INPUT);
+        assert_int_equal(img_read(damaged[k].path, &color, NULL), MERLIN_BAD_INPUT);
         snprintf(damaged[k].words, sizeof damaged[k].words, "%s", status_message());
     }
     for (int i = 0; i < 3; i++)
@@ -856,7 +856,7 @@ static void masks_in_ink_are_refused(void **state)
     (void)state;
     const char *path = save_quarters_in(VIPS_INTERPRETATION_CMYK, "ink.tif");
     img mask, color;
-    assert_int_equal(img_read_mask(path, &mask), ERROR_INPUT);
+    assert_int_equal(img_read_mask(path, &mask), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "ink.tif: its samples are cmyk"));
     assert_null(mask.data);
     assert_int_equal(img_read(path, &color, NULL), OK);

@@ -28,13 +28,13 @@ static void other_shapes_are_refused_by_name_and_size(void **state)
 {
     (void)state;
     img map = {0};
-    assert_int_equal(img_read_latlong(grey_picture("ball.png", 32, 32), &map), ERROR_INPUT);
+    assert_int_equal(img_read_latlong(grey_picture("ball.png", 32, 32), &map), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "ball.png is 32×32 pixels; a latitude-longitude picture"));
     assert_null(map.data);
-    assert_int_equal(img_read_latlong(grey_picture("cross.png", 64, 48), &map), ERROR_INPUT);
-    assert_int_equal(img_read_latlong(grey_picture("dot.png", 6, 3), &map), ERROR_INPUT);
+    assert_int_equal(img_read_latlong(grey_picture("cross.png", 64, 48), &map), MERLIN_BAD_INPUT);
+    assert_int_equal(img_read_latlong(grey_picture("dot.png", 6, 3), &map), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "8×4 at least"));
-    assert_int_equal(img_read_latlong(scratch_path("none.png"), &map), ERROR_INPUT);
+    assert_int_equal(img_read_latlong(scratch_path("none.png"), &map), MERLIN_BAD_INPUT);
 }
 
 int main(void)

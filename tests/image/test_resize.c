@@ -39,10 +39,10 @@ static void sizes_that_cannot_be_are_refused(void **state)
 {
     (void)state;
     img image;
-    assert_int_equal(img_new(&image, 0, 5, 1), ERROR_USAGE);
+    assert_int_equal(img_new(&image, 0, 5, 1), MERLIN_WRONG_USE);
     assert_null(image.data);
-    assert_int_equal(img_new(&image, 5, -1, 1), ERROR_USAGE);
-    assert_int_equal(img_new(&image, 0x7fffffff, 0x7fffffff, 0x7fffffff), ERROR_MEMORY);
+    assert_int_equal(img_new(&image, 5, -1, 1), MERLIN_WRONG_USE);
+    assert_int_equal(img_new(&image, 0x7fffffff, 0x7fffffff, 0x7fffffff), MERLIN_NO_MEMORY);
     assert_null(image.data);
     img_free(&image);
 }
@@ -230,10 +230,10 @@ static void guided_upsampling_refuses_sizes_that_do_not_fit(void **state)
 {
     (void)state;
     img low = make(4, 4, 1), guide = make(8, 8, 3), wrong = make(5, 4, 1), out;
-    assert_int_equal(img_guided_upsample(&low, &wrong, &guide, NULL, 1, 1e-3f, &out), ERROR_USAGE);
-    assert_int_equal(img_guided_upsample(&low, NULL, &guide, &wrong, 1, 1e-3f, &out), ERROR_USAGE);
-    assert_int_equal(img_guided_upsample(&low, NULL, &guide, NULL, 0, 1e-3f, &out), ERROR_USAGE);
-    assert_int_equal(img_guided_upsample(&low, NULL, &guide, NULL, 1, 0, &out), ERROR_USAGE);
+    assert_int_equal(img_guided_upsample(&low, &wrong, &guide, NULL, 1, 1e-3f, &out), MERLIN_WRONG_USE);
+    assert_int_equal(img_guided_upsample(&low, NULL, &guide, &wrong, 1, 1e-3f, &out), MERLIN_WRONG_USE);
+    assert_int_equal(img_guided_upsample(&low, NULL, &guide, NULL, 0, 1e-3f, &out), MERLIN_WRONG_USE);
+    assert_int_equal(img_guided_upsample(&low, NULL, &guide, NULL, 1, 0, &out), MERLIN_WRONG_USE);
     assert_null(out.data);
     img_free(&low);
     img_free(&guide);

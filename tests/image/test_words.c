@@ -146,10 +146,10 @@ static void an_unknown_curve_is_refused_by_its_numbers(void **state)
     const uint16_t codes[1] = {7};
     img color;
     write_png16(scratch_path("odd.png"), codes, 1, 1, &(png_words){.cicp = unknown});
-    assert_int_equal(img_read(scratch_path("odd.png"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("odd.png"), &color, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "transfer 9"));
     write_png16(scratch_path("odd.png"), codes, 1, 1, &(png_words){.cicp = chroma});
-    assert_int_equal(img_read(scratch_path("odd.png"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("odd.png"), &color, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "matrix 1"));
 }
 
@@ -238,7 +238,7 @@ static void pages_of_one_size_are_refused_for_which_is_meant(void **state)
     static const page two[] = {{8, 6, 1000, 0, false}, {8, 6, 2000, 0, false}};
     img color;
     write_pages(scratch_path("two.tif"), two, 2);
-    assert_int_equal(img_read(scratch_path("two.tif"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("two.tif"), &color, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "2 pages"));
 }
 
@@ -308,7 +308,7 @@ static void rows_too_long_to_hold_are_refused(void **state)
     (void)state;
     img color;
     write_wide_png(scratch_path("long.png"), 1000001, 1);
-    assert_int_equal(img_read(scratch_path("long.png"), &color, NULL), ERROR_INPUT);
+    assert_int_equal(img_read(scratch_path("long.png"), &color, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "1000001 x 1 pixels, more than 1000000 a side"));
     write_wide_png(scratch_path("long.png"), 1000000, 1);
     assert_int_equal(img_read(scratch_path("long.png"), &color, NULL), OK);

@@ -6,10 +6,10 @@
 #include <sys/stat.h>
 #include <vips/vips.h>
 
-#include "image/write/animation.h"
 #include "image/color.h"
-#include "image/write/figure.h"
 #include "image/read/read.h"
+#include "image/write/animation.h"
+#include "image/write/figure.h"
 #include "image/write/write.h"
 
 #include "writes.h"
@@ -135,14 +135,14 @@ static void animations_loop_with_their_frames_and_delays(void **state)
     static const char *const names[] = {"turn.webp", "turn.gif"};
     img_animation turn;
     assert_int_equal(img_animation_new(24, 16, 3, &turn), OK);
-    assert_int_equal(img_animation_write(&turn, scratch_path("none.gif"), 80), ERROR_USAGE);
+    assert_int_equal(img_animation_write(&turn, scratch_path("none.gif"), 80), MERLIN_WRONG_USE);
     img frame = make(24, 16, 3);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 24 * 16 * 3; k++)
             frame.data[k] = k / 3 % 24 / 8 == i;
         assert_int_equal(img_animation_add(&turn, &frame), OK);
     }
-    assert_int_equal(img_animation_add(&turn, &frame), ERROR_USAGE);
+    assert_int_equal(img_animation_add(&turn, &frame), MERLIN_WRONG_USE);
     for (int k = 0; k < 2; k++) {
         const char *path = scratch_path(names[k]);
         if (img_animation_write(&turn, path, 80) != OK) print_error("%s\n", status_message());
@@ -157,7 +157,7 @@ static void animations_loop_with_their_frames_and_delays(void **state)
         assert_int_equal(delays[1], 80);
         g_object_unref(image);
     }
-    assert_int_equal(img_animation_write(&turn, scratch_path("turn.mp4"), 80), ERROR_USAGE);
+    assert_int_equal(img_animation_write(&turn, scratch_path("turn.mp4"), 80), MERLIN_WRONG_USE);
     img_animation_free(&turn);
     img_free(&frame);
 }
@@ -168,28 +168,28 @@ static void failed_writes_leave_nothing_and_say_where(void **state)
     img image = make(4, 4, 3);
     const figure_tile tile = {"tile", &image};
     const char *path = scratch_path("no/such/place.png");
-    assert_int_equal(img_write_png(path, &image, IMG_SRGB8), ERROR_OUTPUT);
+    assert_int_equal(img_write_png(path, &image, IMG_SRGB8), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "place.png"));
     assert_null(strchr(status_message(), '~'));
     img_animation still;
     assert_int_equal(img_animation_new(4, 4, 1, &still), OK);
     assert_int_equal(img_animation_add(&still, &image), OK);
-    assert_int_equal(img_animation_write(&still, scratch_path("no/such/place.gif"), 80), ERROR_OUTPUT);
+    assert_int_equal(img_animation_write(&still, scratch_path("no/such/place.gif"), 80), MERLIN_CANNOT_WRITE);
     img_animation_free(&still);
-    assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), ERROR_OUTPUT);
+    assert_int_equal(figure_sheet(path, &tile, 1, 1, 32), MERLIN_CANNOT_WRITE);
     /* a folder in the file's place */
     assert_int_equal(file_make_folder(scratch_path("taken.png")), OK);
-    assert_int_equal(img_write_png(scratch_path("taken.png"), &image, IMG_SRGB8), ERROR_OUTPUT);
+    assert_int_equal(img_write_png(scratch_path("taken.png"), &image, IMG_SRGB8), MERLIN_CANNOT_WRITE);
     limit_file_size(32);
     status full = img_write_png(scratch_path("full.png"), &image, IMG_SRGB8);
     limit_file_size(0);
-    assert_int_equal(full, ERROR_OUTPUT);
+    assert_int_equal(full, MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "full.png"));
     assert_false(file_exists(scratch_path("full.png")));
     assert_false(folder_has_leftovers());
     assert_int_equal(rmdir(scratch_path("taken.png")), 0);
     image.channels = 2;
-    assert_int_equal(img_write_png(scratch_path("two.png"), &image, IMG_SRGB8), ERROR_USAGE);
+    assert_int_equal(img_write_png(scratch_path("two.png"), &image, IMG_SRGB8), MERLIN_WRONG_USE);
     image.channels = 3;
     img_free(&image);
 }
@@ -287,7 +287,7 @@ static void normals_and_depth_become_colours_inside_the_mask(void **state)
     assert_int_equal(figure_depth(&depth, NULL, &shown), OK);
     assert_true(shown.data[0] > 0.99f && shown.data[3] < 0.05f && shown.data[3] > 0);
     img_free(&shown);
-    assert_int_equal(figure_normals(&depth, NULL, &shown), ERROR_USAGE);
+    assert_int_equal(figure_normals(&depth, NULL, &shown), MERLIN_WRONG_USE);
     img_free(&normal);
     img_free(&depth);
     img_free(&mask);

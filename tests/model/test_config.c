@@ -39,7 +39,7 @@ static void refuses(const char *from, const char *to, const char *word)
 {
     model_config c;
     char *text = with(from, to);
-    assert_int_equal(parse(text, &c), ERROR_INPUT);
+    assert_int_equal(parse(text, &c), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "test.json"));
     if (!strstr(status_message(), word)) fail_msg("\"%s\" does not name %s", status_message(), word);
     free(text);
@@ -110,13 +110,13 @@ static void text_that_is_not_one_object_is_refused(void **unused)
 {
     (void)unused;
     model_config c;
-    assert_int_equal(parse("", &c), ERROR_INPUT);
-    assert_int_equal(parse("[1]", &c), ERROR_INPUT);
-    assert_int_equal(parse("{\"name\": ", &c), ERROR_INPUT);
+    assert_int_equal(parse("", &c), MERLIN_BAD_INPUT);
+    assert_int_equal(parse("[1]", &c), MERLIN_BAD_INPUT);
+    assert_int_equal(parse("{\"name\": ", &c), MERLIN_BAD_INPUT);
     char *text = with("96]}", "96]} {}");
-    assert_int_equal(parse(text, &c), ERROR_INPUT);
+    assert_int_equal(parse(text, &c), MERLIN_BAD_INPUT);
     free(text);
-    assert_int_equal(model_config_read("/nonexistent/x.json", &c), ERROR_INPUT);
+    assert_int_equal(model_config_read("/nonexistent/x.json", &c), MERLIN_BAD_INPUT);
 }
 
 static void light_code_has_3_or_30_values(void **unused)

@@ -295,7 +295,7 @@ static void models_without_the_decoder_have_no_part_for_it(void **unused)
     model_config c;
     nn_graph *g = NULL;
     read_config("table1-5", &c);
-    assert_int_equal(model_build(&c, MODEL_RELIGHT, &g), ERROR_USAGE);
+    assert_int_equal(model_build(&c, MODEL_RELIGHT, &g), MERLIN_WRONG_USE);
     assert_null(g);
 }
 

@@ -213,10 +213,10 @@ static void senseless_options_are_refused(void **state)
                                             {0.9f, 0.999f, 1e-8f, -1}};
     nn_adam *adam = NULL;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(nn_adam_new(params, &wrong[i], &adam), ERROR_USAGE);
+        assert_int_equal(nn_adam_new(params, &wrong[i], &adam), MERLIN_WRONG_USE);
     adam = adam_for(params, 0);
-    assert_int_equal(nn_adam_step(adam, -1), ERROR_USAGE);
-    assert_int_equal(nn_adam_step(adam, NAN), ERROR_USAGE);
+    assert_int_equal(nn_adam_step(adam, -1), MERLIN_WRONG_USE);
+    assert_int_equal(nn_adam_step(adam, NAN), MERLIN_WRONG_USE);
     nn_adam_free(adam);
     nn_params_free(params);
 }

@@ -20,7 +20,7 @@ static nn_node *compute_input(nn_graph *g, const char *name, int channels, int r
 static void assert_refused(nn_graph *g, const char *words)
 {
     nn_params *params;
-    assert_int_equal(nn_params_new(g, 1, &params), ERROR_USAGE);
+    assert_int_equal(nn_params_new(g, 1, &params), MERLIN_WRONG_USE);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
     nn_graph_free(g);
 }
@@ -174,10 +174,10 @@ static void sizes_that_do_not_divide_are_refused(void **state)
     nn_params *params;
     nn_program *p;
     assert_int_equal(nn_params_new(g, 7, &params), OK);
-    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 18, .width = 16}, &p), ERROR_USAGE);
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 18, .width = 16}, &p), MERLIN_WRONG_USE);
     assert_null(p);
     assert_non_null(strstr(status_message(), "multiple"));
-    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 0, .height = 16, .width = 16}, &p), ERROR_USAGE);
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 0, .height = 16, .width = 16}, &p), MERLIN_WRONG_USE);
     nn_params_free(params);
     nn_graph_free(g);
 }
@@ -190,7 +190,7 @@ static void parameters_of_another_graph_are_refused(void **state)
     nn_params *params;
     nn_program *p;
     assert_int_equal(nn_params_new(other, 7, &params), OK);
-    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 16, .width = 16}, &p), ERROR_USAGE);
+    assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 1, .height = 16, .width = 16}, &p), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "conv1"));
     nn_params_free(params);
     nn_graph_free(g);
@@ -207,7 +207,7 @@ static void a_program_outlives_its_graph(void **state)
     const nn_options options = {.batch = 2, .height = 16, .width = 8, .purpose = NN_TRAIN};
     assert_int_equal(nn_compile(g, params, &options, &p), OK);
     nn_graph_free(g);
-    assert_int_equal(nn_backward(p), ERROR_USAGE);
+    assert_int_equal(nn_backward(p), MERLIN_WRONG_USE);
     assert_non_null(nn_input_data(p, "unused"));
     assert_null(nn_input_data(p, "nothing"));
     assert_null(nn_output_data(p, "nothing"));

@@ -68,7 +68,7 @@ static void assert_refused(const st_tensor *tensors, size_t count, const char *w
 {
     nn_params *b = new_params(2), *untouched = new_params(2);
     assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
-    assert_int_equal(nn_params_load(b, path), ERROR_INPUT);
+    assert_int_equal(nn_params_load(b, path), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
     for (size_t i = 0; i < nn_params_count(b); i++)
         assert_memory_equal(nn_params_at(b, i)->value, nn_params_at(untouched, i)->value,
@@ -113,7 +113,7 @@ static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
     }
     assert_true(nn_params_at(b, 2)->value[0] == 42);
     assert_int_equal(st_write(path, tensors, 2, NULL, 0), OK);
-    assert_int_equal(nn_params_load_shared(b, path), ERROR_INPUT);
+    assert_int_equal(nn_params_load_shared(b, path), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no tensor fits"));
     nn_params_free(a);
     nn_params_free(b);
@@ -193,7 +193,7 @@ static void weights_kept_as_half_floats_give_the_same_bits(void **state)
     }
     nn_program *p;
     nn_options train = {.batch = 2, .height = SIZE, .width = SIZE, .purpose = NN_TRAIN};
-    assert_int_equal(nn_compile(g, halves, &train, &p), ERROR_USAGE);
+    assert_int_equal(nn_compile(g, halves, &train, &p), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "not for training"));
     nn_params_free(floats);
     nn_params_free(halves);

@@ -66,7 +66,7 @@ static void what_was_written_is_read(void **state)
     assert_true(out[0] == 1 && out[1] == -1);
     assert_int_equal(st_find(f, "empty")->count, 0);
     assert_int_equal(st_find(f, "step")->rank, 0);
-    assert_int_equal(st_to_float(st_find(f, "step"), out), ERROR_INPUT);
+    assert_int_equal(st_to_float(st_find(f, "step"), out), MERLIN_BAD_INPUT);
     assert_memory_equal(st_find(f, "step")->data, &number, sizeof number);
     assert_string_equal(st_metadata(f, "config"), "{\"name\": \"tiny\"}");
     assert_string_equal(st_metadata(f, "author"), "ä");
@@ -125,11 +125,11 @@ static void truncated_weights_are_refused(void **state)
         assert_non_null(part);
         memcpy(part, bytes, n);
         st_file *f = NULL;
-        assert_int_equal(st_parse(part, n, &f), ERROR_INPUT);
+        assert_int_equal(st_parse(part, n, &f), MERLIN_BAD_INPUT);
         free(part);
     }
     st_file *f = NULL;
-    assert_int_equal(st_parse(bytes, size - 3, &f), ERROR_INPUT);
+    assert_int_equal(st_parse(bytes, size - 3, &f), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "truncated"));
     free(bytes);
 }
@@ -142,7 +142,7 @@ static void altered_weights_are_refused(void **state)
     for (size_t i = size - 42; i < size; i++) {
         bytes[i] ^= 4;
         st_file *f = NULL;
-        assert_int_equal(st_parse(bytes, size, &f), ERROR_INPUT);
+        assert_int_equal(st_parse(bytes, size, &f), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "altered"));
         bytes[i] ^= 4;
     }
@@ -156,12 +156,12 @@ static void other_files_are_called_what_they_are(void **state)
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         assert_int_equal(file_write(path, others[i], strlen(others[i])), OK);
         st_file *f = NULL;
-        assert_int_equal(st_open(path, &f), ERROR_INPUT);
+        assert_int_equal(st_open(path, &f), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "not a safetensors file"));
         assert_non_null(strstr(status_message(), path));
     }
     st_file *f = NULL;
-    assert_int_equal(st_open("/nowhere/w.safetensors", &f), ERROR_INPUT);
+    assert_int_equal(st_open("/nowhere/w.safetensors", &f), MERLIN_BAD_INPUT);
 }
 
 /* A file with this header and so many bytes of zeros behind it. */
@@ -242,7 +242,7 @@ static void malformed_headers_are_refused(void **state)
          8}, /* an overlap */
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
-        if (parse_text(list[i].header, list[i].data) != ERROR_INPUT) fail_msg("taken: %s", list[i].header);
+        if (parse_text(list[i].header, list[i].data) != MERLIN_BAD_INPUT) fail_msg("taken: %s", list[i].header);
         const char *message = status_message();
         assert_true(strlen(message) > 10 && !strchr(message, '\n'));
     }
@@ -256,7 +256,7 @@ static void a_huge_header_is_refused(void **state)
     assert_non_null(header);
     memset(header, ' ', size);
     header[0] = '{', header[1] = '}', header[size - 1] = 0;
-    assert_int_equal(parse_text(header, 0), ERROR_INPUT);
+    assert_int_equal(parse_text(header, 0), MERLIN_BAD_INPUT);
     free(header);
 }
 
@@ -268,7 +268,7 @@ static void a_failed_write_leaves_the_old_file(void **state)
     st_tensor t = {"x", ST_F32, 1, {1}, 1, values};
     char *nowhere = file_join(path, "below-a-file");
     assert_non_null(nowhere);
-    assert_int_equal(st_write(nowhere, &t, 1, NULL, 0), ERROR_OUTPUT);
+    assert_int_equal(st_write(nowhere, &t, 1, NULL, 0), MERLIN_CANNOT_WRITE);
     assert_int_equal(file_read(path, 1 << 20, &again, &now), OK);
     assert_int_equal(size, now);
     assert_memory_equal(bytes, again, size);

@@ -263,20 +263,20 @@ static void pictures_without_a_ball_or_its_light_are_refused(void **state)
     pst_calibration c;
     for (int i = 0; i < 3; i++)
         write_flat((const char *[]){"0.png", "1.png", "2.png"}[i], 64, 64, 3, 0.5f, IMG_LINEAR16);
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("no ball is seen");
     scratch_close(state);
     scratch_open(state);
     write_balls(chrome, IMG_LINEAR16);
     write_flat("99.png", SIZE, SIZE, 1, 0, IMG_LINEAR16);
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: the ball found at 83, 77 with radius 5"); /* 58.6, and it is not rendered there to a pixel */
     assert_says("no highlight");
     write_mask();
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: no highlight");
     options.ball = PST_MATTE;
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: the ball is not lit");
 }
 
@@ -305,14 +305,14 @@ static void a_highlight_that_does_not_stand_out_is_refused(void **state)
     pst_calibration c;
     write_balls(chrome, IMG_LINEAR16);
     write_failed_flash("99.png");
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png");
     assert_says("no highlight on the ball stands out");
     scratch_close(state);
     scratch_open(state);
     write_balls(chrome_of_two_lamps, IMG_LINEAR16);
     write_mask();
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), ERROR_INPUT);
+    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("no highlight on the ball stands out");
 }
 

@@ -19,7 +19,7 @@ static void three_pictures(img_encoding encoding)
 static void assert_refused(const pst_read_options *options, const char *words)
 {
     pst_capture c;
-    assert_int_equal(pst_capture_read(scratch, options, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, options, &c), MERLIN_BAD_INPUT);
     assert_says(words);
     assert_null(c.picture);
     assert_null(c.light);
@@ -293,7 +293,7 @@ static void a_distance_is_of_a_camera_that_is_known(void **state)
     three_pictures(IMG_LINEAR16);
     pst_capture c;
     pst_read_options options = {.distance = 450};
-    assert_int_equal(pst_capture_read(scratch, &options, &c), ERROR_USAGE);
+    assert_int_equal(pst_capture_read(scratch, &options, &c), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "field of view is known"));
     options.field_of_view = 90;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
@@ -586,7 +586,7 @@ static void what_does_not_fit_is_refused_in_one_line(void **state)
 {
     (void)state;
     pst_capture c;
-    assert_int_equal(pst_capture_read("/nowhere", &PLAIN, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read("/nowhere", &PLAIN, &c), MERLIN_BAD_INPUT);
     assert_says("/nowhere");
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
     assert_refused(&PLAIN, "no pictures in");

@@ -46,9 +46,9 @@ static void put(scene *s, int x, int y, vec3 n, float depth)
 static pinhole camera_of(int width, int height)
 {
     return (pinhole){.perspective = true,
-                        .focal = (float)width / (2 * tanf(0.5235988f)),
-                        .center_x = (float)width / 2,
-                        .center_y = (float)height / 2};
+                     .focal = (float)width / (2 * tanf(0.5235988f)),
+                     .center_x = (float)width / 2,
+                     .center_y = (float)height / 2};
 }
 
 /* Largest error after the constant (orthographic) or the scale (perspective) is taken from the truth's mean. */
@@ -402,12 +402,12 @@ static void what_makes_no_sense_is_refused(void **state)
     (void)state;
     scene s = scene_new(8, 8), other = scene_new(9, 8);
     img depth;
-    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){0}, &depth), ERROR_INPUT);
-    assert_int_equal(pst_integrate(&s.normal, &other.mask, &s.camera, &(pst_integration){0}, &depth), ERROR_USAGE);
+    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){0}, &depth), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_integrate(&s.normal, &other.mask, &s.camera, &(pst_integration){0}, &depth), MERLIN_WRONG_USE);
     pst_integration foreign = {.prior = &s.depth, .prior_weight = 1, .trust = &other.depth};
-    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &foreign, &depth), ERROR_USAGE);
+    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &foreign, &depth), MERLIN_WRONG_USE);
     s.camera.perspective = true;
-    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){0}, &depth), ERROR_USAGE);
+    assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){0}, &depth), MERLIN_WRONG_USE);
     assert_null(depth.data);
     scene_free(&s);
     scene_free(&other);

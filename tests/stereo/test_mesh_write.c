@@ -15,8 +15,8 @@
 #include "base/file.h"
 #include "image/read/read.h"
 #include "image/resize.h"
-#include "scratch.h"
 #include "mesh/write/mesh_write.h"
+#include "scratch.h"
 
 #include <cmocka.h>
 
@@ -234,7 +234,7 @@ static void a_texture_may_be_finer_than_the_shape(void **state)
     s.source.albedo = &fine;
     assert_int_equal(pst_mesh_write(scratch_path("fine.glb"), &s.source), OK);
     check_mesh(scratch_path("fine.glb"), false, true);
-    assert_int_equal(pst_mesh_write(scratch_path("fine.ply"), &s.source), ERROR_USAGE);
+    assert_int_equal(pst_mesh_write(scratch_path("fine.ply"), &s.source), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("fine.ply")));
     img_free(&fine);
     sheet_free(&s);
@@ -245,11 +245,11 @@ static void what_cannot_be_a_mesh_is_refused(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, true);
-    assert_int_equal(pst_mesh_write(scratch_path("e.stl"), &s.source), ERROR_USAGE);
-    assert_int_equal(pst_mesh_write("/proc/merlin.ply", &s.source), ERROR_OUTPUT);
-    assert_int_equal(pst_mesh_write("/proc/merlin.glb", &s.source), ERROR_OUTPUT);
+    assert_int_equal(pst_mesh_write(scratch_path("e.stl"), &s.source), MERLIN_WRONG_USE);
+    assert_int_equal(pst_mesh_write("/proc/merlin.ply", &s.source), MERLIN_CANNOT_WRITE);
+    assert_int_equal(pst_mesh_write("/proc/merlin.glb", &s.source), MERLIN_CANNOT_WRITE);
     memset(s.mask.data, 0, sizeof(float) * WIDTH * HEIGHT);
-    assert_int_equal(pst_mesh_write(scratch_path("e.ply"), &s.source), ERROR_INPUT);
+    assert_int_equal(pst_mesh_write(scratch_path("e.ply"), &s.source), MERLIN_BAD_INPUT);
     assert_false(file_exists(scratch_path("e.ply")));
     sheet_free(&s);
 }

@@ -142,7 +142,7 @@ static void near_lights_whose_distance_nothing_tells_are_refused(void **state)
     (void)state;
     pst_capture c;
     ball_capture(&c, true, true, 1);
-    assert_int_equal(pst_place_lights(&c, NULL), ERROR_INPUT);
+    assert_int_equal(pst_place_lights(&c, NULL), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--distance"));
     pst_capture_free(&c);
     /* but a dome's radius for a unit is the distance of nothing else */

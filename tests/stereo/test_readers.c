@@ -97,7 +97,7 @@ static void matlab_arrays_are_read(void **state)
         assert_int_equal(a.size[2], 3);
         assert_float_equal(a.data[array_at(&a, 3, 1, 2)], 213, 0);
         array_free(&a);
-        assert_int_equal(mat_parse((char *)file.at, file.size, "n.mat", "Depth", &a), ERROR_INPUT);
+        assert_int_equal(mat_parse((char *)file.at, file.size, "n.mat", "Depth", &a), MERLIN_BAD_INPUT);
         assert_says("no variable Depth");
     }
 }
@@ -141,7 +141,7 @@ static void numpy_archives_are_read(void **state)
         assert_int_equal(a.size[1], 3);
         assert_float_equal(a.data[array_at(&a, 1, 2, 0)], 2.5, 0);
         array_free(&a);
-        assert_int_equal(npz_parse((char *)file.at, file.size, "z.npz", "depth", &a), ERROR_INPUT);
+        assert_int_equal(npz_parse((char *)file.at, file.size, "z.npz", "depth", &a), MERLIN_BAD_INPUT);
         assert_says("no array depth");
     }
 }
@@ -159,7 +159,7 @@ static void headers_that_promise_too_much_are_refused(void **state)
         bytes file;
         number_array a;
         make_npz(true, headers[i], &file);
-        assert_int_equal(npz_parse((char *)file.at, file.size, "z.npz", "zgt", &a), ERROR_INPUT);
+        assert_int_equal(npz_parse((char *)file.at, file.size, "z.npz", "zgt", &a), MERLIN_BAD_INPUT);
         assert_says("z.npz");
         assert_null(a.data);
     }
@@ -190,7 +190,7 @@ static void files_cut_anywhere_are_refused(void **state)
         array_free(&a);
         /* zlib's checksum, the last four bytes of a compressed variable, comes after all numbers */
         for (size_t size = 0; size + 5 < file.size; size++) {
-            assert_int_equal(parse_cut(matlab, &file, size, &a), ERROR_INPUT);
+            assert_int_equal(parse_cut(matlab, &file, size, &a), MERLIN_BAD_INPUT);
             assert_null(a.data);
         }
     }
@@ -266,7 +266,7 @@ static void damaged_led_files_are_refused(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         luces_params p;
-        assert_int_equal(parse_leds(cases[i].text, &p), ERROR_INPUT);
+        assert_int_equal(parse_leds(cases[i].text, &p), MERLIN_BAD_INPUT);
         assert_says(cases[i].words);
         assert_null(p.light);
     }
@@ -313,11 +313,11 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
     assert_float_equal(*img_at(&c.depth_true, 2, 1), 2.5, 0);
     pst_capture_free(&c);
     make_luces(4);
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("01.png is 4 x 2");
     make_luces(3);
     unlink(scratch_path("02.png"));
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("1 numbered picture, but led_params.txt has 2 lights");
 }
 
@@ -340,7 +340,7 @@ static void raw_mosaics_of_luces_are_refused(void **state)
     assert_int_equal(file_make_folder(scratch_path("RAW")), OK);
     write_text("RAW/led_params.txt", "header\n1 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n");
     write_flat("RAW/01.png", 3, 2, 1, 0.5f, IMG_LINEAR16);
-    assert_int_equal(pst_capture_read(scratch_path("RAW/"), NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch_path("RAW/"), NULL, &c), MERLIN_BAD_INPUT);
     assert_says("mosaics");
 }
 
@@ -370,13 +370,13 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     assert_string_equal(c.name[0], "001.png");
     pst_capture_free(&c);
     write_text("filenames.txt", "001.png\n003.png\n");
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("names 003.png");
     write_text("filenames.txt", "001.png\n../001.png\n");
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("not a plain file name");
     write_text("filenames.txt", "001.png\n");
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("names 1 picture, but");
 }
 
@@ -414,7 +414,7 @@ static void a_diligent_folder_needs_no_list_of_names(void **state)
     assert_float_equal(c.light[1].intensity[1], 5, 0);
     pst_capture_free(&c);
     unlink(scratch_path("10.png"));
-    assert_int_equal(pst_capture_read(scratch, NULL, &c), ERROR_INPUT);
+    assert_int_equal(pst_capture_read(scratch, NULL, &c), MERLIN_BAD_INPUT);
     assert_says("1 picture, but");
     assert_says("light_directions.txt has 2 lights");
     /* another list of lights was meant for this program */

@@ -398,7 +398,7 @@ static void unknown_lights_of_unequal_strength_need_one_albedo(void **state)
             print_message("uncalibrated sphere of one albedo, unequal lights: %.2f degrees\n", angle);
             assert_true(angle < 3);
         } else {
-            assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+            assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
             assert_non_null(strstr(status_message(), "not equally strong"));
         }
         capture_drop(&c);

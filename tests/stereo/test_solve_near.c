@@ -52,8 +52,7 @@ static float ball_capture(pst_capture *c, float specular)
 {
     capture_new(c, SIZE, LIGHTS, 1);
     c->lighting = PST_NEAR;
-    c->camera =
-        (pinhole){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
+    c->camera = (pinhole){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
     for (int k = 0; k < LIGHTS; k++) {
         c->light[k].position = led_position(k);
         c->light[k].direction = vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k)));
@@ -234,7 +233,7 @@ static void near_lights_on_a_line_are_refused(void **state)
         float along = 2 * (float)k / (LIGHTS - 1) - 1;
         c.light[k].position = vec3_make(300 * along, 200, -100 + 3 * (float)(k % 2));
     }
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "on one line"));
     capture_drop(&c);
 }
@@ -246,7 +245,7 @@ static void a_near_capture_without_focal_length_is_refused(void **state)
     pst_surface s;
     ball_capture(&c, 0);
     c.camera.focal = 0;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), ERROR_USAGE);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "focal length"));
     capture_drop(&c);
 }

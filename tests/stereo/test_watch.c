@@ -74,9 +74,9 @@ static void work_that_nobody_waits_for_any_more_stops(void **state)
     pst_surface found;
     relief_capture(&how, &c);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &found), ERROR_STOPPED);
+        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &found), MERLIN_STOPPED);
     assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &found), OK);
-    assert_int_equal(pst_surface_integrate(&c, true, true, &w, &found), ERROR_STOPPED);
+    assert_int_equal(pst_surface_integrate(&c, true, true, &w, &found), MERLIN_STOPPED);
     assert_int_equal(pst_surface_integrate(&c, true, true, NULL, &found), OK);
     assert_true(told > 0);
     pst_surface_free(&found);

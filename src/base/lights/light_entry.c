@@ -29,11 +29,12 @@ static status take_number(const light_table *t, const light_words *w, size_t k, 
     const text_word *word = w->number[k];
     int length = word->length < 40 ? (int)word->length : 40;
     if (word->kind != TEXT_NUMBER)
-        return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", t->where, w->line, length, word->at);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number", t->where, w->line, length, word->at);
     if (k < 3 && !(fabs(word->value) <= LARGEST))
-        return fail(ERROR_INPUT, "%s:%d: %.*s is out of range (±%g)", t->where, w->line, length, word->at, LARGEST);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: %.*s is out of range (±%g)", t->where, w->line, length, word->at,
+                    LARGEST);
     if (k >= 3 && !(word->value > 0 && word->value < BRIGHTEST))
-        return fail(ERROR_INPUT, "%s:%d: an intensity must be above zero, not %.*s", t->where, w->line, length,
+        return fail(MERLIN_BAD_INPUT, "%s:%d: an intensity must be above zero, not %.*s", t->where, w->line, length,
                     word->at);
     *out = (float)word->value;
     return OK;
@@ -42,7 +43,7 @@ static status take_number(const light_table *t, const light_words *w, size_t k, 
 static status take_name(const light_words *w, char **out)
 {
     *out = strndup(w->name ? w->name : "", w->name ? w->name_length : 0);
-    return *out ? OK : fail(ERROR_MEMORY, "no memory for a name");
+    return *out ? OK : fail(MERLIN_NO_MEMORY, "no memory for a name");
 }
 
 status light_table_add(light_table *t, const light_words *w)

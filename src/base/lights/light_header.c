@@ -181,7 +181,7 @@ static status take_words(const light_table *t, const header *h, const text_row *
         const field *f = &fields[h->place[wanted[k]]];
         w->number[k] = number_in(f);
         if (!w->number[k] || w->number[k]->kind == TEXT_WORD)
-            return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", t->where, r->line,
+            return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number", t->where, r->line,
                         (int)(f->length < 40 ? f->length : 40), f->at);
     }
     column named = h->known[COLUMN_NAME] ? COLUMN_NAME : COLUMN_INDEX;
@@ -198,15 +198,16 @@ static status turn_angles(const light_table *t, const header *h, bool far, light
     for (size_t i = 0; i < list->count; i++)
         large = large || fabs((double)list->at[i].x) > 2 * M_PI + 1e-3 || fabs((double)list->at[i].y) > M_PI_2 + 1e-3;
     if (h->radians && large)
-        return fail(ERROR_INPUT, "%s: its header says radians, but it has angles beyond a whole turn", t->where);
+        return fail(MERLIN_BAD_INPUT, "%s: its header says radians, but it has angles beyond a whole turn", t->where);
     if (!h->radians && !h->degrees)
-        return fail(ERROR_INPUT, "%s: its header names angles, but no unit; write \"azimuth deg, elevation deg\"",
+        return fail(MERLIN_BAD_INPUT, "%s: its header names angles, but no unit; write \"azimuth deg, elevation deg\"",
                     t->where);
     double unit = h->degrees ? DEGREE : 1;
     for (size_t i = 0; i < list->count; i++) {
         vec3 *v = &list->at[i];
         double azimuth = (double)v->x * unit, elevation = (double)v->y * unit, distance = far ? (double)v->z : 1;
-        if (!(distance > 0)) return fail(ERROR_INPUT, "%s:%d: the distance is not above zero", t->where, list->line[i]);
+        if (!(distance > 0))
+            return fail(MERLIN_BAD_INPUT, "%s:%d: the distance is not above zero", t->where, list->line[i]);
         *v = vec3_make((real)(distance * cos(elevation) * cos(azimuth)),
                        (real)(distance * cos(elevation) * sin(azimuth)), (real)(distance * sin(elevation)));
     }
@@ -283,10 +284,10 @@ status light_table_by_header(light_table *t, bool *done)
     }
     if (t->header->comment || h.count > MOST_COLUMNS || may_be_title(&h)) return OK;
     if (axes || angles)
-        return fail(ERROR_INPUT, "%s:%d: the header has %zu columns, but not all lines have as many", t->where,
+        return fail(MERLIN_BAD_INPUT, "%s:%d: the header has %zu columns, but not all lines have as many", t->where,
                     t->header->line, h.count);
     return fail(
-        ERROR_INPUT,
+        MERLIN_BAD_INPUT,
         "%s:%d: angles of the names in this header are counted in several ways; name them azimuth (from x toward "
         "y) and elevation (from the picture's plane), with \"deg\", or list x y z",
         t->where, t->header->line);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads lists of lights: the lines before the lights, and the list as a whole; base/lights/light_table.h has its columns. */
+/* Reads lists of lights: the lines before the lights, and the list as a whole; base/lights/light_table.h has its
+ * columns. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,10 +44,10 @@ static status take_count(light_table *t, const text_row *r)
     const text_word *w = r->word;
     int length = w->length < 40 ? (int)w->length : 40;
     if (!is_whole(w) || !(w->value >= 1))
-        return fail(ERROR_INPUT, "%s:%d: expected x y z or a count of lights, found \"%.*s\"", t->where, r->line,
+        return fail(MERLIN_BAD_INPUT, "%s:%d: expected x y z or a count of lights, found \"%.*s\"", t->where, r->line,
                     length, w->at);
     if (w->value > LIGHT_LIST_MAX)
-        return fail(ERROR_INPUT, "%s:%d: %.*s lights are more than %d", t->where, r->line, length, w->at,
+        return fail(MERLIN_BAD_INPUT, "%s:%d: %.*s lights are more than %d", t->where, r->line, length, w->at,
                     LIGHT_LIST_MAX);
     t->announced = (long)w->value;
     return OK;
@@ -79,7 +80,7 @@ static status make_room(light_list *list, size_t count)
     list->intensity = calloc(count, sizeof *list->intensity);
     list->line = calloc(count, sizeof *list->line);
     if (list->at && list->name && list->intensity && list->line) return OK;
-    return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
 }
 
 static bool has_names(const light_list *list)
@@ -94,7 +95,7 @@ static status check_names(const light_table *t)
     const light_list *list = t->list;
     for (size_t i = 0; i < list->count; i++)
         if (!list->name[i][0])
-            return fail(ERROR_INPUT, "%s:%d: no name of a picture, where other lines have one", t->where,
+            return fail(MERLIN_BAD_INPUT, "%s:%d: no name of a picture, where other lines have one", t->where,
                         list->line[i]);
     return OK;
 }
@@ -119,7 +120,7 @@ static status check_directions(const light_table *t)
     const light_list *list = t->list;
     for (size_t i = 0; i < list->count; i++)
         if (!(vec3_length(list->at[i]) > (real)1e-6))
-            return fail(ERROR_INPUT, "%s:%d: the direction has no length", t->where, list->line[i]);
+            return fail(MERLIN_BAD_INPUT, "%s:%d: the direction has no length", t->where, list->line[i]);
     return OK;
 }
 
@@ -129,7 +130,7 @@ static status check_count(const light_table *t)
     const light_list *list = t->list;
     if (t->announced == 0 || (size_t)t->announced == list->count) return OK;
     const char *name = list->name ? list->name[list->count - 1] : "";
-    return fail(ERROR_INPUT, "%s: the first line says %ld light%s, but there %s %zu%s%.80s: correct that number",
+    return fail(MERLIN_BAD_INPUT, "%s: the first line says %ld light%s, but there %s %zu%s%.80s: correct that number",
                 t->where, t->announced, t->announced == 1 ? "" : "s", list->count == 1 ? "is" : "are", list->count,
                 *name ? ", the last one for " : "", name);
 }
@@ -159,19 +160,19 @@ static status take_lights(light_table *t)
 static status without_comments(const light_table *t, text_row **out)
 {
     text_row *kept = malloc((t->count + 1) * sizeof *kept);
-    if (!kept) return fail(ERROR_MEMORY, "no memory for %s", t->where);
+    if (!kept) return fail(MERLIN_NO_MEMORY, "no memory for %s", t->where);
     size_t count = 0;
     for (size_t i = 0; i < t->count; i++)
         if (!t->row[i].comment) kept[count++] = t->row[i];
     *out = kept;
-    return count <= LIGHT_LIST_MAX ? OK : fail(ERROR_INPUT, "%s: more than %d lights", t->where, LIGHT_LIST_MAX);
+    return count <= LIGHT_LIST_MAX ? OK : fail(MERLIN_BAD_INPUT, "%s: more than %d lights", t->where, LIGHT_LIST_MAX);
 }
 
 static status take_rows(const text_rows *rows, const char *where, light_list *out)
 {
     light_table t = {.where = where, .row = rows->row, .count = rows->count, .list = out};
     status s = take_head(&t);
-    if (s == OK && t.count == 0) s = fail(ERROR_INPUT, "%s: no lights in it (expected x y z a line)", where);
+    if (s == OK && t.count == 0) s = fail(MERLIN_BAD_INPUT, "%s: no lights in it (expected x y z a line)", where);
     text_row *kept = NULL;
     if (s == OK) s = without_comments(&t, &kept);
     if (s == OK) {

@@ -54,15 +54,15 @@ static status refuse_row(const light_table *t, const text_row *r)
         const text_word *w = &r->word[i];
         bool beside = is_number_like(&r->word[i - 1]) || (i + 1 < r->count && is_number_like(&r->word[i + 1]));
         if (r->count >= 3 && !is_number_like(w) && beside)
-            return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number; expected x y z", t->where, r->line,
+            return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number; expected x y z", t->where, r->line,
                         (int)(w->length < 40 ? w->length : 40), w->at);
     }
     if (r->count == 2 && is_all_numbers(r))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s:%d: expected x y z, found 2 numbers; angles want a line before them that says \"azimuth deg, "
                     "elevation deg\"",
                     t->where, r->line);
-    return fail(ERROR_INPUT, "%s:%d: expected x y z, found %zu word%s", t->where, r->line, r->count,
+    return fail(MERLIN_BAD_INPUT, "%s:%d: expected x y z, found %zu word%s", t->where, r->line, r->count,
                 r->count == 1 ? "" : "s");
 }
 
@@ -102,7 +102,8 @@ static status add_columns(light_table *t, size_t first)
 {
     const text_row *r = t->row;
     size_t n = r[0].count - first;
-    if (n > LIGHT_LIST_MAX) return fail(ERROR_INPUT, "%s: %zu lights are more than %d", t->where, n, LIGHT_LIST_MAX);
+    if (n > LIGHT_LIST_MAX)
+        return fail(MERLIN_BAD_INPUT, "%s: %zu lights are more than %d", t->where, n, LIGHT_LIST_MAX);
     status s = OK;
     for (size_t k = first; k < first + n && s == OK; k++) {
         light_words w = {.number = {&r[0].word[k], &r[1].word[k], &r[2].word[k]}, .count = 3, .line = r[0].line};
@@ -155,7 +156,7 @@ static status by_columns(light_table *t, bool *done)
         bool units = has_unit_rows(t);
         columns = has_unit_columns(t, 0, n);
         if (units == columns)
-            return fail(ERROR_INPUT,
+            return fail(MERLIN_BAD_INPUT,
                         "%s: 3 lines of %zu numbers may be 3 lights with strengths or %zu lights in columns; write x y "
                         "z a line",
                         t->where, n, n);
@@ -187,7 +188,7 @@ static void set_name(light_words *w, const text_row *r, size_t first, size_t end
 static status have_distinct_names(const light_table *t, bool *distinct)
 {
     light_words *all = calloc(t->count, sizeof *all);
-    if (!all) return fail(ERROR_MEMORY, "no memory for %zu names", t->count);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu names", t->count);
     for (size_t i = 0; i < t->count; i++)
         set_name(&all[i], &t->row[i], 0, run_of(&t->row[i]).first);
     qsort(all, t->count, sizeof *all, by_text);
@@ -264,7 +265,7 @@ static status of_words(const light_table *t, size_t n, columns *out)
 static status refuse_other_columns(const light_table *t, const text_row *r)
 {
     if (r->count < 3 || run_of(r).count < 3) return refuse_row(t, r);
-    return fail(ERROR_INPUT, "%s:%d: %zu words, where the first light has %zu; expected x y z", t->where, r->line,
+    return fail(MERLIN_BAD_INPUT, "%s:%d: %zu words, where the first light has %zu; expected x y z", t->where, r->line,
                 r->count, t->row[0].count);
 }
 
@@ -349,12 +350,13 @@ static status check_strengths(const light_table *t, const columns *c)
     for (size_t i = 0; i < t->count; i++) {
         const text_row *r = &t->row[i];
         if (r->mixed)
-            return fail(ERROR_INPUT, "%s:%d: commas part some of the numbers and blanks others; write decimal points",
-                        t->where, r->line);
+            return fail(MERLIN_BAD_INPUT,
+                        "%s:%d: commas part some of the numbers and blanks others; write decimal points", t->where,
+                        r->line);
         pairs = pairs && are_pairs(&r->word[first_number(r, c)]);
     }
     if (!pairs) return OK;
-    return fail(ERROR_INPUT, "%s:%d: are these six numbers or three with decimal commas? write decimal points",
+    return fail(MERLIN_BAD_INPUT, "%s:%d: are these six numbers or three with decimal commas? write decimal points",
                 t->where, t->row[0].line);
 }
 

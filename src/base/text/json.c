@@ -19,18 +19,18 @@ status json_parse(const char *text, size_t size, const char *where, json_object 
 {
     *out = NULL;
     json_object *o = calloc(1, sizeof *o);
-    if (!o) return fail(ERROR_MEMORY, "%s: out of memory", where);
+    if (!o) return fail(MERLIN_NO_MEMORY, "%s: out of memory", where);
     strncpy(o->where, where, JSON_WHERE - 1);
     const char *end = NULL;
     o->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
     status s = OK;
     if (!o->root) {
         size_t at = end && end >= text ? (size_t)(end - text) : 0;
-        s = fail(ERROR_INPUT, "%s is not JSON (near byte %zu)", where, at);
+        s = fail(MERLIN_BAD_INPUT, "%s is not JSON (near byte %zu)", where, at);
     } else if (!cJSON_IsObject(o->root)) {
-        s = fail(ERROR_INPUT, "%s: the outermost value must be an object", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: the outermost value must be an object", where);
     } else if (!only_space(end, text + size)) {
-        s = fail(ERROR_INPUT, "%s: there is text behind the JSON object", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: there is text behind the JSON object", where);
     }
     if (s != OK) {
         json_free(o);
@@ -59,10 +59,10 @@ static status find(json_object *o, const char *key, const cJSON **out)
     cJSON_ArrayForEach(item, o->root)
     {
         if (strcmp(item->string, key) != 0) continue;
-        if (*out) return fail(ERROR_INPUT, "%s: \"%s\" is given twice", o->where, key);
+        if (*out) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" is given twice", o->where, key);
         *out = item;
     }
-    if (!*out) return fail(ERROR_INPUT, "%s: \"%s\" is missing", o->where, key);
+    if (!*out) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" is missing", o->where, key);
     if (o->asked_count < JSON_KEYS) o->asked[o->asked_count++] = *out;
     return OK;
 }
@@ -70,9 +70,9 @@ static status find(json_object *o, const char *key, const cJSON **out)
 static status read_number(const json_object *o, const cJSON *item, const char *key, double low, double high,
                           double *out)
 {
-    if (!cJSON_IsNumber(item)) return fail(ERROR_INPUT, "%s: \"%s\" must be a number", o->where, key);
+    if (!cJSON_IsNumber(item)) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be a number", o->where, key);
     if (!(item->valuedouble >= low && item->valuedouble <= high))
-        return fail(ERROR_INPUT, "%s: \"%s\" must be between %g and %g", o->where, key, low, high);
+        return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be between %g and %g", o->where, key, low, high);
     *out = item->valuedouble;
     return OK;
 }
@@ -82,7 +82,7 @@ static status read_int(const json_object *o, const cJSON *item, const char *key,
     double value = 0;
     status s = read_number(o, item, key, low, high, &value);
     if (s != OK) return s;
-    if (value != floor(value)) return fail(ERROR_INPUT, "%s: \"%s\" must be a whole number", o->where, key);
+    if (value != floor(value)) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be a whole number", o->where, key);
     *out = (int)value;
     return OK;
 }
@@ -123,7 +123,7 @@ status json_bool(json_object *o, const char *key, bool *out)
     const cJSON *item;
     status s = find(o, key, &item);
     if (s != OK) return s;
-    if (!cJSON_IsBool(item)) return fail(ERROR_INPUT, "%s: \"%s\" must be true or false", o->where, key);
+    if (!cJSON_IsBool(item)) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be true or false", o->where, key);
     *out = cJSON_IsTrue(item) != 0;
     return OK;
 }
@@ -133,10 +133,10 @@ status json_text(json_object *o, const char *key, char *out, size_t capacity)
     const cJSON *item;
     status s = find(o, key, &item);
     if (s != OK) return s;
-    if (!cJSON_IsString(item)) return fail(ERROR_INPUT, "%s: \"%s\" must be text", o->where, key);
+    if (!cJSON_IsString(item)) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be text", o->where, key);
     size_t length = strlen(item->valuestring);
     if (length == 0 || length >= capacity)
-        return fail(ERROR_INPUT, "%s: \"%s\" must have 1 to %zu characters", o->where, key, capacity - 1);
+        return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must have 1 to %zu characters", o->where, key, capacity - 1);
     memcpy(out, item->valuestring, length + 1);
     return OK;
 }
@@ -154,7 +154,7 @@ status json_choice(json_object *o, const char *key, const char *const *words, in
         strncat(list, i ? ", " : "", sizeof list - strlen(list) - 1);
         strncat(list, words[i], sizeof list - strlen(list) - 1);
     }
-    return fail(ERROR_INPUT, "%s: \"%s\" must be one of: %s", o->where, key, list);
+    return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be one of: %s", o->where, key, list);
 }
 
 status json_ints(json_object *o, const char *key, int low, int high, int count, int *out)
@@ -163,7 +163,7 @@ status json_ints(json_object *o, const char *key, int low, int high, int count, 
     status s = find(o, key, &item);
     if (s != OK) return s;
     if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) != count)
-        return fail(ERROR_INPUT, "%s: \"%s\" must be an array of %d numbers", o->where, key, count);
+        return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be an array of %d numbers", o->where, key, count);
     const cJSON *element;
     cJSON_ArrayForEach(element, item)
     {
@@ -187,9 +187,9 @@ status json_inner(json_object *o, const char *key, char **text)
     *text = NULL;
     status s = find(o, key, &item);
     if (s != OK) return s;
-    if (!cJSON_IsObject(item)) return fail(ERROR_INPUT, "%s: \"%s\" must be an object", o->where, key);
+    if (!cJSON_IsObject(item)) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be an object", o->where, key);
     *text = cJSON_PrintUnformatted(item);
-    return *text ? OK : fail(ERROR_MEMORY, "%s: out of memory", o->where);
+    return *text ? OK : fail(MERLIN_NO_MEMORY, "%s: out of memory", o->where);
 }
 
 status json_finish(json_object *o)
@@ -200,7 +200,7 @@ status json_finish(json_object *o)
         bool known = false;
         for (int i = 0; i < o->asked_count; i++)
             known = known || o->asked[i] == item;
-        if (!known) return fail(ERROR_INPUT, "%s: \"%s\" is not a known key", o->where, item->string);
+        if (!known) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" is not a known key", o->where, item->string);
     }
     return OK;
 }

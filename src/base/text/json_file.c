@@ -21,11 +21,11 @@ static status check_way(const link *at)
     int deep = 1;
     for (const link *above = at->parent; above; above = above->parent) {
         if (file_is_same(above->path, at->path))
-            return fail(ERROR_INPUT, "%s: \"%s\" leads in a circle, back to %s", at->parent->path, at->key,
+            return fail(MERLIN_BAD_INPUT, "%s: \"%s\" leads in a circle, back to %s", at->parent->path, at->key,
                         above->path);
         if (++deep > JSON_FILES_DEEP)
-            return fail(ERROR_INPUT, "%s: \"%s\" would be the %dth file on one another, %d may be", at->parent->path,
-                        at->key, deep, JSON_FILES_DEEP);
+            return fail(MERLIN_BAD_INPUT, "%s: \"%s\" would be the %dth file on one another, %d may be",
+                        at->parent->path, at->key, deep, JSON_FILES_DEEP);
     }
     return OK;
 }
@@ -37,7 +37,7 @@ static status check_once(const json_object *o, const cJSON *object)
     {
         for (const cJSON *other = item->next; other; other = other->next)
             if (strcmp(item->string, other->string) == 0)
-                return fail(ERROR_INPUT, "%s: \"%s\" is given twice", o->where, item->string);
+                return fail(MERLIN_BAD_INPUT, "%s: \"%s\" is given twice", o->where, item->string);
         status s = cJSON_IsObject(item) ? check_once(o, item) : OK;
         if (s != OK) return s;
     }
@@ -79,7 +79,7 @@ static status load_named(const link *at, const cJSON *item, const char *part, js
     const char *name = item->valuestring;
     char *folder = file_folder_of(at->path), *path = NULL;
     if (folder) path = *name == '/' ? strdup(name) : file_join(folder, name);
-    status s = path ? OK : fail(ERROR_MEMORY, "%s: out of memory", at->path);
+    status s = path ? OK : fail(MERLIN_NO_MEMORY, "%s: out of memory", at->path);
     if (s == OK) s = load(&(link){path, item->string, at}, part, out);
     free(path);
     free(folder);
@@ -95,7 +95,7 @@ static status put_part(const link *at, const json_object *o, const char *part, b
     json_object *found = NULL;
     status s = load_named(at, item, NULL, &found);
     if (s == OK && !cJSON_ReplaceItemInObjectCaseSensitive(o->root, part, found->root))
-        s = fail(ERROR_MEMORY, "%s: out of memory", at->path);
+        s = fail(MERLIN_NO_MEMORY, "%s: out of memory", at->path);
     else if (s == OK)
         found->root = NULL;
     json_free(found);
@@ -109,7 +109,7 @@ static status put_base(const link *at, const json_object *o, const char *part, b
     if (!item) return OK;
     json_object *base = NULL;
     status s = cJSON_IsString(item) ? load_named(at, item, part, &base)
-                                    : fail(ERROR_INPUT, "%s: \"base\" must be the path of a file", at->path);
+                                    : fail(MERLIN_BAD_INPUT, "%s: \"base\" must be the path of a file", at->path);
     if (s == OK && own_part) cJSON_DeleteItemFromObjectCaseSensitive(base->root, part);
     if (s == OK) merge(base->root, o->root);
     json_free(base);

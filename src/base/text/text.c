@@ -71,7 +71,7 @@ static status make_plain(char *text, size_t size, const char *where)
     for (size_t i = 0; i < size; i++) {
         char c = text[i];
         if (c == END_OF_TEXT && i + 1 == size) break;
-        if (!c) return fail(ERROR_INPUT, "%s:%d: not a text file", where, line);
+        if (!c) return fail(MERLIN_BAD_INPUT, "%s:%d: not a text file", where, line);
         if (c == '\r') {
             c = '\n';
             i += i + 1 < size && text[i + 1] == '\n';
@@ -96,7 +96,7 @@ status text_decode(const char *bytes, size_t size, const char *where, char **out
     encoding e = encoding_of(b, size, &mark);
     size_t room = size - mark; /* two bytes become three at most */
     char *text = malloc(room + room / 2 + 1);
-    if (!text) return fail(ERROR_MEMORY, "no memory for %s", where);
+    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for %s", where);
     if (e != BYTES)
         room = decode_units(b + mark, room, e, text);
     else if (room)

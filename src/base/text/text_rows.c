@@ -31,7 +31,7 @@ static status add_word(scanner *s, const text_word *word)
     if (s->words == s->word_room) {
         size_t room = s->word_room ? 2 * s->word_room : 256;
         text_word *larger = realloc(s->rows->word, room * sizeof *larger);
-        if (!larger) return fail(ERROR_MEMORY, "no memory for %s", s->where);
+        if (!larger) return fail(MERLIN_NO_MEMORY, "no memory for %s", s->where);
         s->rows->word = larger;
         s->word_room = room;
     }
@@ -183,7 +183,7 @@ static status split_at_commas(scanner *s, size_t first)
 {
     size_t count = s->words - first;
     text_word *whole = malloc(count * sizeof *whole);
-    if (!whole) return fail(ERROR_MEMORY, "no memory for %s", s->where);
+    if (!whole) return fail(MERLIN_NO_MEMORY, "no memory for %s", s->where);
     memcpy(whole, s->rows->word + first, count * sizeof *whole);
     s->words = first;
     bool apart = false;
@@ -251,7 +251,7 @@ static status check_lengths(const scanner *s, size_t first)
 {
     for (size_t i = first; i < s->words; i++)
         if (s->rows->word[i].length > LONGEST_WORD)
-            return fail(ERROR_INPUT, "%s:%d: a word of %zu bytes is too long", s->where,
+            return fail(MERLIN_BAD_INPUT, "%s:%d: a word of %zu bytes is too long", s->where,
                         s->line + lines_between(s->text + s->begin, s->rows->word[i].at), s->rows->word[i].length);
     return OK;
 }
@@ -263,7 +263,7 @@ static status add_row(scanner *s, size_t first, bool comment, bool mixed)
     if (rows->count == s->row_room) {
         size_t room = s->row_room ? 2 * s->row_room : 64;
         text_row *larger = realloc(rows->row, room * sizeof *larger);
-        if (!larger) return fail(ERROR_MEMORY, "no memory for %s", s->where);
+        if (!larger) return fail(MERLIN_NO_MEMORY, "no memory for %s", s->where);
         rows->row = larger;
         s->row_room = room;
     }
@@ -419,7 +419,7 @@ status text_rows_parse(const char *bytes, size_t size, const char *where, text_r
     size_t length = strlen(out->text);
     scanner all = {
         .text = out->text, .where = where, .size = length, .line = 1, .rows = out, .marks = calloc(length + 1, 1)};
-    s = all.marks ? OK : fail(ERROR_MEMORY, "no memory for %s", where);
+    s = all.marks ? OK : fail(MERLIN_NO_MEMORY, "no memory for %s", where);
     if (s == OK) {
         text_mark_all(out->text, length, all.marks);
         s = scan(&all);

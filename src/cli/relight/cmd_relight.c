@@ -24,8 +24,8 @@
 #include "command/photos.h"
 #include "command/standard_input.h"
 #include "estimate/api.h"
-#include "estimate/photo/doubts.h"
 #include "estimate/files/report.h"
+#include "estimate/photo/doubts.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -135,7 +135,7 @@ static status take_format(const char *text, void *into)
     else if (strcmp(text, "jpg") == 0 || strcmp(text, "jpeg") == 0)
         *format = IMG_JPEG;
     else
-        return fail(ERROR_USAGE, "--format wants png or jpg, not \"%s\"", text);
+        return fail(MERLIN_WRONG_USE, "--format wants png or jpg, not \"%s\"", text);
     return OK;
 }
 
@@ -155,7 +155,7 @@ static status take_way(const char *text, void *into)
     else if (strcmp(text, "network") == 0)
         *how = MERLIN_BY_NETWORK;
     else
-        return fail(ERROR_USAGE, "--by wants brdf or network, not \"%s\"", text);
+        return fail(MERLIN_WRONG_USE, "--by wants brdf or network, not \"%s\"", text);
     return OK;
 }
 
@@ -167,15 +167,15 @@ static bool to_standard_output(const request *r)
 static status check_dome(request *r)
 {
     int count = r->dome.count;
-    if (r->dome.lp && count == 0) return fail(ERROR_USAGE, "--lp lists the lights of a --dome");
+    if (r->dome.lp && count == 0) return fail(MERLIN_WRONG_USE, "--lp lists the lights of a --dome");
     if (r->near && count == 0 && !r->list)
-        return fail(ERROR_USAGE, "--near is of the lamps of a --dome or an .lp file");
-    if (r->radius > 0 && !r->near) return fail(ERROR_USAGE, "--radius is of --near lamps");
+        return fail(MERLIN_WRONG_USE, "--near is of the lamps of a --dome or an .lp file");
+    if (r->radius > 0 && !r->near) return fail(MERLIN_WRONG_USE, "--radius is of --near lamps");
     if (r->near && r->dome.lp)
-        return fail(ERROR_USAGE, "--lp lists distant lights, and --near has none: their places go to lights.txt");
+        return fail(MERLIN_WRONG_USE, "--lp lists distant lights, and --near has none: their places go to lights.txt");
     if (r->how == MERLIN_BY_NETWORK && count && !r->near)
-        return fail(ERROR_USAGE, "the relighting decoder knows no distant lights: give --near, too");
-    if (r->env && count) return fail(ERROR_USAGE, "--dome is of lamps alone, without --env");
+        return fail(MERLIN_WRONG_USE, "the relighting decoder knows no distant lights: give --near, too");
+    if (r->env && count) return fail(MERLIN_WRONG_USE, "--dome is of lamps alone, without --env");
     r->dome.near = r->near ? r->radius > 0 ? r->radius : 1 : 0;
     return OK;
 }
@@ -184,8 +184,9 @@ static status check_standard_output(const request *r)
 {
     if (!to_standard_output(r)) return OK;
     if (r->orbit || r->dome.count || r->lamps.count > 1)
-        return fail(ERROR_USAGE, "-o - writes one picture to standard output; for several name a folder");
-    if (r->json) return fail(ERROR_USAGE, "-o - leaves standard output to the picture; there is no room for --json");
+        return fail(MERLIN_WRONG_USE, "-o - writes one picture to standard output; for several name a folder");
+    if (r->json)
+        return fail(MERLIN_WRONG_USE, "-o - leaves standard output to the picture; there is no room for --json");
     return OK;
 }
 
@@ -193,13 +194,13 @@ static status check_way(request *r)
 {
     bool by_network = r->how == MERLIN_BY_NETWORK;
     if (r->no_shadows && by_network)
-        return fail(ERROR_USAGE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
+        return fail(MERLIN_WRONG_USE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
     if (r->matte && by_network)
-        return fail(ERROR_USAGE, "--matte is of --by brdf; the relighting decoder paints gloss");
+        return fail(MERLIN_WRONG_USE, "--matte is of --by brdf; the relighting decoder paints gloss");
     if (r->found && by_network)
-        return fail(ERROR_USAGE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
+        return fail(MERLIN_WRONG_USE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
     if (by_network && stereo_maps_in(r->input))
-        return fail(ERROR_USAGE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
+        return fail(MERLIN_WRONG_USE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
     return OK;
 }
@@ -208,7 +209,7 @@ static status check_photo(const request *r)
 {
     if (!file_is_folder(r->input)) return photo_check_hint(&r->params.hint, r->mask, false);
     if (!r->mask && !photo_params_given(&r->params)) return OK;
-    return fail(ERROR_USAGE,
+    return fail(MERLIN_WRONG_USE,
                 "--mask, --point, --box, --size, --views and --photo-exposure are for a photograph; %s holds maps "
                 "already",
                 r->input);
@@ -217,16 +218,17 @@ static status check_photo(const request *r)
 static status check(request *r)
 {
     if (r->lamps.count == 0 && !r->list && r->orbit == 0 && r->dome.count == 0 && !r->env && !r->found)
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "no light: give --light, --direction, --lights, --orbit, --dome, --env or --found-light");
-    if (!r->env && r->env_exposure != 0) return fail(ERROR_USAGE, "--env-exposure wants an --env");
+    if (!r->env && r->env_exposure != 0) return fail(MERLIN_WRONG_USE, "--env-exposure wants an --env");
     if (!r->env && !r->found && r->rotate != 0)
-        return fail(ERROR_USAGE, "--rotate wants an --env or the --found-light to turn");
+        return fail(MERLIN_WRONG_USE, "--rotate wants an --env or the --found-light to turn");
     if (r->found && (r->lamps.count || r->list || r->dome.count || r->env))
-        return fail(ERROR_USAGE, "--found-light comes alone: without --light, --direction, --lights, --dome and --env");
+        return fail(MERLIN_WRONG_USE,
+                    "--found-light comes alone: without --light, --direction, --lights, --dome and --env");
     if (r->found && r->exposing.automatic)
-        return fail(ERROR_USAGE, "--found-light is exposed as the photograph is, or brighter by --exposure EV");
-    if (r->frame && r->orbit == 0) return fail(ERROR_USAGE, "--frame is the side of an --orbit's frames");
+        return fail(MERLIN_WRONG_USE, "--found-light is exposed as the photograph is, or brighter by --exposure EV");
+    if (r->frame && r->orbit == 0) return fail(MERLIN_WRONG_USE, "--frame is the side of an --orbit's frames");
     status s = check_dome(r);
     if (s == OK) s = check_standard_output(r);
     if (s == OK) s = check_photo(r);
@@ -271,13 +273,13 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(ERROR_USAGE, "no photograph or folder given");
-    if (*argc > 1) return fail(ERROR_USAGE, "one photograph or folder at a time, not also %s", (*argv)[1]);
+    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no photograph or folder given");
+    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one photograph or folder at a time, not also %s", (*argv)[1]);
     s = standard_input_take(*argv);
     if (s != OK) return s;
     r->input = photo_without_maps_name((*argv)[0]);
     if (standard_input_is(r->input) && !r->output)
-        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+        return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
     return check(r);
 }
 
@@ -286,7 +288,7 @@ static status check_lamps(const request *r)
 {
     status s = OK;
     if (r->env && r->orbit && r->lamps.count > 1)
-        return fail(ERROR_USAGE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
+        return fail(MERLIN_WRONG_USE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
     for (size_t i = 0; i < r->lamps.count && s == OK; i++)
         s = stage_check(r->how, &r->lamps.at[i], r->env);
     if (s == OK && r->env && r->lamps.count == 0) s = stage_check(r->how, NULL, true);
@@ -304,7 +306,7 @@ static status get_maps(const request *r, merlin_model *model, const watch *shown
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
-        return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : (status)merlin_maps_read(r->input, maps);
+        return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
     return photo_maps(model, r->input, r->mask, &r->params, shown, maps);
 }
 
@@ -436,7 +438,7 @@ static status relight(const request *r, const char *output)
     const watch shown = stage_bar_watch(&bar);
     job.watch = &shown;
     watch_tell(&shown, "reading", 0);
-    if (r->env) s = (status)merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
+    if (r->env) s = merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
     if (s == OK) s = model_open_pair(r->weights, r->flash, &job.model);
     if (s == OK) s = get_maps(r, job.model, &shown, &maps);
@@ -448,14 +450,14 @@ static status relight(const request *r, const char *output)
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
     merlin_environment_free(environment);
-    return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
+    return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 
 static status run(request *r)
 {
     char *output = photo_output_inside(r->input, "relit", r->output);
-    status s = output ? read_lamps(r) : fail(ERROR_MEMORY, "no memory for a file name");
-    if (s == OK && !file_exists(r->input)) s = fail(ERROR_INPUT, "there is no photograph or folder %s", r->input);
+    status s = output ? read_lamps(r) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    if (s == OK && !file_exists(r->input)) s = fail(MERLIN_BAD_INPUT, "there is no photograph or folder %s", r->input);
     if (s == OK) s = check_photo_and_mask(r->input, r->mask);
     if (s == OK && !to_standard_output(r)) s = check_output(output);
     if (s == OK) s = photo_find_models(r->model, &r->weights, &r->flash);

@@ -30,12 +30,12 @@ vec3 lamp_tint(const lamp_style *style)
 
 static status add(lamp_options *lamps, lamp l)
 {
-    if (lamps->count >= LIGHT_LIST_MAX) return fail(ERROR_INPUT, "more than %d lights", LIGHT_LIST_MAX);
+    if (lamps->count >= LIGHT_LIST_MAX) return fail(MERLIN_BAD_INPUT, "more than %d lights", LIGHT_LIST_MAX);
     size_t more = lamps->count + 1;
     lamp *at = realloc(lamps->at, more * sizeof *at);
     if (at) lamps->at = at;
     lamp_style *style = at ? realloc(lamps->style, more * sizeof *style) : NULL;
-    if (!style) return fail(ERROR_MEMORY, "no memory for %zu lights", more);
+    if (!style) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", more);
     lamps->style = style;
     l.tint = lamp_tint(&lamps->common);
     style[lamps->count] = lamps->common;
@@ -55,7 +55,7 @@ static status check_direction(const char *option, vec3 direction)
 {
     float length = vec3_length(direction);
     if (length > 1e-6f && length < 1e18f) return OK;
-    return fail(ERROR_USAGE, "%s: the direction has no length", option);
+    return fail(MERLIN_WRONG_USE, "%s: the direction has no length", option);
 }
 
 status lamp_take_direction(const char *text, void *into)
@@ -80,7 +80,7 @@ static void restyle(lamp_options *lamps)
 /* Notes that an option was given, which it may be once for a lamp, and once for all that have none of their own. */
 static status mark(bool *given, const char *option)
 {
-    if (*given) return fail(ERROR_USAGE, "%s is given twice for the same lamps", option);
+    if (*given) return fail(MERLIN_WRONG_USE, "%s is given twice for the same lamps", option);
     *given = true;
     return OK;
 }
@@ -131,11 +131,11 @@ status lamp_take_color(const char *text, void *into)
 {
     vec3 color;
     if (!take_hex(text, &color) && !take_kelvin(text, &color) && !take_numbers(text, &color))
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--color wants linear r,g,b, or #rrggbb as in sRGB, or a temperature from 1000K to 40000K, not "
                     "\"%s\"",
                     text);
-    if (!(color.x + color.y + color.z > 0)) return fail(ERROR_USAGE, "--color %s is black: no light", text);
+    if (!(color.x + color.y + color.z > 0)) return fail(MERLIN_WRONG_USE, "--color %s is black: no light", text);
     status s = mark(&style_here(into)->has_color, "--color");
     if (s != OK) return s;
     style_here(into)->color = color;

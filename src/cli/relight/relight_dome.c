@@ -90,7 +90,7 @@ static bool is_left_over(const relight_job *job, const char *name)
 
 static status refuse(const relight_job *job, const char *name)
 {
-    return fail(ERROR_OUTPUT,
+    return fail(MERLIN_CANNOT_WRITE,
                 "%s/%s is of another dome and would be taken with this one's pictures: choose another folder, or "
                 "remove it",
                 job->output, name);
@@ -128,7 +128,7 @@ static status write_lists(const relight_work *w)
 static status write_mask(const relight_work *w)
 {
     char path[PATH_MAX];
-    img mask = img_of(&w->job->maps->mask);
+    img mask = w->job->maps->mask;
     return img_write_webp(staging_path(w->staging, "mask.webp", path), &mask);
 }
 

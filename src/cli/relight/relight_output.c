@@ -60,7 +60,7 @@ static status expose(relight_work *w)
     size_t count = count_lamps(job);
     bool metered = job->exposing == RELIGHT_AUTO || (job->exposing == RELIGHT_BY_LAMPS && count > 0);
     lamp *all = malloc((count + 1) * sizeof *all);
-    if (!all) return fail(ERROR_MEMORY, "no memory for %zu lamps", count);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
     gather(job, all);
     status s = metered ? stage_meter(&w->stage, all, count, &white) : OK;
     w->stage.white = white / exp2f(job->ev);
@@ -133,7 +133,7 @@ status relight_output(const relight_job *job, relight_result *result)
 static status print(const uint8_t *data, size_t size)
 {
     bool done = fwrite(data, 1, size, stdout) == size && fflush(stdout) == 0;
-    return done ? OK : fail(ERROR_OUTPUT, "cannot write to standard output: %s", strerror(errno));
+    return done ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write to standard output: %s", strerror(errno));
 }
 
 status relight_print(const relight_job *job, relight_result *result)

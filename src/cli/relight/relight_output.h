@@ -6,7 +6,7 @@
 
 #include "cli/relight/relight_job.h"
 
-/* All files, or none; ERROR_STOPPED if stop said so. */
+/* All files, or none; MERLIN_STOPPED if stop said so. */
 status relight_output(const relight_job *job, relight_result *result);
 /* The job's one picture to standard output, a file's bytes. */
 status relight_print(const relight_job *job, relight_result *result);

@@ -9,7 +9,7 @@
 bool relight_is_numbered(const char *name, const char *kind);
 /* Lamp i of a dome. */
 lamp relight_dome_lamp(const relight_job *job, int i);
-/* ERROR_OUTPUT where the folder has files of another dome that would be taken with these. */
+/* MERLIN_CANNOT_WRITE where the folder has files of another dome that would be taken with these. */
 status relight_dome_check(const relight_job *job);
 /* Counts the numbered pictures of an earlier run that stay beside those that were written. */
 void relight_find_left(const relight_job *job, relight_result *result);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "image/write/figure.h"
 #include "image/resize.h"
+#include "image/write/figure.h"
 
 enum { TILE_SIZE = 192, COLUMNS = 6 };
 

@@ -6,7 +6,7 @@
 
 status relight_check(const relight_work *w)
 {
-    return w->job->stop && w->job->stop() ? fail(ERROR_STOPPED, "stopped") : OK;
+    return w->job->stop && w->job->stop() ? fail(MERLIN_STOPPED, "stopped") : OK;
 }
 
 size_t relight_count_lights(const relight_job *job)

@@ -17,7 +17,7 @@ typedef struct relight_work {
     size_t done; /* of relight_count_whole */
 } relight_work;
 
-/* ERROR_STOPPED if the job is to stop. */
+/* MERLIN_STOPPED if the job is to stop. */
 status relight_check(const relight_work *w);
 /* Tells whether surroundings go round in an orbit, and no lamp. */
 bool relight_surroundings_turn(const relight_job *job);

@@ -81,7 +81,7 @@ static status take_method(const char *name, void *into)
     pst_method *method = into;
     int m = pst_method_from_name(name);
     if (m < 0)
-        return fail(ERROR_USAGE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
+        return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
     *method = (pst_method)m;
     return OK;
 }
@@ -90,7 +90,7 @@ static status take_distance(const char *text, void *into)
 {
     double distance;
     status s = cli_float("--distance", text, 0, 1e9, &distance);
-    if (s == OK && !(distance > 0)) s = fail(ERROR_USAGE, "--distance wants a number above 0, not \"%s\"", text);
+    if (s == OK && !(distance > 0)) s = fail(MERLIN_WRONG_USE, "--distance wants a number above 0, not \"%s\"", text);
     if (s == OK) *(float *)into = (float)distance;
     return s;
 }
@@ -101,7 +101,7 @@ static status take_integration(const char *name, void *into)
     f->integrate = true;
     f->preserve_edges = strcmp(name, "edges") == 0;
     if (!f->preserve_edges && strcmp(name, "ls") != 0)
-        return fail(ERROR_USAGE, "--integrate wants ls or edges, not \"%s\"", name);
+        return fail(MERLIN_WRONG_USE, "--integrate wants ls or edges, not \"%s\"", name);
     return OK;
 }
 
@@ -126,21 +126,21 @@ static status check(request *r)
     const pst_read_options *o = &r->folder.read;
     if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
     if ((o->lights || o->near) && o->unknown_lights)
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
     r->maps = !o->lights && holds_maps(r->input);
     bool is_one_photo = file_exists(r->input) && !is_capture(r);
     if (is_one_photo && (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
     bool is_distant = r->folder.method == PST_LS || r->folder.method == PST_ROBUST || r->folder.method == PST_SEMI;
     if (is_one_photo && is_distant)
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
                     pst_method_name(r->folder.method));
     if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "--model, --size, --views, --exposure, --point and --box are for one photograph, not for a folder");
     return photo_check_hint(&r->params.hint, o->mask, false);
 }
@@ -172,13 +172,13 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(ERROR_USAGE, "no folder of pictures and no photograph given");
-    if (*argc > 1) return fail(ERROR_USAGE, "one folder or photograph at a time, not also %s", (*argv)[1]);
+    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder of pictures and no photograph given");
+    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder or photograph at a time, not also %s", (*argv)[1]);
     s = standard_input_take(*argv);
     if (s != OK) return s;
     r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
     if (standard_input_is(r->input) && !r->output)
-        return fail(ERROR_USAGE, "a photograph from standard input has no name to go by: say where to by -o");
+        return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
     return check(r);
 }
 
@@ -276,27 +276,27 @@ static status work(request *r, const char *output, cJSON *report)
         files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
         files.stop = cli_interrupted;
         watch_tell(&shown, "writing", 0);
-        s = cli_interrupted() ? fail(ERROR_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
+        s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
         json_line_files(report, output, &written);
     }
     stage_bar_end(&bar);
     if (s == OK) s = announce(r, output, &result, report, &written, clock_seconds() - began);
     staged_files_free(&written);
     stereo_result_free(&result);
-    return s == ERROR_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
+    return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 
 static status run(request *r)
 {
-    if (!file_exists(r->input)) return fail(ERROR_INPUT, "there is no folder or photograph %s", r->input);
+    if (!file_exists(r->input)) return fail(MERLIN_BAD_INPUT, "there is no folder or photograph %s", r->input);
     if (r->output && file_is_same(r->input, r->output))
-        return fail(ERROR_USAGE,
+        return fail(MERLIN_WRONG_USE,
                     "-o %s is the folder of the pictures, where results would be taken for pictures the next "
                     "time; without it they go to stereo inside it",
                     r->output);
     char *output = photo_output_inside(r->input, "stereo", r->output);
     cJSON *report = report_begin(NULL);
-    status s = output && report ? OK : fail(ERROR_MEMORY, "no memory for a report");
+    status s = output && report ? OK : fail(MERLIN_NO_MEMORY, "no memory for a report");
     if (s == OK) s = check_photo_and_mask(r->input, r->folder.read.mask);
     if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
     if (s == OK) s = check_output(output);

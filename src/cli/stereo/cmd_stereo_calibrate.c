@@ -47,7 +47,7 @@ static status take_ball(const char *text, void *into)
     else if (strcmp(text, "matte") == 0)
         r->options.ball = PST_MATTE;
     else
-        return fail(ERROR_USAGE, "--sphere wants chrome or matte, not \"%s\"", text);
+        return fail(MERLIN_WRONG_USE, "--sphere wants chrome or matte, not \"%s\"", text);
     return OK;
 }
 
@@ -66,9 +66,9 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(ERROR_USAGE, "no folder with pictures of a ball given");
-    if (*argc > 1) return fail(ERROR_USAGE, "one folder at a time, not also %s", (*argv)[1]);
-    if (!r->chosen) return fail(ERROR_USAGE, "say what the ball is: --sphere chrome or --sphere matte");
+    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder with pictures of a ball given");
+    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder at a time, not also %s", (*argv)[1]);
+    if (!r->chosen) return fail(MERLIN_WRONG_USE, "say what the ball is: --sphere chrome or --sphere matte");
     r->input = (*argv)[0];
     if (!r->output) r->output = r->input;
     return OK;
@@ -111,7 +111,7 @@ static status announce(const request *r, const pst_calibration *c, const staged_
 
 static status interrupted(const request *r)
 {
-    return fail(ERROR_STOPPED, "interrupted; nothing was written to %s", r->output);
+    return fail(MERLIN_STOPPED, "interrupted; nothing was written to %s", r->output);
 }
 
 static status write_files(const request *r, const pst_calibration *c, staged_files *written)
@@ -141,7 +141,7 @@ static status run(request *r)
     s = pst_calibrate_sphere(r->input, &r->options, &c);
     r->options.watch = NULL; /* it ends with this function */
     stage_bar_end(&bar);
-    if (s == ERROR_STOPPED) return interrupted(r);
+    if (s == MERLIN_STOPPED) return interrupted(r);
     if (s != OK) return s;
     s = write_files(r, &c, &written);
     if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);

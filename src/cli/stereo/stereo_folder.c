@@ -6,8 +6,8 @@
 #include "base/progress.h"
 #include "command/json_line.h"
 #include "stereo/doubts/doubts.h"
-#include "stereo/methods/place_lights.h"
 #include "stereo/integrate/surface_error.h"
+#include "stereo/methods/place_lights.h"
 
 static const float RESIDUAL_WHITE = 0.25f;
 
@@ -91,7 +91,7 @@ static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s
 static status put_report(cJSON *report, const pst_capture *c, const pst_surface *s, const stereo_result *r)
 {
     double *values = malloc((size_t)c->width * (size_t)c->height * sizeof *values);
-    if (!values) return fail(ERROR_MEMORY, "no memory for a report");
+    if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a report");
     cJSON_AddStringToObject(report, "method", pst_method_name(s->method));
     cJSON_AddNumberToObject(report, "pictures", c->count);
     cJSON_AddNumberToObject(report, "width", c->width);

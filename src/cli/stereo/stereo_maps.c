@@ -32,10 +32,10 @@ static status read_focal(const exr_file *f, const char *path, float *focal)
 {
     const int side = exr_width(f) > exr_height(f) ? exr_width(f) : exr_height(f);
     if (!exr_get_numbers(f, "merlinFocal", focal, 1))
-        return fail(ERROR_INPUT, "%s says nothing of the camera (merlinFocal)", path);
+        return fail(MERLIN_BAD_INPUT, "%s says nothing of the camera (merlinFocal)", path);
     if (*focal == 0 || *focal > 0.01f * (float)side) return OK;
-    return fail(ERROR_INPUT, "%s: no camera has a focal length of %g pixels (merlinFocal; 0: seen from afar)", path,
-                (double)*focal);
+    return fail(MERLIN_BAD_INPUT, "%s: no camera has a focal length of %g pixels (merlinFocal; 0: seen from afar)",
+                path, (double)*focal);
 }
 
 static bool is_object(const merlin_maps *maps, size_t i)
@@ -57,7 +57,7 @@ static status normalize_albedo(merlin_maps *maps)
 {
     size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0;
     float *brightest = malloc(pixels * sizeof *brightest), *albedo = maps->albedo.data;
-    if (!brightest) return fail(ERROR_MEMORY, "no memory to look at the albedo");
+    if (!brightest) return fail(MERLIN_NO_MEMORY, "no memory to look at the albedo");
     for (size_t i = 0; i < pixels; i++) {
         float most = fmaxf(fmaxf(albedo[3 * i], albedo[3 * i + 1]), albedo[3 * i + 2]);
         if (is_object(maps, i) && most > 0) brightest[count++] = most;
@@ -92,7 +92,8 @@ static status place_depth(merlin_maps *maps, float focal, float pitch)
         }
     float mean = (float)(sum / (double)count);
     if (focal > 0 && !(mean > 0))
-        return fail(ERROR_INPUT, "depth.Z should be positive: the camera of merlinFocal sees nothing behind itself");
+        return fail(MERLIN_BAD_INPUT,
+                    "depth.Z should be positive: the camera of merlinFocal sees nothing behind itself");
     float scale = focal > 0 ? pitch * focal / mean : pitch;
     for (size_t i = 0; i < pixels; i++) {
         float placed = is_object(maps, i) ? 1 + scale * (maps->depth.data[i] - mean) : 1;
@@ -107,7 +108,7 @@ static status place_depth(merlin_maps *maps, float focal, float pitch)
  * lights come from where they are said to. */
 static status place(merlin_maps *maps, float focal)
 {
-    img mask = img_of(&maps->mask);
+    img mask = maps->mask;
     crop_square c;
     status s = crop_around(&mask, &c);
     if (s != OK) return s;
@@ -129,7 +130,7 @@ status stereo_maps_read(const char *folder, merlin_maps *out)
     *out = (merlin_maps){.size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1};
     snprintf(out->model, sizeof out->model, "merlin stereo");
     char *path = file_join(folder, "maps.exr");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     exr_file *f = NULL;
     float focal = 0;
     status s = exr_open(path, &f);

@@ -16,7 +16,7 @@ bool stereo_maps_in(const char *folder);
 
 /* The surface stands where a photograph's would: the crop around it is a frame 60 degrees wide, its mean depth is 1,
  * its relief keeps its proportion to its width. Normals keep their angle to the lines of sight. Nothing was measured of
- * its gloss: it is rough. There is no photograph: `photo` is black. ERROR_INPUT for a file that does not hold such
+ * its gloss: it is rough. There is no photograph: `photo` is black. MERLIN_BAD_INPUT for a file that does not hold such
  * maps; free with merlin_maps_free. */
 status stereo_maps_read(const char *folder, merlin_maps *out);
 

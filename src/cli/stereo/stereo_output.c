@@ -119,7 +119,7 @@ static status write_mesh(const stereo_result *r, const char *path)
 static status write_report(const cJSON *report, const char *path)
 {
     char *text = cJSON_Print(report);
-    if (!text) return fail(ERROR_MEMORY, "no memory for a report");
+    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for a report");
     status s = file_write(path, text, strlen(text));
     free(text);
     return s;
@@ -153,7 +153,7 @@ static status write_one(void *context, size_t i)
 {
     const writing *w = context;
     char path[PATH_MAX];
-    if (w->files->stop && w->files->stop()) return fail(ERROR_STOPPED, "stopped");
+    if (w->files->stop && w->files->stop()) return fail(MERLIN_STOPPED, "stopped");
     const output *o = &outputs[w->first + i];
     return o->write(w->result, staging_path(w->staging, o->name, path));
 }

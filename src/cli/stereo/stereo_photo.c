@@ -30,7 +30,7 @@ static status open_photo(work *w)
     const stereo_photo *p = w->photo;
     status s = model_open_pair(p->weights, p->flash, &w->model);
     if (s == OK && file_is_folder(p->photo))
-        s = (status)merlin_maps_read(p->photo, &w->maps);
+        s = merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
         s = photo_maps(w->model, p->photo, p->mask, &p->params, NULL, &w->maps);
     if (s != OK) return s;
@@ -57,7 +57,7 @@ static status solve_all(work *w)
     status s = OK;
     for (int d = 0; d < DRAW_MOST && s == OK; d++) {
         watch_tell(w->photo->watch, "solving", (double)d / DRAW_MOST);
-        s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : solve_draw(w, d);
+        s = stop && stop() ? fail(MERLIN_STOPPED, "stopped") : solve_draw(w, d);
     }
     if (s == OK) watch_tell(w->photo->watch, "solving", 1);
     return s;

@@ -111,7 +111,7 @@ status stereo_side_view(const stereo_result *r, int side, img *out)
     v.nearest = malloc(count * sizeof *v.nearest);
     if (!v.nearest) {
         img_free(out);
-        return fail(ERROR_MEMORY, "no memory for a side view");
+        return fail(MERLIN_NO_MEMORY, "no memory for a side view");
     }
     for (size_t i = 0; i < count; i++) {
         v.nearest[i] = -INFINITY;

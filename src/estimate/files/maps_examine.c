@@ -81,7 +81,7 @@ static status examine_layer(void *context, size_t i)
     examination *e = context;
     const exr_target *layer = &e->layers[i];
     const range *r = range_of(e->captured ? of_captures : of_estimates, layer->name);
-    const img mask = img_of(&e->maps->mask);
+    const img mask = e->maps->mask;
     tally t = {.lowest = FLT_MAX, .highest = -FLT_MAX};
     for (int y = 0; y < mask.height; y++) {
         const img_span span = img_row_span(&mask, y);
@@ -100,7 +100,7 @@ static status examine_layer(void *context, size_t i)
 static status refuse_infinite(const examination *e, const char *name, const tally *t)
 {
     size_t width = (size_t)e->maps->mask.width;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s: %s is not finite in %zu pixel%s, the first at %zu,%zu (column, row): mend them, or make the maps "
                 "again",
                 e->path, name, t->infinite, t->infinite == 1 ? "" : "s", t->first % width, t->first / width);
@@ -113,7 +113,7 @@ static status judge_layer(const examination *e, size_t i)
     const range *r = range_of(e->captured ? of_captures : of_estimates, name);
     if (t->infinite) return refuse_infinite(e, name, t);
     if (!r || (double)t->far < MUCH * (double)e->object) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s: %s goes from %g to %g, far out of range in %zu of the object's %zu pixels: it should "
                 "be %s",
                 e->path, name, (double)t->lowest, (double)t->highest, t->far, e->object, r->words);
@@ -124,7 +124,7 @@ static status judge_layer(const examination *e, size_t i)
 static status examine_mask(examination *e)
 {
     const float slack = 0.5f; /* enlarging by an editor overshoots */
-    const img mask = img_of(&e->maps->mask);
+    const img mask = e->maps->mask;
     tally t = {.lowest = FLT_MAX, .highest = -FLT_MAX};
     for (size_t i = 0; i < img_value_count(&mask); i++) {
         const float cover = mask.data[i];
@@ -135,9 +135,9 @@ static status examine_mask(examination *e)
     }
     if (t.infinite) return refuse_infinite(e, "mask.A", &t);
     if (t.lowest < -slack || t.highest > 1 + slack)
-        return fail(ERROR_INPUT, "%s: mask.A goes from %g to %g: it should be coverage in [0, 1]", e->path,
+        return fail(MERLIN_BAD_INPUT, "%s: mask.A goes from %g to %g: it should be coverage in [0, 1]", e->path,
                     (double)t.lowest, (double)t.highest);
-    if (e->object == 0) return fail(ERROR_INPUT, "%s: its mask selects nothing, there is no object", e->path);
+    if (e->object == 0) return fail(MERLIN_BAD_INPUT, "%s: its mask selects nothing, there is no object", e->path);
     return OK;
 }
 
@@ -169,7 +169,7 @@ static void straighten(float *values)
 
 static normals examine_normals(const examination *e)
 {
-    const img mask = img_of(&e->maps->mask), map = img_of(&e->maps->normal);
+    const img mask = e->maps->mask, map = e->maps->normal;
     normals found = {0};
     for (int y = 0; y < mask.height; y++) {
         const img_span span = img_row_span(&mask, y);
@@ -195,15 +195,16 @@ static status judge_normals(const examination *e, const normals *n)
     const double object = (double)e->object;
     const size_t width = (size_t)e->maps->mask.width;
     if ((double)n->coded > 0.5 * object)
-        return fail(ERROR_INPUT, "%s: its normals seem to be stored as colours, (n + 1)/2: store n itself", e->path);
+        return fail(MERLIN_BAD_INPUT, "%s: its normals seem to be stored as colours, (n + 1)/2: store n itself",
+                    e->path);
     /* a solver may leave a pixel without */
     if ((double)n->none > (e->captured ? WORTH_A_WORD * object : 0))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s: the normal has no length in %zu of the object's %zu pixels, the first at %zu,%zu (column, "
                     "row): take them out of mask.A, or make the maps again",
                     e->path, n->none, e->object, n->first % width, n->first / width);
     if ((double)n->away > MUCH * object)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s: in %zu of the object's %zu pixels the normal points away from the camera: normal.Z should be "
                     "positive toward it",
                     e->path, n->away, e->object);
@@ -259,11 +260,11 @@ status maps_examine(const char *path, const exr_target *layers, size_t count, me
 status maps_check_crop(const char *path, bool sized, const merlin_maps *maps)
 {
     const float least_share = 0.55f; /* of the crop's side; crop_around gives it 0.6 or more */
-    const img mask = img_of(&maps->mask);
+    const img mask = maps->mask;
     const crop_square c = crop_of(maps);
     const int slack = 2 + c.side / 50; /* the mask was rounded since then */
     if (crop_holds(&mask, c, slack, sized ? 0 : least_share)) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s: the object is not where its merlinCrop (%d, %d and a side of %d) has it: resize, crop or turn the "
                 "photograph, and estimate the maps of it",
                 path, c.x, c.y, c.side);

@@ -10,8 +10,8 @@
 #include "base/file.h"
 #include "base/half.h"
 #include "estimate/api.h"
-#include "estimate/surface/exposure.h"
 #include "estimate/files/maps_examine.h"
+#include "estimate/surface/exposure.h"
 #include "image/exr/exr_place.h"
 #include "image/read/read.h"
 
@@ -109,8 +109,9 @@ static status take_numbers(const exr_file *f, const char *path, const char *name
 {
     if (exr_get_numbers(f, name, values, count)) return OK;
     return exr_has_attribute(f, name)
-               ? fail(ERROR_INPUT, "%s: its attribute %s should be %d finite numbers", path, name, count)
-               : fail(ERROR_INPUT, "%s was not written by merlin estimate: its attribute %s is missing", path, name);
+               ? fail(MERLIN_BAD_INPUT, "%s: its attribute %s should be %d finite numbers", path, name, count)
+               : fail(MERLIN_BAD_INPUT, "%s was not written by merlin estimate: its attribute %s is missing", path,
+                      name);
 }
 
 /* Takes numbers that files of older versions do not have. */
@@ -126,7 +127,7 @@ static status read_lens(const exr_file *f, const char *path, merlin_maps *maps)
     if (s != OK) return s;
     bool sound = (lens[0] == 0 || (lens[0] >= 1 && lens[0] <= 150)) && lens[1] * lens[1] + lens[2] * lens[2] < 0.9f;
     if (!sound)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s: no lens is as merlinLens says, %g degrees wide and slanted by %g, %g: the width is 1 to 150, "
                     "or 0 for unknown",
                     path, (double)lens[0], (double)lens[1], (double)lens[2]);
@@ -144,8 +145,8 @@ static status read_crop(const exr_file *f, const char *path, merlin_maps *maps)
     bool sound = fabsf(square[0]) < (float)CROP_FARTHEST && fabsf(square[1]) < (float)CROP_FARTHEST && square[2] >= 1 &&
                  square[2] < (float)CROP_FARTHEST;
     if (!sound)
-        return fail(ERROR_INPUT, "%s: merlinCrop, %g, %g and a side of %g, is out of range", path, (double)square[0],
-                    (double)square[1], (double)square[2]);
+        return fail(MERLIN_BAD_INPUT, "%s: merlinCrop, %g, %g and a side of %g, is out of range", path,
+                    (double)square[0], (double)square[1], (double)square[2]);
     maps->crop.x = (int)square[0];
     maps->crop.y = (int)square[1];
     maps->crop.side = (int)square[2];
@@ -161,7 +162,7 @@ static status read_exposure(const exr_file *f, const char *path, merlin_maps *ma
     bool sound = size >= NETWORK_LEAST_SIZE && size <= LARGEST_WRITTEN && fmodf(size, MODEL_SIZE_MULTIPLE) == 0 &&
                  exposure_is_sound(maps->gain);
     if (!sound)
-        return fail(ERROR_INPUT, "%s: merlinSize %g or merlinGain %g is out of range", path, (double)size,
+        return fail(MERLIN_BAD_INPUT, "%s: merlinSize %g or merlinGain %g is out of range", path, (double)size,
                     (double)maps->gain);
     maps->size = network_side((int)size);
     return OK;
@@ -186,7 +187,7 @@ static status read_light(const exr_file *f, const char *path, merlin_found_light
     if (s != OK) return s;
     for (int i = 0; i < LIGHT_NUMBERS; i++)
         if (!(fabsf(numbers[i]) <= MOST_LIGHT))
-            return fail(ERROR_INPUT, "%s: merlinLight's %g is out of range", path, (double)numbers[i]);
+            return fail(MERLIN_BAD_INPUT, "%s: merlinLight's %g is out of range", path, (double)numbers[i]);
     memcpy((char *)l + LIGHT_BEGINS, numbers, sizeof numbers);
     l->flash = fmaxf(l->flash, 0);
     l->lamp_distance = fmaxf(l->lamp_distance, 0);
@@ -205,7 +206,8 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     if (s != OK) return s;
     const char *model = exr_get_text(f, "merlinModel");
     if (!model)
-        return fail(ERROR_INPUT, "%s was not written by merlin estimate: its attribute merlinModel is missing", path);
+        return fail(MERLIN_BAD_INPUT, "%s was not written by merlin estimate: its attribute merlinModel is missing",
+                    path);
     snprintf(maps->model, sizeof maps->model, "%s", model);
     maps->has_environment = exr_has_attribute(f, "merlinEnvironment");
     return OK;
@@ -221,14 +223,14 @@ static status check_picture(const exr_file *f, const char *path)
     status s = take_if_there(f, path, "merlinPicture", size, 2);
     if (s != OK) return s;
     if (size[0] != (float)seen.width || size[1] != (float)seen.height)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s is %lld x %lld pixels now and was written with %.0f x %.0f: resize or crop the photographs, "
                     "and make the maps of them",
                     path, seen.width, seen.height, (double)size[0], (double)size[1]);
     bool trimmed = seen.width != exr_width(f) || seen.height != exr_height(f);
     bool fits = seen.width >= 1 && seen.height >= 1 && seen.width <= IMAGE_MAX_SIDE && seen.height <= IMAGE_MAX_SIDE &&
                 seen.width * seen.height <= IMAGE_MOST_PIXELS;
-    return !trimmed || fits ? OK : fail(ERROR_INPUT, "%s: no photograph is of its display window's size", path);
+    return !trimmed || fits ? OK : fail(MERLIN_BAD_INPUT, "%s: no photograph is of its display window's size", path);
 }
 
 /* Some programs keep what is not black alone, and say where in the picture it was. */
@@ -238,9 +240,9 @@ static status place_images(const exr_file *f, merlin_image *const images[IMAGES]
     status s = OK;
     bool whole = seen.left == 0 && seen.top == 0 && seen.width == exr_width(f) && seen.height == exr_height(f);
     for (int i = 0; i < IMAGES && s == OK && !whole; i++) {
-        img m = img_of(images[i]);
+        img m = *images[i];
         s = exr_place(&seen, &m);
-        *images[i] = image_of(&m);
+        *images[i] = m;
     }
     return s;
 }
@@ -251,7 +253,7 @@ static status new_images(const exr_file *f, merlin_image *const images[IMAGES])
     for (int i = 0; i < IMAGES && s == OK; i++) {
         img m = {0};
         s = img_new(&m, exr_width(f), exr_height(f), image_channels[i]);
-        if (s == OK) *images[i] = image_of(&m);
+        if (s == OK) *images[i] = m;
     }
     return s;
 }
@@ -282,10 +284,9 @@ status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin
 
 void maps_tidy(merlin_maps *maps)
 {
-    surface all = {img_of(&maps->albedo), img_of(&maps->normal), img_of(&maps->roughness),
-                   img_of(&maps->depth),  img_of(&maps->mask),   .matte = false};
+    surface all = {maps->albedo, maps->normal, maps->roughness, maps->depth, maps->mask, .matte = false};
     surface_tidy(&all);
-    img photo = img_of(&maps->photo);
+    img photo = maps->photo;
     img_blacken_impossible(&photo);
 }
 
@@ -293,12 +294,12 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
 {
     if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, folder && maps);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     char *path = file_join(folder, "maps.exr");
-    if (!path) return result_of(fail(ERROR_MEMORY, "no memory for a file name"));
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     exr_file *f = NULL;
     s = file_exists(path) ? exr_open(path, &f)
-                          : fail(ERROR_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
+                          : fail(MERLIN_BAD_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
     if (s == OK) s = read_attributes(f, path, maps);
     if (s == OK) s = maps_read_layers(f, path, true, maps);
     if (s == OK) s = maps_check_crop(path, exr_has_attribute(f, "merlinPicture"), maps);
@@ -306,10 +307,10 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
     free(path);
     if (s != OK) {
         merlin_maps_free(maps);
-        return result_of(s);
+        return s;
     }
     maps_tidy(maps);
-    img photo = img_of(&maps->photo), mask = img_of(&maps->mask);
+    img photo = maps->photo, mask = maps->mask;
     maps->burnt_out = exposure_burnt_out(&photo, &mask);
     return MERLIN_OK;
 }

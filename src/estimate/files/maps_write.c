@@ -24,7 +24,7 @@ typedef struct job {
 
 static status write_image(const merlin_image *image, img_encoding encoding, const char *path)
 {
-    img m = img_of(image);
+    img m = *image;
     return img_write_png(path, &m, encoding);
 }
 
@@ -55,21 +55,21 @@ static status write_reconstruction(const job *j, const char *path)
 
 static status write_normal(const job *j, const char *path)
 {
-    img normal = img_of(&j->maps->normal), mask = img_of(&j->maps->mask);
+    img normal = j->maps->normal, mask = j->maps->mask;
     return map_write_normals(path, &normal, &mask);
 }
 
 /* Which depths these are is in report.json: statistics.depth. */
 static status write_depth(const job *j, const char *path)
 {
-    img depth = img_of(&j->maps->depth), mask = img_of(&j->maps->mask);
+    img depth = j->maps->depth, mask = j->maps->mask;
     return map_write_depths(path, &depth, &mask);
 }
 
 static status write_report(const job *j, const char *path)
 {
     char *text = maps_report(j->maps);
-    if (!text) return fail(ERROR_MEMORY, "no memory for a report");
+    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for a report");
     status s = file_write(path, text, strlen(text));
     free(text);
     return s;
@@ -118,7 +118,7 @@ static status write_one(void *context, size_t i)
 {
     batch *b = context;
     char path[PATH_MAX];
-    if (stopped(b)) return fail(ERROR_STOPPED, "stopped");
+    if (stopped(b)) return fail(MERLIN_STOPPED, "stopped");
     status s = outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
     int done = atomic_fetch_add(&b->done, 1) + 1;
     if (pthread_equal(b->owner, pthread_self())) watch_tell(b->output->watch, "writing", (double)done / (OUTPUTS + 1));
@@ -140,7 +140,7 @@ static status write_through(batch *b)
     b->staging = all.at[0];
     s = parallel_try(OUTPUTS, write_one, b);
     if (s == OK) s = write_more(b, &all);
-    if (s == OK && stopped(b)) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK && stopped(b)) s = fail(MERLIN_STOPPED, "stopped");
     if (s == OK) return staging_commit_all(all.at, all.count, o->written);
     while (all.count > 0)
         s = staging_abort(all.at[--all.count], s);
@@ -150,7 +150,7 @@ static status write_through(batch *b)
 status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to)
 {
     batch *b = calloc(1, sizeof *b);
-    if (!b) return fail(ERROR_MEMORY, "no memory to write %s", to->folder);
+    if (!b) return fail(MERLIN_NO_MEMORY, "no memory to write %s", to->folder);
     b->job.maps = maps;
     b->output = to;
     b->owner = pthread_self();
@@ -168,5 +168,5 @@ status maps_write(merlin_model *model, const merlin_maps *maps, const maps_outpu
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder)
 {
     status s = api_needs(__func__, model && maps && folder);
-    return result_of(s == OK ? maps_write(model, maps, &(maps_output){.folder = folder}) : s);
+    return s == OK ? maps_write(model, maps, &(maps_output){.folder = folder}) : s;
 }

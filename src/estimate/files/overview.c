@@ -31,7 +31,7 @@ static status show_values(const img *values, img *out)
 /* In the size and exposure of the photograph beside it. */
 static status show_reconstruction(const merlin_maps *maps, float white, img *out)
 {
-    img whole = img_of(&maps->reconstruction), mask = img_of(&maps->mask), part = {0};
+    img whole = maps->reconstruction, mask = maps->mask, part = {0};
     status s = crop_take(&whole, crop_of(maps), &mask, &part);
     if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
     img_free(&part);
@@ -45,7 +45,7 @@ static status make(network *n, const merlin_maps *maps, overview *o)
 {
     status s = stage_new(n, maps, maps->size, MERLIN_BY_BRDF, &o->stage);
     if (s == OK && !maps->reconstruction.data)
-        s = fail(ERROR_USAGE, "maps that were read from a folder have no reconstruction to show");
+        s = fail(MERLIN_WRONG_USE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;
     /* an underexposed photograph is shown as it should have been exposed */
     float white = o->stage.white;

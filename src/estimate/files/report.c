@@ -4,11 +4,11 @@
 #include <math.h>
 
 #include "estimate/api.h"
-#include "estimate/photo/doubts.h"
-#include "estimate/surface/exposure.h"
+#include "estimate/files/report.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"
-#include "estimate/files/report.h"
+#include "estimate/photo/doubts.h"
+#include "estimate/surface/exposure.h"
 
 typedef struct range {
     double low, high, sum;
@@ -64,7 +64,7 @@ static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
 {
     if (!maps->reconstruction.data) return;
     range r = {0};
-    img photo = img_of(&maps->photo);
+    img photo = maps->photo;
     float scale = maps->gain / exposure_white(&photo, maps->gain);
     size_t count = (size_t)maps->mask.width * (size_t)maps->mask.height;
     for (size_t i = 0; i < 3 * count; i++) {

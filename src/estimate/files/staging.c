@@ -71,11 +71,13 @@ static void remove_made(const staging *t)
 static status begin(staging *t)
 {
     if (strlen(t->hidden) + 1 + NAME_MAX >= PATH_MAX)
-        return fail(ERROR_OUTPUT, "cannot write: a path of %zu bytes is too long: %s", strlen(t->folder), t->folder);
+        return fail(MERLIN_CANNOT_WRITE, "cannot write: a path of %zu bytes is too long: %s", strlen(t->folder),
+                    t->folder);
     t->kept = existing_length(t->folder);
     status s = file_make_folder(t->folder);
     if (s == OK) leftovers_clear(t->folder);
-    if (s == OK && !mkdtemp(t->hidden)) s = fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    if (s == OK && !mkdtemp(t->hidden))
+        s = fail(MERLIN_CANNOT_WRITE, "cannot write into %s: %s", t->folder, strerror(errno));
     if (s != OK) remove_made(t);
     if (s == OK) leftovers_note(t->hidden, t->kept ? t->kept : 1);
     return s;
@@ -92,11 +94,11 @@ status staging_begin(const char *folder, const char *const *inputs, staging **ou
 {
     *out = NULL;
     staging *t = calloc(1, sizeof *t);
-    if (!t) return fail(ERROR_MEMORY, "no memory to write %s", folder);
+    if (!t) return fail(MERLIN_NO_MEMORY, "no memory to write %s", folder);
     t->folder = strdup(folder);
     t->hidden = hidden_in(folder);
     if (inputs) memcpy(t->inputs, inputs, sizeof t->inputs);
-    status s = t->folder && t->hidden ? begin(t) : fail(ERROR_MEMORY, "no memory to write %s", folder);
+    status s = t->folder && t->hidden ? begin(t) : fail(MERLIN_NO_MEMORY, "no memory to write %s", folder);
     if (s != OK)
         staging_free(t);
     else
@@ -134,7 +136,7 @@ static int compare_names(const void *a, const void *b)
 static status add_size(staged_files *files, const char *path)
 {
     struct stat found;
-    if (stat(path, &found) != 0) return fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    if (stat(path, &found) != 0) return fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
     files->bytes += (uint64_t)found.st_size;
     return OK;
 }
@@ -144,7 +146,7 @@ static status add_written(staged_files *files, const char *path)
     char **larger = realloc(files->at, (files->count + 1) * sizeof *larger);
     if (larger) files->at = larger;
     char *copy = larger ? strdup(path) : NULL;
-    if (!copy) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!copy) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     files->at[files->count++] = copy;
     return OK;
 }
@@ -159,9 +161,9 @@ void staged_files_free(staged_files *files)
 
 static status check(const staging *t, const char *from, const char *to, staged_files *written)
 {
-    if (file_is_folder(to)) return fail(ERROR_OUTPUT, "cannot write %s: a folder is in the way", to);
+    if (file_is_folder(to)) return fail(MERLIN_CANNOT_WRITE, "cannot write %s: a folder is in the way", to);
     if (is_input(t, to))
-        return fail(ERROR_OUTPUT, "cannot write %s: it is what was read; choose another name or folder", to);
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is what was read; choose another name or folder", to);
     if (!written) return OK;
     status s = add_size(written, from);
     return s == OK ? add_written(written, to) : s;
@@ -169,13 +171,13 @@ static status check(const staging *t, const char *from, const char *to, staged_f
 
 static status move(const char *from, const char *to)
 {
-    return rename(from, to) == 0 ? OK : fail(ERROR_OUTPUT, "cannot write %s: %s", to, strerror(errno));
+    return rename(from, to) == 0 ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", to, strerror(errno));
 }
 
 static status check_or_move(const staging *t, const char *name, bool only_check, staged_files *written)
 {
     char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
-    status s = !from || !to ? fail(ERROR_MEMORY, "no memory for a file name")
+    status s = !from || !to ? fail(MERLIN_NO_MEMORY, "no memory for a file name")
                : only_check ? check(t, from, to, written)
                             : move(from, to);
     free(from);
@@ -186,7 +188,7 @@ static status check_or_move(const staging *t, const char *name, bool only_check,
 static status over_files(const staging *t, bool only_check, staged_files *written)
 {
     DIR *d = opendir(t->hidden);
-    if (!d) return fail(ERROR_OUTPUT, "cannot write into %s: %s", t->folder, strerror(errno));
+    if (!d) return fail(MERLIN_CANNOT_WRITE, "cannot write into %s: %s", t->folder, strerror(errno));
     status s = OK;
     for (struct dirent *e; s == OK && (e = readdir(d));)
         if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, only_check, written);

@@ -34,7 +34,7 @@ typedef struct staged_files {
 void staged_files_free(staged_files *files);
 
 /* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
- * and frees t. ERROR_OUTPUT, with nothing moved, if a folder or one of the inputs is in the way of one. */
+ * and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the inputs is in the way of one. */
 status staging_commit(staging *t, staged_files *written);
 /* Those of several folders at once: nothing is moved if anything is in the way of any. */
 status staging_commit_all(staging *const *t, int count, staged_files *written);

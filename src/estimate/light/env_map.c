@@ -93,7 +93,7 @@ static status resample(const img *map, img *out)
     status s = img_new(out, ENV_MAP_SIDE, ENV_MAP_SIDE, 3);
     if (s != OK) return s;
     collection c = {out, calloc((size_t)ENV_MAP_SIDE * ENV_MAP_SIDE, sizeof *c.angle)};
-    if (!c.angle) return fail(ERROR_MEMORY, "no memory for an environment map");
+    if (!c.angle) return fail(MERLIN_NO_MEMORY, "no memory for an environment map");
     for (int y = 0; y < map->height; y++)
         collect_row(&c, map, y);
     average(&c);
@@ -128,7 +128,7 @@ status env_map_new(img *latlong, env_map *out)
 {
     *out = (env_map){.cosine = 1};
     img map = {0};
-    if (latlong->channels != 3) return fail(ERROR_USAGE, "an environment map needs 3 channels");
+    if (latlong->channels != 3) return fail(MERLIN_WRONG_USE, "an environment map needs 3 channels");
     img_blacken_impossible(latlong);
     /* no wider than what the octahedron resolves */
     int width = latlong->width < WIDEST_MAP ? latlong->width : WIDEST_MAP;

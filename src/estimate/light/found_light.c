@@ -103,8 +103,9 @@ status found_light_stand(const merlin_found_light *light, float turn, found_ligh
 {
     *out = (found_lights){.count = 0};
     if (!light->known)
-        return fail(ERROR_INPUT, "the model of these maps knows one light alone and so found none in the photograph: "
-                                 "estimate it by merlin-any");
+        return fail(MERLIN_BAD_INPUT,
+                    "the model of these maps knows one light alone and so found none in the photograph: "
+                    "estimate it by merlin-any");
     if (light->flash > 0) {
         out->lamps[out->count] = lamp_at(vec3_make(0, 0, 0));
         out->lamps[out->count++].tint = vec3_make(light->flash, light->flash, light->flash);
@@ -113,7 +114,7 @@ status found_light_stand(const merlin_found_light *light, float turn, found_ligh
     if (found_light_lamp(light, &out->lamps[out->count])) out->count++;
     status s = stand_rest(light, &out->rest);
     if (s == OK && out->count == 0 && !found_lights_rest(out))
-        s = fail(ERROR_INPUT, "the light that was found in the photograph is dark");
+        s = fail(MERLIN_BAD_INPUT, "the light that was found in the photograph is dark");
     if (s == OK) found_lights_turn(out, turn);
     return s;
 }

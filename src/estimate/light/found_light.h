@@ -8,9 +8,10 @@
 #ifndef MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 #define MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "estimate/light/env_map.h"
 #include "estimate/surface/surface.h"
-#include "image/public.h"
 #include "model/model.h"
 
 /* Takes the light from the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */
@@ -35,8 +36,8 @@ typedef struct found_lights {
     int fixed;     /* those before this one, the flash, do not turn */
     env_map rest;  /* surroundings of everything else's radiance; found_lights_rest tells whether there are any */
 } found_lights;
-/* Makes them of what was found, turned by so many degrees. ERROR_INPUT where nothing is known or all is dark;
- * ERROR_MEMORY. rest is to be freed by env_map_free. */
+/* Makes them of what was found, turned by so many degrees. MERLIN_BAD_INPUT where nothing is known or all is dark;
+ * MERLIN_NO_MEMORY. rest is to be freed by env_map_free. */
 status found_light_stand(const merlin_found_light *light, float turn, found_lights *out);
 /* Returns the surroundings, NULL where they are dark. */
 const env_map *found_lights_rest(const found_lights *l);
@@ -44,7 +45,7 @@ const env_map *found_lights_rest(const found_lights *l);
 void found_lights_turn(found_lights *l, float degrees);
 
 /* Adds flash, lamp and the rest to out (3 channels, the surface's size). visibility: 1 channel, of any size, of the
- * lamp; without data it reaches all that faces it. ERROR_MEMORY. */
+ * lamp; without data it reaches all that faces it. MERLIN_NO_MEMORY. */
 status found_light_add(const surface *s, const merlin_found_light *light, const img *visibility, img *out);
 
 #endif

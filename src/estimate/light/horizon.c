@@ -202,7 +202,7 @@ status horizon_new(const shadow_caster *caster, horizon *out)
     for (size_t i = 0; s == OK && i < count; i++)
         out->cosine.data[i] = -1;
     if (s == OK && count > 0) out->closed = calloc(count, sizeof *out->closed);
-    if (s == OK && !out->closed) s = fail(ERROR_MEMORY, "no memory for horizons of %d x %d points", side, side);
+    if (s == OK && !out->closed) s = fail(MERLIN_NO_MEMORY, "no memory for horizons of %d x %d points", side, side);
     if (s == OK) s = cut_out(caster, &m.depth);
     if (s == OK) parallel_for((size_t)side, make_row, &m);
     img_free(&m.depth);

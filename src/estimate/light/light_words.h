@@ -7,7 +7,8 @@
 #ifndef MERLIN_ESTIMATE_LIGHT_LIGHT_WORDS_H
 #define MERLIN_ESTIMATE_LIGHT_LIGHT_WORDS_H
 
-#include "image/public.h"
+#include "base/public.h"
+#include "merlin/merlin.h"
 
 enum { LIGHT_WORDS = 128 };
 

@@ -13,7 +13,7 @@ static const float LIKE_COLOR = 0.06f;
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory to look for the object");
+    return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
 }
 
 /* ---- the background's part of the border ---- */

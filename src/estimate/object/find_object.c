@@ -15,7 +15,8 @@ status find_object(const img *photo, const merlin_hint *hint, img *mask, float *
     const object_candidate *best = &s.candidate[s.best];
     *confidence = 1 / (1 + expf(-best->quality));
     if (!(best->quality > -INFINITY))
-        result = fail(ERROR_INPUT, "no object stands out from the background; give a mask, or say where it is by a "
+        result =
+            fail(MERLIN_BAD_INPUT, "no object stands out from the background; give a mask, or say where it is by a "
                                    "point or a box");
     if (result == OK) result = object_outline(&s, best, photo, mask);
     object_search_free(&s);

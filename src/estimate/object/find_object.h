@@ -12,8 +12,8 @@
 
 /* hint: sound, or NULL. mask: 1 channel of the photograph's size in [0, 1], edges following the photograph: the
  * heaviest connected region, and others that weigh at least a tenth of it, or those that hold the hint's points.
- * confidence in [0, 1]: how likely mask and object have 0.97 of their union in common. ERROR_INPUT if nothing stands
- * out at all. */
+ * confidence in [0, 1]: how likely mask and object have 0.97 of their union in common. MERLIN_BAD_INPUT if nothing
+ * stands out at all. */
 status find_object(const img *photo, const merlin_hint *hint, img *mask, float *confidence);
 
 #endif

@@ -28,7 +28,7 @@ status grid_cut_new(grid_cut *out, int width, int height)
     size_t count = (size_t)width * (size_t)height;
     *out = (grid_cut){.width = width, .height = height};
     int32_t *memory = calloc(count, (GRID_DIRECTIONS / 2 + 1) * sizeof *memory + 1);
-    if (!memory) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!memory) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     out->memory = out->toward = memory;
     for (int d = 0; d < GRID_DIRECTIONS; d += 2)
         out->tie[d] = memory + (size_t)(1 + d / 2) * count;
@@ -56,7 +56,7 @@ static status cut_new(grid_cut *g, cut *c)
         memset(g->work, 0, count * bytes);
     else
         g->work = calloc(count, bytes);
-    if (!g->work) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!g->work) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     c->rest = g->work;
     for (int d = 0; d < GRID_DIRECTIONS; d++)
         c->tie[d] = c->rest + (size_t)(1 + d) * count;
@@ -110,7 +110,7 @@ static status make_orphan(cut *c, uint32_t at)
     if (c->orphan_count == c->orphan_room) {
         uint32_t room = c->orphan_room ? 2 * c->orphan_room : 1024;
         uint32_t *larger = realloc(c->orphans, room * sizeof *larger);
-        if (!larger) return fail(ERROR_MEMORY, "no memory to look for the object");
+        if (!larger) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
         c->orphans = larger;
         c->orphan_room = room;
     }

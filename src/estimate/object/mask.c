@@ -44,24 +44,26 @@ static bool is_inside(const img *photo, int x, int y)
 static status check_hint(const img *photo, const img *given, const merlin_hint *hint)
 {
     if (given)
-        return fail(ERROR_USAGE, "the photograph has a mask, or an alpha that is one: points and a box are for the "
-                                 "search for the object where there is none");
+        return fail(MERLIN_WRONG_USE,
+                    "the photograph has a mask, or an alpha that is one: points and a box are for the "
+                    "search for the object where there is none");
     if (hint->point_count < 0 || hint->point_count > MERLIN_MOST_POINTS)
-        return fail(ERROR_USAGE, "at most %d points tell where the object is, not %d", MERLIN_MOST_POINTS,
+        return fail(MERLIN_WRONG_USE, "at most %d points tell where the object is, not %d", MERLIN_MOST_POINTS,
                     hint->point_count);
     for (int i = 0; i < hint->point_count; i++)
         if (!is_inside(photo, hint->point[i].x, hint->point[i].y))
-            return fail(ERROR_USAGE, "the point %d,%d lies outside the photograph of %d×%d pixels", hint->point[i].x,
-                        hint->point[i].y, photo->width, photo->height);
+            return fail(MERLIN_WRONG_USE, "the point %d,%d lies outside the photograph of %d×%d pixels",
+                        hint->point[i].x, hint->point[i].y, photo->width, photo->height);
     int x = hint->box.x, y = hint->box.y, width = hint->box.width, height = hint->box.height;
     if (width == 0) return OK;
     if (width < 0 || height <= 0 || !is_inside(photo, x, y) || width > photo->width - x || height > photo->height - y)
-        return fail(ERROR_USAGE, "the box %d,%d,%d,%d does not lie in the photograph of %d×%d pixels", x, y, width,
+        return fail(MERLIN_WRONG_USE, "the box %d,%d,%d,%d does not lie in the photograph of %d×%d pixels", x, y, width,
                     height, photo->width, photo->height);
     for (int i = 0; i < hint->point_count; i++) {
         int u = hint->point[i].x, v = hint->point[i].y;
         if (u < x || v < y || u >= x + width || v >= y + height)
-            return fail(ERROR_USAGE, "the point %d,%d lies outside the box %d,%d,%d,%d", u, v, x, y, width, height);
+            return fail(MERLIN_WRONG_USE, "the point %d,%d lies outside the box %d,%d,%d,%d", u, v, x, y, width,
+                        height);
     }
     return OK;
 }
@@ -72,10 +74,10 @@ status mask_choose(const img *photo, const img *given, const merlin_hint *hint, 
     *choice = (mask_choice){false, 1};
     if (given && !given->data) given = NULL;
     if (given && (given->width != photo->width || given->height != photo->height))
-        return fail(ERROR_INPUT, "the mask is %d×%d pixels, the photograph %d×%d; they must be equal", given->width,
-                    given->height, photo->width, photo->height);
+        return fail(MERLIN_BAD_INPUT, "the mask is %d×%d pixels, the photograph %d×%d; they must be equal",
+                    given->width, given->height, photo->width, photo->height);
     if (given && given->channels != 1)
-        return fail(ERROR_USAGE, "the mask has %d channels instead of 1", given->channels);
+        return fail(MERLIN_WRONG_USE, "the mask has %d channels instead of 1", given->channels);
     status s = is_hint(hint) ? check_hint(photo, given, hint) : OK;
     if (s != OK) return s;
     if (given) {

@@ -198,7 +198,7 @@ status object_candidate_grow(object_ground *ground, const uint8_t *start, bool o
     g.cost = malloc(2 * count * sizeof *g.cost);
     g.toward = calloc(count, sizeof *g.toward);
     status s = OK;
-    if (!out->object || !g.hull || !g.cost || !g.toward) s = fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!out->object || !g.hull || !g.cost || !g.toward) s = fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     if (s == OK) {
         g.hole = g.hull + count;
         g.new_hole = g.hole + count;

@@ -68,7 +68,7 @@ static size_t flood(const object_view *v, uint8_t *hole, size_t *stack, size_t s
 status object_holes_find(const object_view *v, const uint8_t *object, uint8_t *hole, bool *any)
 {
     size_t *stack = malloc(v->count * sizeof *stack);
-    if (!stack) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!stack) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     *any = false;
     memset(hole, NOT_LIKE, v->count);
     compare_all(v, object, hole);

@@ -10,7 +10,7 @@
 
 /* Sets hole to 1 in connected parts of at least a hundredth of the picture whose pixels are like the background to the
  * left or right, above or below, unless that is so dark that anything black is like it; 0 elsewhere. *any: there are
- * some. ERROR_MEMORY alone. */
+ * some. MERLIN_NO_MEMORY alone. */
 status object_holes_find(const object_view *v, const uint8_t *object, uint8_t *hole, bool *any);
 
 #endif

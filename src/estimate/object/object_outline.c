@@ -20,7 +20,7 @@ typedef struct outline {
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory to look for the object");
+    return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
 }
 
 /* Pixels near another side are free. */

@@ -93,7 +93,7 @@ status object_regions_keep(const object_view *v, const uint8_t *wanted, const in
 {
     region r = {.view = v, .wanted = wanted, .toward = toward, .object = object};
     r.stack = malloc(v->count * sizeof *r.stack);
-    if (!r.stack) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!r.stack) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     keep_regions(&r);
     fill_holes(&r);
     for (size_t i = 0; i < v->count; i++)

@@ -10,7 +10,7 @@
 /* Keeps the region that is heaviest, pixels toward the picture's middle counting more, and those at least a tenth as
  * heavy; or, if some pixels are wanted (1 in `wanted`, which may be NULL), the regions that hold one. Holes stay if
  * they have a thousandth of the picture's pixels and `toward` says of them, on average, that they are background.
- * ERROR_MEMORY alone. */
+ * MERLIN_NO_MEMORY alone. */
 status object_regions_keep(const object_view *v, const uint8_t *wanted, const int32_t *toward, uint8_t *object);
 
 /* Sets hull to 1 in the object's convex hull, by half planes of some directions, and to 0 elsewhere. */

@@ -20,7 +20,7 @@ static const float TIE = 6;
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory to look for the object");
+    return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
 }
 
 void object_search_free(object_search *s)
@@ -277,8 +277,9 @@ status object_search_run(const img *photo, const merlin_hint *hint, object_searc
     ground.wanted = out->wanted;
     ground.tie = OBJECT_UNIT * TIE;
     if (st == OK && !hint && !stands_out(out))
-        st = fail(ERROR_INPUT, "no object stands out from the background; give a mask, or say where it is by a point "
-                               "or a box");
+        st = fail(MERLIN_BAD_INPUT,
+                  "no object stands out from the background; give a mask, or say where it is by a point "
+                  "or a box");
     if (st == OK) object_view_tie(&out->view, ground.tie, &ground.cut);
     if (st == OK) st = grow_all(out, photo, hint, &ground);
     grid_cut_free(&ground.cut);

@@ -29,7 +29,7 @@ typedef struct object_search {
     int hinted; /* candidates from this one on grew from a hint */
 } object_search;
 
-/* hint: sound, or NULL. ERROR_INPUT if nothing stands out from the border at all. */
+/* hint: sound, or NULL. MERLIN_BAD_INPUT if nothing stands out from the border at all. */
 status object_search_run(const img *photo, const merlin_hint *hint, object_search *out);
 void object_search_free(object_search *s);
 

@@ -49,7 +49,7 @@ status object_view_new(const img *photo, int side, float exposure, object_view *
     status s = img_resize(photo, out->width, out->height, &out->color);
     if (s != OK) return s;
     float *values = malloc(MIXTURE_VALUES * count * sizeof *values);
-    if (!values) return fail(ERROR_MEMORY, "no memory to look for the object");
+    if (!values) return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
     out->pixels.count = count;
     for (int k = 0; k < MIXTURE_VALUES; k++)
         out->pixels.value[k] = values + (size_t)k * count;

@@ -11,9 +11,10 @@
 #include "image/read/read.h"
 #include "image/write/write.h"
 
-static_assert((int)MERLIN_WRONG_USE == (int)ERROR_USAGE && (int)MERLIN_BAD_INPUT == (int)ERROR_INPUT &&
-                  (int)MERLIN_CANNOT_WRITE == (int)ERROR_OUTPUT && (int)MERLIN_NO_MEMORY == (int)ERROR_MEMORY &&
-                  (int)MERLIN_DEVICE_FAILED == (int)ERROR_DEVICE && (int)MERLIN_STOPPED == (int)ERROR_STOPPED,
+static_assert((int)MERLIN_WRONG_USE == (int)MERLIN_WRONG_USE && (int)MERLIN_BAD_INPUT == (int)MERLIN_BAD_INPUT &&
+                  (int)MERLIN_CANNOT_WRITE == (int)MERLIN_CANNOT_WRITE &&
+                  (int)MERLIN_NO_MEMORY == (int)MERLIN_NO_MEMORY &&
+                  (int)MERLIN_DEVICE_FAILED == (int)MERLIN_DEVICE_FAILED && (int)MERLIN_STOPPED == (int)MERLIN_STOPPED,
               "the public codes are the inside's");
 
 const char *merlin_version(void)
@@ -29,7 +30,7 @@ const char *merlin_error(void)
 merlin_status merlin_set_threads(int count)
 {
     if (count < 1 || count > THREADS_MOST)
-        return result_of(fail(ERROR_USAGE, "%d threads are not from 1 to %d", count, THREADS_MOST));
+        return fail(MERLIN_WRONG_USE, "%d threads are not from 1 to %d", count, THREADS_MOST);
     threads_use(count);
     return MERLIN_OK;
 }
@@ -39,22 +40,22 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
     if (color) *color = (merlin_image){0};
     if (alpha) *alpha = (merlin_image){0};
     status s = api_needs(__func__, path && color);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     img c = {0}, a = {0};
     s = img_read(path, &c, alpha ? &a : NULL);
     if (s == OK && a.data && mask_is_transparent(&a))
-        s = fail(ERROR_INPUT,
+        s = fail(MERLIN_BAD_INPUT,
                  "%s is transparent everywhere, so its alpha shows no object; give a mask, or save it "
                  "without alpha",
                  path);
     if (s != OK) {
         img_free(&c);
         img_free(&a);
-        return result_of(s);
+        return s;
     }
     if (a.data && mask_is_opaque(&a)) img_free(&a);
-    *color = image_of(&c);
-    if (alpha) *alpha = image_of(&a);
+    *color = c;
+    if (alpha) *alpha = a;
     return MERLIN_OK;
 }
 
@@ -62,29 +63,29 @@ merlin_status merlin_mask_read(const char *path, merlin_image *mask)
 {
     if (mask) *mask = (merlin_image){0};
     status s = api_needs(__func__, path && mask);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     img m = {0};
     s = img_read_mask(path, &m);
-    *mask = image_of(&m);
-    return result_of(s);
+    *mask = m;
+    return s;
 }
 
 merlin_status merlin_image_write(const char *path, const merlin_image *image)
 {
     status s = api_needs(__func__, path && image);
-    if (s != OK) return result_of(s);
-    img m = img_of(image);
+    if (s != OK) return s;
+    img m = *image;
     if (!m.data || m.width < 1 || m.height < 1)
-        return result_of(fail(ERROR_USAGE, "cannot write %s: the image has no pixels", path));
+        return fail(MERLIN_WRONG_USE, "cannot write %s: the image has no pixels", path);
     if (!file_ends_in(path, ".png"))
-        return result_of(fail(ERROR_USAGE, "cannot write %s: a PNG is written, so let its name end in .png", path));
-    return result_of(img_write_png(path, &m, IMG_SRGB8));
+        return fail(MERLIN_WRONG_USE, "cannot write %s: a PNG is written, so let its name end in .png", path);
+    return img_write_png(path, &m, IMG_SRGB8);
 }
 
 void merlin_image_free(merlin_image *image)
 {
     if (!image) return;
-    img m = img_of(image);
+    img m = *image;
     img_free(&m);
     *image = (merlin_image){0};
 }
@@ -103,32 +104,32 @@ merlin_status merlin_model_open(const char *weights, merlin_model **out)
 {
     if (out) *out = NULL;
     status s = api_needs(__func__, weights && out);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     merlin_model *model = calloc(1, sizeof *model);
-    if (!model) return result_of(fail(ERROR_MEMORY, "no memory for a model"));
+    if (!model) return fail(MERLIN_NO_MEMORY, "no memory for a model");
     s = network_open(weights, &model->network);
     if (s != OK)
         free(model);
     else
         *out = model;
-    return result_of(s);
+    return s;
 }
 
 merlin_status merlin_model_add_flash(merlin_model *model, const char *weights)
 {
     status s = api_needs(__func__, model && weights);
-    if (s == OK && model->flash) s = fail(ERROR_USAGE, "the model has another for flashes already");
+    if (s == OK && model->flash) s = fail(MERLIN_WRONG_USE, "the model has another for flashes already");
     if (s == OK && network_config(model->network)->lighting != MODEL_LIGHT_ANY)
-        s = fail(ERROR_USAGE, "%s tells no flash from other light, so that no other model can see flashes for it",
+        s = fail(MERLIN_WRONG_USE, "%s tells no flash from other light, so that no other model can see flashes for it",
                  network_config(model->network)->name);
     if (s == OK) s = network_open_later(weights, &model->flash);
-    return result_of(s);
+    return s;
 }
 
 status model_open_pair(const char *weights, const char *flash, merlin_model **out)
 {
-    status s = (status)merlin_model_open(weights, out);
-    if (s == OK && flash) s = (status)merlin_model_add_flash(*out, flash);
+    status s = merlin_model_open(weights, out);
+    if (s == OK && flash) s = merlin_model_add_flash(*out, flash);
     if (s == OK) return OK;
     merlin_model_close(*out);
     *out = NULL;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "estimate/photo/detail.h"
 
-#include "estimate/surface/fuse.h"
 #include "estimate/photo/input.h"
+#include "estimate/surface/fuse.h"
 #include "image/resize.h"
 
 /* Pixels of the larger picture to one of those by which coarse and fine are told apart. Normals are best with as many

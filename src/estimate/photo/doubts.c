@@ -5,14 +5,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "base/status.h"
-#include "estimate/surface/exposure.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"
 #include "estimate/object/mask.h"
+#include "estimate/surface/exposure.h"
 #include "image/color.h"
 #include "image/metadata/exif.h"
-#include "image/public.h"
 #include "image/read/read.h"
 
 /* merlin.h says what they mean; docs/notes/doubts.md how they were found. */
@@ -38,7 +39,7 @@ static size_t covered(const img *mask, int x, int y, int step_x, int step_y, int
 
 static coverage coverage_of(const merlin_maps *maps)
 {
-    img mask = img_of(&maps->mask);
+    img mask = maps->mask;
     int w = mask.width, h = mask.height;
     coverage c = {.all = img_value_count(&mask)};
     for (int y = 0; y < h; y++)
@@ -97,7 +98,7 @@ static bool is_flat(const img *photo, const img *mask, int x, int y)
 static pixels pixels_of(const merlin_maps *maps)
 {
     const float black = 0.002f, white = 0.98f;
-    img photo = img_of(&maps->photo), mask = img_of(&maps->mask);
+    img photo = maps->photo, mask = maps->mask;
     pixels p = {0};
     for (int y = 0; y < photo.height; y++) {
         img_span span = img_row_span(&mask, y);
@@ -323,7 +324,7 @@ merlin_status merlin_shot_read(const char *path, merlin_shot *out)
 {
     if (out) *out = (merlin_shot){0};
     status s = api_needs(__func__, path && out);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     exif_facts facts;
     exif_read(path, &facts);
     img_facts file = img_look(path);

@@ -7,13 +7,13 @@
 
 #include "base/progress.h"
 #include "estimate/api.h"
+#include "estimate/light/found_light.h"
+#include "estimate/light/relight_env.h"
 #include "estimate/photo/detail.h"
 #include "estimate/photo/doubts.h"
-#include "estimate/surface/exposure.h"
-#include "estimate/light/found_light.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/light_choice.h"
-#include "estimate/light/relight_env.h"
+#include "estimate/surface/exposure.h"
 #include "image/read/read.h"
 
 enum { LEAST_SIDE = 16 };
@@ -53,44 +53,45 @@ static status lap(work *w, double *seconds)
     double now = clock_seconds();
     *seconds += now - w->clock;
     w->clock = now;
-    if (w->params->stop && w->params->stop()) return fail(ERROR_STOPPED, "stopped");
+    if (w->params->stop && w->params->stop()) return fail(MERLIN_STOPPED, "stopped");
     return OK;
 }
 
 static status check_photo(const img *photo)
 {
-    if (!photo->data) return fail(ERROR_USAGE, "the photograph has no pixels");
-    if (photo->channels != 3) return fail(ERROR_USAGE, "a photograph has 3 channels, not %d", photo->channels);
+    if (!photo->data) return fail(MERLIN_WRONG_USE, "the photograph has no pixels");
+    if (photo->channels != 3) return fail(MERLIN_WRONG_USE, "a photograph has 3 channels, not %d", photo->channels);
     if (photo->width < LEAST_SIDE || photo->height < LEAST_SIDE)
-        return fail(ERROR_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
+        return fail(MERLIN_BAD_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
                     photo->height, LEAST_SIDE, LEAST_SIDE);
     if ((size_t)photo->width * (size_t)photo->height > IMAGE_MOST_PIXELS)
-        return fail(ERROR_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
+        return fail(MERLIN_BAD_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
                     photo->width, photo->height);
     size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
     for (size_t i = 0; i < count; i++)
-        if (!isfinite(photo->data[i])) return fail(ERROR_INPUT, "the photograph has values that are not finite");
+        if (!isfinite(photo->data[i])) return fail(MERLIN_BAD_INPUT, "the photograph has values that are not finite");
     return OK;
 }
 
 static status check_params(const merlin_params *p)
 {
     if (p->size < NETWORK_LEAST_SIZE || p->size > NETWORK_LARGEST_SIZE || p->size % MODEL_SIZE_MULTIPLE != 0)
-        return fail(ERROR_USAGE, "the network's size must be a multiple of %d from %d to %d, not %d",
+        return fail(MERLIN_WRONG_USE, "the network's size must be a multiple of %d from %d to %d, not %d",
                     MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, p->size);
     if (p->fov != 0 && !(p->fov >= 1 && p->fov <= 150))
-        return fail(ERROR_USAGE, "a field of view must be from 1 to 150 degrees, not %g", (double)p->fov);
+        return fail(MERLIN_WRONG_USE, "a field of view must be from 1 to 150 degrees, not %g", (double)p->fov);
     if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
-    return fail(ERROR_USAGE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV, (double)p->exposure);
+    return fail(MERLIN_WRONG_USE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV,
+                (double)p->exposure);
 }
 
 status photo_object_choose(const merlin_image *photo, const merlin_image *given, const merlin_hint *hint,
                            photo_object *out)
 {
     double began = clock_seconds();
-    img picture = img_of(photo), mask = {0};
+    img picture = *photo, mask = {0};
     *out = (photo_object){0};
-    if (given) mask = img_of(given);
+    if (given) mask = *given;
     status s = check_photo(&picture);
     if (s == OK) s = mask_choose(&picture, &mask, hint, &out->mask, &out->choice);
     if (s == OK) s = crop_around(&out->mask, &out->crop);
@@ -136,7 +137,7 @@ static status place_photo(const work *w, merlin_image *to)
             for (int k = 0; k < 3; k++)
                 out[k] = cover * from[k];
         }
-    *to = image_of(&whole);
+    *to = whole;
     return s;
 }
 
@@ -156,13 +157,13 @@ static status take_out(work *w, merlin_image *object)
 static status check_seen(const img *photo, const img *mask)
 {
     if (mask_is_transparent(mask))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "the object is too thin or scattered: it covers half of no pixel of the %d×%d that the network "
                     "sees; give a larger size or a mask of one part",
                     mask->width, mask->height);
     for (size_t i = 0; i < img_value_count(photo); i++)
         if (photo->data[i] > 0) return OK;
-    return fail(ERROR_INPUT, "the object is black in this photograph: there is nothing to see its material by");
+    return fail(MERLIN_BAD_INPUT, "the object is black in this photograph: there is nothing to see its material by");
 }
 
 /* By what the caller says of the photograph, else by its EXIF. */
@@ -265,7 +266,7 @@ static status place(const work *w, img *from, merlin_image *to)
 {
     img whole = {0};
     if (is_whole(w)) {
-        *to = image_of(from);
+        *to = *from;
         *from = whole;
         return OK;
     }
@@ -273,7 +274,7 @@ static status place(const work *w, img *from, merlin_image *to)
     if (s != OK) return s;
     crop_put(from, w->crop, &w->crop_mask, &whole);
     img_free(from);
-    *to = image_of(&whole);
+    *to = whole;
     return OK;
 }
 
@@ -367,7 +368,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     watch_tell(w->watch, "refining", 0);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     if (network_config(n)->lighting == MODEL_LIGHT_ANY) found_light_take(w->low.lights, &maps->light);
-    img photo = img_of(&maps->photo);
+    img photo = maps->photo;
     if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
     if (s == OK) s = refine(w, &maps->light, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
     watch_tell(w->watch, "refining", 0.75);
@@ -383,7 +384,7 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
-    work w = {.params = params ? params : &defaults, .photo = img_of(photo), .owned = owned};
+    work w = {.params = params ? params : &defaults, .photo = *photo, .owned = owned};
     maps->size = network_side(w.params->size);
     take_object(&w, object, maps);
     find_lens(&w, maps);
@@ -407,12 +408,12 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
 {
     if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, model && photo && maps);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     photo_object object;
     s = photo_object_choose(photo, mask, params ? &params->hint : NULL, &object);
     if (params) object.shot = params->shot;
-    if (s == OK && params && params->stop && params->stop()) s = fail(ERROR_STOPPED, "stopped");
+    if (s == OK && params && params->stop && params->stop()) s = fail(MERLIN_STOPPED, "stopped");
     if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
     photo_object_free(&object);
-    return result_of(s);
+    return s;
 }

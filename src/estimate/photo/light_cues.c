@@ -120,7 +120,7 @@ static status bright_luminance(const planes *p, float *out, size_t *count)
 {
     float *values = malloc(img_value_count(&p->inside) * sizeof *values);
     *count = 0;
-    if (!values) return fail(ERROR_MEMORY, "no memory to judge the light");
+    if (!values) return fail(MERLIN_NO_MEMORY, "no memory to judge the light");
     for (size_t i = 0; i < img_value_count(&p->inside); i++)
         if (p->inside.data[i] > 0) values[(*count)++] = p->light.data[i];
     *out = quantile(values, *count, 0.95f);
@@ -248,7 +248,7 @@ static status judge_slopes(const planes *p, light_cues *out)
 {
     size_t room = img_value_count(&p->inside);
     float *data = malloc(7 * room * sizeof *data);
-    if (!data) return fail(ERROR_MEMORY, "no memory to judge the light");
+    if (!data) return fail(MERLIN_NO_MEMORY, "no memory to judge the light");
     lists l = {data, data + room, data + 2 * room, data + 3 * room, data + 4 * room, data + 6 * room, 0, 0};
     take_slopes(p, &l);
     out->known = l.band >= FEWEST && l.all >= FEWEST;
@@ -266,7 +266,7 @@ static status judge_shape(const surface *maps, const planes *p, light_cues *out)
     size_t room = img_value_count(&p->inside), rim = 0, core = 0, inward = 0;
     double outward = 0;
     float *depths = malloc(2 * room * sizeof *depths);
-    if (!depths) return fail(ERROR_MEMORY, "no memory to judge the shape");
+    if (!depths) return fail(MERLIN_NO_MEMORY, "no memory to judge the shape");
     float *core_depths = depths + room;
     float deepest = 0, reach = fmaxf(5, 0.12f * p->radius);
     for (size_t i = 0; i < room; i++)

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/progress.h"
+#include "estimate/photo/view.h"
 #include "estimate/surface/fuse.h"
 #include "estimate/surface/smooth.h"
-#include "estimate/photo/view.h"
 #include "optics/orientation.h"
 
 typedef struct compiled {
@@ -56,20 +56,20 @@ static status load_params(network *n)
     if (s != OK || is_same_config(&now, &n->config)) return s;
     nn_params_free(n->params);
     n->params = NULL;
-    return fail(ERROR_INPUT, "%s was replaced by other weights since it was opened", n->weights);
+    return fail(MERLIN_BAD_INPUT, "%s was replaced by other weights since it was opened", n->weights);
 }
 
 status network_open_later(const char *weights, network **out)
 {
     *out = NULL;
     network *n = calloc(1, sizeof *n);
-    if (!n) return fail(ERROR_MEMORY, "no memory for a model");
+    if (!n) return fail(MERLIN_NO_MEMORY, "no memory for a model");
     if (pthread_mutex_init(&n->lock, NULL) != 0) {
         free(n);
-        return fail(ERROR_MEMORY, "no memory for a lock");
+        return fail(MERLIN_NO_MEMORY, "no memory for a lock");
     }
     n->weights = strdup(weights);
-    status s = n->weights ? model_load_config(weights, &n->config) : fail(ERROR_MEMORY, "no memory for a model");
+    status s = n->weights ? model_load_config(weights, &n->config) : fail(MERLIN_NO_MEMORY, "no memory for a model");
     if (s != OK)
         network_close(n);
     else
@@ -235,7 +235,7 @@ static void put(nn_program *p, const char *name, const img *from, float scale, f
 static status take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out)
 {
     const float *from = nn_output_data(p, name);
-    if (!from) return fail(ERROR_USAGE, "this model has no output \"%s\"", name);
+    if (!from) return fail(MERLIN_WRONG_USE, "this model has no output \"%s\"", name);
     status s = img_new(out, size, size, channels);
     if (s != OK) return s;
     size_t count = img_value_count(out);
@@ -310,7 +310,7 @@ static status estimate_views(network *n, const subject *at, int views, int (*sto
     status s = view_mean_new(&n->config, at->photo->width, out);
     for (int view = 0; view < views && s == OK; view++) {
         network_estimation turned = {0};
-        if (stop && stop()) s = fail(ERROR_STOPPED, "stopped");
+        if (stop && stop()) s = fail(MERLIN_STOPPED, "stopped");
         if (s == OK) s = estimate_view(n, at, view, view_outputs, &turned);
         if (s == OK) view_mean_add(out, &turned, view, 1.0f / (float)views);
         network_estimation_free(&turned);
@@ -339,7 +339,7 @@ static status finish(const network *n, const subject *at, surface *maps)
 static status check_views(int views)
 {
     if (views >= 1 && views <= ORIENTATIONS) return OK;
-    return fail(ERROR_USAGE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
+    return fail(MERLIN_WRONG_USE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
 }
 
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
@@ -360,7 +360,7 @@ status network_lights(network *n, const img *photo, const img *mask, const sight
 {
     const subject at = {photo, mask, how};
     if (n->config.lighting != MODEL_LIGHT_ANY)
-        return fail(ERROR_USAGE, "model \"%s\" does not tell what lights a photograph", n->config.name);
+        return fail(MERLIN_WRONG_USE, "model \"%s\" does not tell what lights a photograph", n->config.name);
     pthread_mutex_lock(&n->lock);
     status s = run_view(n, &at, 0, light_outputs, &n->lights);
     if (s == OK) memcpy(lights, nn_output_data(n->lights.program, "lights"), MODEL_LIGHTS * sizeof *lights);
@@ -387,7 +387,7 @@ status network_normals(network *n, const img *photo, const img *mask, const sigh
     if (s == OK) s = img_new(normal, photo->width, photo->height, 3);
     pthread_mutex_lock(&n->lock);
     for (int view = 0; view < views && s == OK; view++)
-        s = stop && stop() ? fail(ERROR_STOPPED, "stopped") : add_normals(n, &at, view, 1.0f / (float)views, normal);
+        s = stop && stop() ? fail(MERLIN_STOPPED, "stopped") : add_normals(n, &at, view, 1.0f / (float)views, normal);
     pthread_mutex_unlock(&n->lock);
     if (s == OK && n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(lens_of(how), mask, normal);
     if (s == OK) s = smooth_inside(normal, mask);
@@ -416,9 +416,9 @@ status network_look_new(network *n, const img *photo, const img *mask, const sig
     const subject at = {photo, mask, how};
     *out = NULL;
     if (n->config.relight != MODEL_RELIGHT_NETWORK)
-        return fail(ERROR_USAGE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
+        return fail(MERLIN_WRONG_USE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
     network_look *seen = calloc(1, sizeof *seen);
-    if (!seen) return fail(ERROR_MEMORY, "no memory for what the network sees");
+    if (!seen) return fail(MERLIN_NO_MEMORY, "no memory for what the network sees");
     status s = img_copy(&seen->mask, mask);
     pthread_mutex_lock(&n->lock);
     for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
@@ -461,8 +461,8 @@ status network_relight(network *n, const network_look *look, const illumination 
 {
     *direct = (img){0};
     if (light->sh && n->config.lighting != MODEL_LIGHT_BOTH)
-        return fail(ERROR_USAGE, "model \"%s\" relights by point lights only, not by environments; relight by BRDF",
-                    n->config.name);
+        return fail(MERLIN_WRONG_USE,
+                    "model \"%s\" relights by point lights only, not by environments; relight by BRDF", n->config.name);
     pthread_mutex_lock(&n->lock);
     status s = img_new(direct, look->mask.width, look->mask.height, 3);
     for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)

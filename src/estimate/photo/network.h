@@ -30,7 +30,7 @@ static inline int network_side(int size)
 
 typedef struct network network;
 
-/* ERROR_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type. */
+/* MERLIN_BAD_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type. */
 status network_open(const char *weights, network **out);
 /* The configuration alone; the parameters, most of the file, are read when a program is first made. */
 status network_open_later(const char *weights, network **out);
@@ -56,8 +56,8 @@ double network_take_compile_seconds(network *n);
  * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
-/* Tells what lit the photograph alone, as network_estimate's first view does: ERROR_USAGE unless it is a model of any
- * light. */
+/* Tells what lit the photograph alone, as network_estimate's first view does: MERLIN_WRONG_USE unless it is a model of
+ * any light. */
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
 void network_estimation_free(network_estimation *e);
 /* The normals alone, as of network_estimate: for what is fine in a larger picture. */
@@ -65,13 +65,13 @@ status network_normals(network *n, const img *photo, const img *mask, const sigh
                        img *normal);
 
 /* What the relighting decoder takes of a photograph, whatever the light; as photo and mask of network_estimate.
- * ERROR_USAGE if the model has no such decoder. */
+ * MERLIN_WRONG_USE if the model has no such decoder. */
 typedef struct network_look network_look;
 status network_look_new(network *n, const img *photo, const img *mask, const sight *how, network_look **out);
 void network_look_free(network_look *look);
 
 /* That photograph under other light, by the relighting decoder of the same network, the mean of NETWORK_VIEWS
- * orientations; without bounces. ERROR_USAGE if the model does not take environments. */
+ * orientations; without bounces. MERLIN_WRONG_USE if the model does not take environments. */
 status network_relight(network *n, const network_look *look, const illumination *light, img *direct);
 
 /* Bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point lights and

@@ -83,7 +83,7 @@ status view_features_take(nn_program *maps, const model_config *config, int size
         total += out->counts[i];
     }
     float *to = out->values = malloc(total * sizeof *to);
-    if (!to) return fail(ERROR_MEMORY, "no memory for what the network sees");
+    if (!to) return fail(MERLIN_NO_MEMORY, "no memory for what the network sees");
     for (int i = 0; i < MODEL_FEATURES; to += out->counts[i++])
         if (out->counts[i]) memcpy(to, nn_output_data(maps, model_features[i]), out->counts[i] * sizeof *to);
     return OK;

@@ -28,7 +28,7 @@ void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int 
 
 /* What the relighting decoder takes of a view (model_features), whatever the light: from picture 0 of a program of
  * MODEL_MAPS that has run, into picture `slot` of one of MODEL_RELIGHT, before every run. What out held is freed.
- * ERROR_MEMORY. */
+ * MERLIN_NO_MEMORY. */
 typedef struct view_features {
     size_t counts[MODEL_FEATURES]; /* values of each; 0: the variant does without */
     float *values;

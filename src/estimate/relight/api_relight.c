@@ -19,7 +19,7 @@ static status take_light(const float *light, lamp *place)
     if (!light) return OK;
     *place = lamp_at(vec3_of(light));
     if (isfinite(light[0]) && isfinite(light[1]) && isfinite(light[2])) return OK;
-    return fail(ERROR_USAGE, "the light's position is not finite");
+    return fail(MERLIN_WRONG_USE, "the light's position is not finite");
 }
 
 /* Into the photograph's frame. */
@@ -28,7 +28,7 @@ static status put_back(const merlin_maps *maps, const img *square, const img *ma
     img whole = {0};
     status s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
     if (s == OK) crop_put(square, crop_of(maps), mask, &whole);
-    *out = image_of(&whole);
+    *out = whole;
     return s;
 }
 
@@ -74,7 +74,7 @@ merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const
 {
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && light && out);
-    return result_of(s == OK ? relight_by(model, maps, light, NULL, how, out) : s);
+    return s == OK ? relight_by(model, maps, light, NULL, how, out) : s;
 }
 
 merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps *maps, const merlin_environment *env,
@@ -82,7 +82,7 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
 {
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, model && maps && env && out);
-    return result_of(s == OK ? relight_by(model, maps, light, &env->map, how, out) : s);
+    return s == OK ? relight_by(model, maps, light, &env->map, how, out) : s;
 }
 
 merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
@@ -92,13 +92,13 @@ merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps,
     found_lights lights = {.count = 0};
     status s = api_needs(__func__, model && maps && out);
     if (s == OK && how == MERLIN_BY_NETWORK)
-        s = fail(ERROR_USAGE, "the relighting decoder knows one lamp alone; relight by BRDF");
-    if (s == OK && !isfinite(turn)) s = fail(ERROR_USAGE, "the light's turn must be finite");
+        s = fail(MERLIN_WRONG_USE, "the relighting decoder knows one lamp alone; relight by BRDF");
+    if (s == OK && !isfinite(turn)) s = fail(MERLIN_WRONG_USE, "the light's turn must be finite");
     if (s == OK) s = found_light_stand(&maps->light, turn, &lights);
     const lighting by = {lights.lamps, lights.count, found_lights_rest(&lights)};
     if (s == OK) s = relight_maps(model, maps, &by, how, out);
     env_map_free(&lights.rest);
-    return result_of(s);
+    return s;
 }
 
 /* ---- many lights ---- */
@@ -111,17 +111,18 @@ merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int
     const lamp flash = lamp_at(vec3_make(0, 0, 0));
     if (s == OK) s = stage_check(how, &flash, false);
     if (s == OK && (side < 0 || side > LARGEST_SIDE))
-        s = fail(ERROR_USAGE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE, side);
-    if (s != OK) return result_of(s);
+        s = fail(MERLIN_WRONG_USE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE,
+                 side);
+    if (s != OK) return s;
     merlin_stage *made = calloc(1, sizeof *made);
-    if (!made) return result_of(fail(ERROR_MEMORY, "no memory for a stage"));
+    if (!made) return fail(MERLIN_NO_MEMORY, "no memory for a stage");
     made->network = model_network(model, maps, how);
     s = stage_new(made->network, maps, side, how, &made->stage);
     if (s != OK)
         free(made);
     else
         *out = made;
-    return result_of(s);
+    return s;
 }
 
 merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const merlin_environment *environment,
@@ -130,15 +131,15 @@ merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const m
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, st && out);
     if (s == OK && !light && !environment)
-        s = fail(ERROR_USAGE, "neither a light nor an environment to relight the stage by");
+        s = fail(MERLIN_WRONG_USE, "neither a light nor an environment to relight the stage by");
     lamp place;
     img square = {0};
     if (s == OK) s = take_light(light, &place);
     if (s == OK) s = stage_check(st->stage.how, light ? &place : NULL, environment);
     if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
     if (s == OK) s = stage_relight(st->network, &st->stage, &place, light != NULL, &square);
-    if (s != OK) return result_of(s);
-    *out = image_of(&square);
+    if (s != OK) return s;
+    *out = square;
     return MERLIN_OK;
 }
 

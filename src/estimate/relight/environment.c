@@ -41,7 +41,7 @@ static void bring_to_one(img *picture)
 static status prepare(const char *path, float turn, float exposure, env_map *map)
 {
     float mean = env_map_mean(map);
-    if (!(mean > 0)) return fail(ERROR_INPUT, "%s is black all over: no light to relight by", path);
+    if (!(mean > 0)) return fail(MERLIN_BAD_INPUT, "%s is black all over: no light to relight by", path);
     env_map_scale(map, MEAN_LUMINANCE * exp2f(exposure) / mean);
     env_map_turn(map, turn);
     return OK;
@@ -51,12 +51,12 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
 {
     if (out) *out = NULL;
     status s = api_needs(__func__, path && out);
-    if (s != OK) return result_of(s);
+    if (s != OK) return s;
     if (!isfinite(turn) || !(fabsf(exposure) <= MOST_EXPOSURE))
-        return result_of(fail(ERROR_USAGE, "an environment's turn must be finite and its exposure within %g EV",
-                              (double)MOST_EXPOSURE));
+        return fail(MERLIN_WRONG_USE, "an environment's turn must be finite and its exposure within %g EV",
+                    (double)MOST_EXPOSURE);
     merlin_environment *e = calloc(1, sizeof *e);
-    if (!e) return result_of(fail(ERROR_MEMORY, "no memory for an environment"));
+    if (!e) return fail(MERLIN_NO_MEMORY, "no memory for an environment");
     img picture = {0};
     s = img_read_latlong(path, &picture);
     if (s == OK) e->negative = share_negative(&picture);
@@ -68,7 +68,7 @@ merlin_status merlin_environment_read(const char *path, float turn, float exposu
         merlin_environment_free(e);
     else
         *out = e;
-    return result_of(s);
+    return s;
 }
 
 void merlin_environment_free(merlin_environment *e)

@@ -127,14 +127,17 @@ static status dark(const stage *s, img *full, img *low)
 status stage_check(merlin_relighting how, const lamp *light, bool environment)
 {
     if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
-        return fail(ERROR_USAGE, "no way of relighting has the number %d", (int)how);
+        return fail(MERLIN_WRONG_USE, "no way of relighting has the number %d", (int)how);
     if (how != MERLIN_BY_NETWORK) return OK;
     if (!light)
-        return fail(ERROR_USAGE, "the relighting decoder needs a point light beside the environment; relight by BRDF");
-    if (light->distant) return fail(ERROR_USAGE, "the relighting decoder knows no distant lights; relight by BRDF");
+        return fail(MERLIN_WRONG_USE,
+                    "the relighting decoder needs a point light beside the environment; relight by BRDF");
+    if (light->distant)
+        return fail(MERLIN_WRONG_USE, "the relighting decoder knows no distant lights; relight by BRDF");
     if (environment && !is_plain(light))
-        return fail(ERROR_USAGE, "beside an environment the relighting decoder knows white light of power 1 alone; "
-                                 "relight by BRDF");
+        return fail(MERLIN_WRONG_USE,
+                    "beside an environment the relighting decoder knows white light of power 1 alone; "
+                    "relight by BRDF");
     return OK;
 }
 

@@ -3,8 +3,8 @@
 #include <stdbool.h>
 
 #include "estimate/api.h"
-#include "estimate/surface/exposure.h"
 #include "estimate/photo/input.h"
+#include "estimate/surface/exposure.h"
 #include "image/resize.h"
 
 /* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
@@ -34,7 +34,7 @@ status maps_check(const merlin_maps *maps)
     for (int i = 0; i < count; i++)
         sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
                  images[i]->height == maps->albedo.height;
-    return sound ? OK : fail(ERROR_USAGE, "these maps are empty or incomplete");
+    return sound ? OK : fail(MERLIN_WRONG_USE, "these maps are empty or incomplete");
 }
 
 static camera_lens lens_of(const merlin_maps *maps)
@@ -47,9 +47,9 @@ static status crop_surface(const merlin_maps *maps, surface *out)
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
     img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
     status s = OK;
-    img mask = img_of(&maps->mask);
+    img mask = maps->mask;
     for (int i = 0; i < 5 && s == OK; i++) {
-        img whole = img_of(from[i]);
+        img whole = *from[i];
         s = crop_take(&whole, crop_of(maps), &mask, to[i]);
     }
     out->lens = lens_of(maps);
@@ -69,7 +69,7 @@ static status surface_at(const surface *from, int side, surface *out)
 
 static status take_mask(const merlin_maps *maps, img *out)
 {
-    img whole = img_of(&maps->mask);
+    img whole = maps->mask;
     return crop_take(&whole, crop_of(maps), &whole, out);
 }
 
@@ -77,7 +77,7 @@ static status take_mask(const merlin_maps *maps, img *out)
 static status take_map(const merlin_maps *maps, const merlin_image *map, const img *mask, const img *resized_mask,
                        img *out)
 {
-    img whole = img_of(map), cover = img_of(&maps->mask), part = {0};
+    img whole = *map, cover = maps->mask, part = {0};
     status s = crop_take(&whole, crop_of(maps), &cover, &part);
     if (s == OK) s = surface_resize_image(&part, mask, resized_mask, out);
     img_free(&part);
@@ -127,7 +127,7 @@ status maps_albedo(const merlin_maps *maps, int side, img *out)
 /* The photograph as the network saw it. */
 static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
-    img whole = img_of(&maps->photo), cover = img_of(&maps->mask), part = {0};
+    img whole = maps->photo, cover = maps->mask, part = {0};
     status s = crop_take(&whole, crop_of(maps), &cover, &part);
     if (s == OK) s = img_resize(&part, maps->size, maps->size, out);
     img_free(&part);
@@ -183,7 +183,7 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
 {
     *out = (stage){.how = how};
-    img mask = {0}, photo = img_of(&maps->photo);
+    img mask = {0}, photo = maps->photo;
     status s = maps_check(maps);
     if (s == OK) out->white = exposure_white(&photo, maps->gain);
     if (s == OK) s = take_mask(maps, &mask);

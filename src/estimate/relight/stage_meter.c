@@ -70,7 +70,7 @@ static float white_facing(const lamp *l)
 status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white)
 {
     histogram *h = calloc(1, sizeof *h);
-    if (!h) return fail(ERROR_MEMORY, "no memory to measure an exposure");
+    if (!h) return fail(MERLIN_NO_MEMORY, "no memory to measure an exposure");
     size_t step = (count + MOST_LAMPS - 1) / MOST_LAMPS;
     float facing = 0;
     status result = OK;

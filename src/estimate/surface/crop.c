@@ -38,7 +38,7 @@ status crop_around(const img *mask, crop_square *out)
 {
     bounds b = bounds_of(mask);
     if (b.pixels < FEWEST_PIXELS)
-        return fail(ERROR_INPUT, "the mask selects %s (%zu pixels are half white or more; at least %d are needed)",
+        return fail(MERLIN_BAD_INPUT, "the mask selects %s (%zu pixels are half white or more; at least %d are needed)",
                     b.pixels ? "too little" : "nothing", b.pixels, FEWEST_PIXELS);
     int width = b.right - b.left + 1, height = b.bottom - b.top + 1;
     int longest = width > height ? width : height;

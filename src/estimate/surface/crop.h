@@ -18,7 +18,7 @@ typedef struct crop_square {
 enum { CROP_FARTHEST = 65536 };
 bool crop_is_sound(crop_square c);
 
-/* mask: 1 channel; a pixel belongs to the object from 0.5 on. ERROR_INPUT if fewer than 64 pixels do. */
+/* mask: 1 channel; a pixel belongs to the object from 0.5 on. MERLIN_BAD_INPUT if fewer than 64 pixels do. */
 status crop_around(const img *mask, crop_square *out);
 
 /* Tells whether the object lies in the square, but for `slack` pixels a side, and is at least as long as this share of

@@ -35,7 +35,7 @@ static status fusion_new(const img *mask, fusion *f)
     size_t length = f->count + 2 * f->width;
     f->memory = calloc(ARRAYS * length, sizeof *f->memory);
     if (!f->memory)
-        return fail(ERROR_MEMORY, "no memory to fuse depth and normals of %dx%d", mask->width, mask->height);
+        return fail(MERLIN_NO_MEMORY, "no memory to fuse depth and normals of %dx%d", mask->width, mask->height);
     float **arrays[ARRAYS] = {&f->right,    &f->down, &f->step_right, &f->step_down,
                               &f->residual, &f->u,    &f->direction,  &f->product};
     for (size_t i = 0; i < ARRAYS; i++)

@@ -36,6 +36,6 @@ exr_context_initializer_t exr_quiet(void)
 
 status exr_fail(status s, const char *verb, const char *path, exr_result_t code)
 {
-    if (code == EXR_ERR_OUT_OF_MEMORY) s = ERROR_MEMORY;
+    if (code == EXR_ERR_OUT_OF_MEMORY) s = MERLIN_NO_MEMORY;
     return fail(s, "cannot %s %s: %s", verb, path, complaint[0] ? complaint : exr_get_default_error_message(code));
 }

@@ -29,10 +29,10 @@ typedef struct source {
 static status fail_reading(const exr_file *f, exr_result_t code)
 {
     if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED) /* DWAA and DWAB, in OpenEXR 3.1.5 */
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "cannot read %s: the OpenEXR installed here does not know its compression; save it with ZIP or PIZ",
                     f->path);
-    return exr_fail(ERROR_INPUT, "read", f->path, code);
+    return exr_fail(MERLIN_BAD_INPUT, "read", f->path, code);
 }
 
 static size_t channel_bytes(const exr_attr_chlist_entry_t *c)
@@ -44,13 +44,14 @@ static status check_layout(const exr_file *f)
 {
     long long width = 1LL + f->window.max.x - f->window.min.x, height = 1LL + f->window.max.y - f->window.min.y;
     if (width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE)
-        return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
-                    f->path, width, height, IMAGE_MAX_SIDE);
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", f->path,
+                    width, height, IMAGE_MAX_SIDE);
     if (f->storage != EXR_STORAGE_SCANLINE && f->storage != EXR_STORAGE_TILED)
-        return fail(ERROR_INPUT, "cannot read %s: deep EXR files are not supported, flatten it first", f->path);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: deep EXR files are not supported, flatten it first", f->path);
     for (int i = 0; i < f->channels->num_channels; i++)
         if (f->channels->entries[i].x_sampling != 1 || f->channels->entries[i].y_sampling != 1)
-            return fail(ERROR_INPUT,
+            return fail(MERLIN_BAD_INPUT,
                         "cannot read %s: its channel %s is subsampled, which is not supported; save it as RGB", f->path,
                         f->channels->entries[i].name.str);
     return OK;
@@ -85,7 +86,7 @@ status exr_open(const char *path, exr_file **out)
     if (f) f->path = strdup(path);
     if (!f || !f->path) {
         free(f);
-        return fail(ERROR_MEMORY, "no memory to read %s", path);
+        return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
     }
     status s = open_file(f);
     if (s != OK) {
@@ -283,7 +284,7 @@ static status check_density(const exr_file *f, size_t channels)
     double bytes = (double)(with_colour * sizeof(float)) * exr_width(f) * exr_height(f);
     struct stat about;
     if (bytes <= harmless || stat(f->path, &about) != 0 || bytes <= densest * (double)about.st_size) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: its %d x %d pixels would take %.0f MB of memory, and the file has %.1f MB of content; "
                 "crop it to what it shows",
                 f->path, exr_width(f), exr_height(f), bytes / 0x1p20, (double)about.st_size / 0x1p20);
@@ -295,11 +296,11 @@ status exr_read(exr_file *f, const exr_target *targets, size_t count)
     if (s != OK) return s;
     exr_forget_complaint();
     source *sources = calloc(count + 1, sizeof *sources);
-    if (!sources) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    if (!sources) return fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
     for (size_t i = 0; i < count; i++) {
         if (find_source(f, targets[i].name, &sources[i])) continue;
         free(sources);
-        return fail(ERROR_INPUT, "cannot read %s: it has no channel %s", f->path, targets[i].name);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: it has no channel %s", f->path, targets[i].name);
     }
     reader r = {.file = f, .targets = targets, .sources = sources, .count = count};
     for (int i = 0; i < f->channels->num_channels; i++)

@@ -179,7 +179,7 @@ static status write_file(writer *w, const char *temporary, const exr_attribute *
         exr_result_t closed = exr_finish(&w->context);
         if (r == EXR_ERR_SUCCESS) r = closed;
     }
-    return r == EXR_ERR_SUCCESS ? OK : exr_fail(ERROR_OUTPUT, "write", w->path, r);
+    return r == EXR_ERR_SUCCESS ? OK : exr_fail(MERLIN_CANNOT_WRITE, "write", w->path, r);
 }
 
 /* Done here because the library, refusing a channel, keeps its lock (3.1.5) and then never finishes. */
@@ -188,10 +188,10 @@ static status check_channels(const char *path, const exr_channel *channels, size
     for (size_t i = 0; i < count; i++) {
         size_t length = strlen(channels[i].name);
         if (length < 1 || length > 255)
-            return fail(ERROR_USAGE, "cannot write %s: a channel's name needs 1 to 255 letters", path);
+            return fail(MERLIN_WRONG_USE, "cannot write %s: a channel's name needs 1 to 255 letters", path);
         for (size_t j = 0; j < i; j++)
             if (strcmp(channels[i].name, channels[j].name) == 0)
-                return fail(ERROR_USAGE, "cannot write %s: two channels are called %s", path, channels[i].name);
+                return fail(MERLIN_WRONG_USE, "cannot write %s: two channels are called %s", path, channels[i].name);
     }
     return OK;
 }
@@ -200,7 +200,7 @@ status exr_write(const char *path, int width, int height, const exr_channel *cha
                  const exr_attribute *attributes, size_t attribute_count)
 {
     if (width < 1 || height < 1 || channel_count < 1)
-        return fail(ERROR_USAGE, "an EXR file of %d x %d pixels and %zu channels cannot be", width, height,
+        return fail(MERLIN_WRONG_USE, "an EXR file of %d x %d pixels and %zu channels cannot be", width, height,
                     channel_count);
     char *temporary = NULL;
     status s = check_channels(path, channels, channel_count);

@@ -9,8 +9,8 @@
 #include "base/file.h"
 #include "image/formats/float_part.h"
 #include "image/formats/picture_rows.h"
-#include "image/primaries.h"
 #include "image/metadata/tiff_head.h"
+#include "image/primaries.h"
 
 enum { MOSAIC = 32803, LINEAR_RAW = 34892, FLOATS = 3, D65 = 21, MOST_BELOW = 8 };
 enum {
@@ -75,7 +75,7 @@ bool picture_is_float_dng(const char *path)
 
 static status damaged(const dng *d)
 {
-    return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", d->path);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", d->path);
 }
 
 static int number(const dng *d, unsigned tag, int otherwise)
@@ -166,10 +166,10 @@ static status check(dng *d)
     if (s != OK) return s;
     bool channels = d->mosaic ? p->samples == 1 : p->samples == 1 || p->samples == 3;
     if (!channels || (p->bits != 16 && p->bits != 24 && p->bits != 32) || number(d, TIFF_PLANES, 1) != 1)
-        return fail(ERROR_INPUT, "cannot read %s: a raw picture of %d floats of %d bits a pixel is not read here",
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: a raw picture of %d floats of %d bits a pixel is not read here",
                     d->path, p->samples, p->bits);
     if (p->compression != 1 && p->compression != 8 && p->compression != 32946)
-        return fail(ERROR_INPUT, "cannot read %s: its floats are compressed in a way (%d) that is not read here",
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its floats are compressed in a way (%d) that is not read here",
                     d->path, p->compression);
     if (p->part_width < 1 || p->part_height < 1 || p->part_width > p->width + 4096 || p->part_height > p->height + 4096)
         return damaged(d);
@@ -185,7 +185,7 @@ static status check_mosaic(dng *d)
         uint32_t color = tiff_value_at(&d->t, d->page, MOSAIC_PATTERN, i);
         if (tiff_value(&d->t, d->page, MOSAIC_PERIOD) != 2 || tiff_value_at(&d->t, d->page, MOSAIC_PERIOD, 1) != 2 ||
             color > 2)
-            return fail(ERROR_INPUT,
+            return fail(MERLIN_BAD_INPUT,
                         "cannot read %s: its floats are a mosaic of another kind than red, green and blue in "
                         "squares of 2 x 2; develop it to a TIFF first",
                         d->path);
@@ -330,7 +330,7 @@ static status read_bands(dng *d, picture_rows *rows)
     float *line = malloc((size_t)(d->right - d->left) * 3 * sizeof *line);
     d->band = calloc((size_t)p->width * (size_t)d->band_rows * (size_t)p->samples, sizeof *d->band);
     status s = r.bytes && r.floats && line && d->band ? put_bands(d, &r, rows, line)
-                                                      : fail(ERROR_MEMORY, "no memory to read %s", d->path);
+                                                      : fail(MERLIN_NO_MEMORY, "no memory to read %s", d->path);
     free(d->band);
     free(line);
     free(r.data);
@@ -368,7 +368,7 @@ status picture_read_float_dng(const char *path, picture_colour how, img *color, 
     dng d = {.path = path};
     struct stat about;
     FILE *file = file_open(path);
-    if (!file) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    if (!file) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
     status s = fstat(fileno(file), &about) == 0 && tiff_open(&d.t, file) ? OK : damaged(&d);
     d.size = (uint64_t)about.st_size;
     if (s == OK) s = read_open(&d, how, color, head);

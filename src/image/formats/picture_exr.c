@@ -81,7 +81,7 @@ static status convert_primaries(const exr_file *f, const char *path, img *color)
     double m[9];
     if (color->channels != 3 || !exr_get_chromaticities(f, xy) || primaries_are_srgb(xy)) return OK;
     if (!primaries_to_srgb(xy, m))
-        return fail(ERROR_INPUT, "cannot read %s: its chromaticities are those of no colours", path);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its chromaticities are those of no colours", path);
     size_t values = img_value_count(color);
     for (size_t i = 0; i < values; i += 3) {
         const double v[3] = {color->data[i], color->data[i + 1], color->data[i + 2]};
@@ -102,7 +102,7 @@ static status show_frame(const exr_file *f, img *color, img *alpha)
 static status check_frame(const exr_file *f, const char *path)
 {
     exr_frame d = exr_display(f);
-    if (d.width < 1 || d.height < 1) return fail(ERROR_INPUT, "cannot read %s: its display window is empty", path);
+    if (d.width < 1 || d.height < 1) return fail(MERLIN_BAD_INPUT, "cannot read %s: its display window is empty", path);
     return picture_check_sides(path, d.width, d.height);
 }
 
@@ -113,10 +113,10 @@ static status refuse_channels(const exr_file *f, const char *path)
         const char name[] = {"RGB"[c], 0};
         if (!exr_has_channel(f, name) &&
             (exr_has_channel(f, "R") || exr_has_channel(f, "G") || exr_has_channel(f, "B")))
-            return fail(ERROR_INPUT, "cannot read %s: it has no channel %s beside the others of R, G and B", path,
+            return fail(MERLIN_BAD_INPUT, "cannot read %s: it has no channel %s beside the others of R, G and B", path,
                         name);
     }
-    return fail(ERROR_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: it has neither R, G and B nor Y, and no layer of colour", path);
 }
 
 /* Opens the first part that has a picture. */

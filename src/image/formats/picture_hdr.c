@@ -25,17 +25,18 @@ static status check_open(FILE *f, const char *path)
     while (next_line(f, line) && line[0])
         xyz |= strcmp(line, "FORMAT=32-bit_rle_xyze") == 0;
     if (xyz)
-        return fail(ERROR_INPUT, "cannot read %s: its colours are CIE XYZ; make it RGB first (ra_xyze -r -o)", path);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are CIE XYZ; make it RGB first (ra_xyze -r -o)",
+                    path);
     if (!next_line(f, line) || sscanf(line, "%*1[-+]%c %*d %*1[-+]%c", &first, &second) != 2) return OK;
     if (line[0] == '-' && first == 'Y' && strstr(line, "+X")) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: its rows run another way (%.40s) than -Y and +X; turn it first", path,
-                line);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: its rows run another way (%.40s) than -Y and +X; turn it first",
+                path, line);
 }
 
 status picture_check_hdr(const char *path)
 {
     FILE *f = file_open(path);
-    if (!f) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    if (!f) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
     status s = check_open(f, path);
     fclose(f);
     return s;

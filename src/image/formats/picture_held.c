@@ -2,8 +2,8 @@
 /* Pictures that decoders hold as a whole, however few of their pixels are kept: what a small file may make of memory.
  */
 #include "base/file.h"
-#include "image/metadata/box_file.h"
 #include "image/formats/picture.h"
+#include "image/metadata/box_file.h"
 
 /* Bytes a pixel that libwebp, libnsgif, libheif and libjpeg hold at most, measured, with what libvips adds. */
 enum { BYTES_WEBP = 12, BYTES_GIF = 12, BYTES_HEIC = 6, BYTES_SCANS = 5 };
@@ -51,6 +51,7 @@ status picture_check_cut(const char *path, picture_kind kind)
     const long long said =
         HEAD + ((long long)head[4] | (long long)head[5] << 8 | (long long)head[6] << 16 | (long long)head[7] << 24);
     if (size < 0 || size >= said) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: it is cut short, %ld of its %lld bytes are there; copy or save it again",
-                path, size, said);
+    return fail(MERLIN_BAD_INPUT,
+                "cannot read %s: it is cut short, %ld of its %lld bytes are there; copy or save it again", path, size,
+                said);
 }

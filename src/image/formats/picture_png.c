@@ -10,10 +10,10 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "image/metadata/exif.h"
-#include "image/metadata/exif_text.h"
 #include "image/formats/picture.h"
 #include "image/formats/picture_rows.h"
+#include "image/metadata/exif.h"
+#include "image/metadata/exif_text.h"
 
 /* Chunks are searched wherever they are: some programs write the orientation behind the pixels (ImageMagick). */
 typedef struct chunks {
@@ -164,7 +164,7 @@ static status find_light(reader *r, const char *path)
     }
     if (matrix != 0 || !picture_light_of_cicp(primaries, transfer, &r->layout.light))
         return fail(
-            ERROR_INPUT,
+            MERLIN_BAD_INPUT,
             "cannot read %s: its cICP chunk states primaries %d, transfer %d and matrix %d, which are not known "
             "here; save it as sRGB",
             path, primaries, transfer, matrix);
@@ -215,7 +215,7 @@ static bool read_all_rows(reader *r)
 
 static status damaged(const reader *r, const char *path)
 {
-    return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
 }
 
 static size_t line_bytes(const reader *r)
@@ -228,7 +228,7 @@ static status make_codes(reader *r, const char *path)
     size_t height = r->interlaced ? (size_t)r->layout.height : 1;
     r->codes = malloc(line_bytes(r) * height);
     r->rows = malloc(height * sizeof *r->rows);
-    if (!r->codes || !r->rows) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    if (!r->codes || !r->rows) return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
     for (size_t y = 0; y < height; y++)
         r->rows[y] = r->codes + y * line_bytes(r);
     return OK;
@@ -262,14 +262,14 @@ static status check_budget(const reader *r, const char *path)
 static status read_open(reader *r, const char *path, picture_colour how, img *color, img *alpha)
 {
     r->chunks = find_chunks(fileno(r->file));
-    if (r->chunks.overfull) return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
-    if (!read_head(r)) return fail(ERROR_INPUT, "cannot read %s: %s", path, r->words);
+    if (r->chunks.overfull) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
+    if (!read_head(r)) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, r->words);
     status s = check_budget(r, path);
     if (s == OK) s = find_light(r, path);
     if (s != OK || r->profile || !color) return s;
     r->layout.orientation = r->chunks.orientation;
     if (!begin_rows(r)) return damaged(r, path);
-    if (!is_long_enough(r)) return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+    if (!is_long_enough(r)) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
     s = make_codes(r, path);
     if (s == OK) s = picture_rows_new(&r->layout, how, color, alpha, &r->to);
     return s == OK ? read_rows(r, path) : s;
@@ -278,7 +278,7 @@ static status read_open(reader *r, const char *path, picture_colour how, img *co
 status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head)
 {
     reader r;
-    status s = reader_open(&r, path) ? OK : fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    status s = reader_open(&r, path) ? OK : fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
     if (s == OK) s = read_open(&r, path, how, color, alpha);
     *head = (picture_head){.width = r.layout.width,
                            .height = r.layout.height,

@@ -42,13 +42,13 @@ static void note_damage(void *damaged, const char *file, const int offset)
 static status refusal(const char *path, int error)
 {
     if (error == LIBRAW_FILE_UNSUPPORTED)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "cannot read %s: the LibRaw installed here knows no such raw picture; develop it to a TIFF first",
                     path);
-    if (error == LIBRAW_UNSUFFICIENT_MEMORY) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    if (error == LIBRAW_UNSUFFICIENT_MEMORY) return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
     if (error == LIBRAW_IO_ERROR || error == LIBRAW_DATA_ERROR)
-        return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
-    return fail(ERROR_INPUT, "cannot read %s: %s", path, raw.strerror(error));
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, raw.strerror(error));
 }
 
 /* A handle to close, with the file open in it. */
@@ -58,7 +58,7 @@ static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
     status s = library_need(&libraw);
     if (s != OK) return s;
     libraw_data_t *file = raw.init(WITHOUT_CALLBACKS);
-    if (!file) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    if (!file) return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
     raw.set_dataerror_handler(file, note_damage, damaged);
     int error = raw.open_file(file, path);
     s = error ? refusal(path, error) : picture_check_sides(path, file->sizes.iwidth, file->sizes.iheight);

@@ -43,7 +43,7 @@ static status set_mix(picture_rows *r)
     const picture_light *light = &r->layout.light;
     r->mixed = r->decode && r->channels == 3 && light->has_primaries;
     if (!r->mixed || primaries_to_srgb(light->xy, r->mix)) return OK;
-    return fail(ERROR_INPUT, "its primaries are those of no colours");
+    return fail(MERLIN_BAD_INPUT, "its primaries are those of no colours");
 }
 
 static status make_buffers(picture_rows *r)
@@ -57,7 +57,7 @@ static status make_buffers(picture_rows *r)
     if (sums) r->weight = calloc(img_value_count(r->color) / (size_t)r->channels, sizeof *r->weight);
     bool complete = r->line && r->cover && (!sums || r->weight);
     if (r->decode && l->sample != PICTURE_FLOAT) complete &= r->table != NULL;
-    return complete ? OK : fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", l->width, l->height);
+    return complete ? OK : fail(MERLIN_NO_MEMORY, "no memory for a picture of %d x %d pixels", l->width, l->height);
 }
 
 static status make_images(picture_rows *r, img *color, img *alpha)
@@ -77,7 +77,7 @@ status picture_rows_new(const picture_layout *layout, picture_colour how, img *c
 {
     *out = NULL;
     picture_rows *r = calloc(1, sizeof *r);
-    if (!r) return fail(ERROR_MEMORY, "no memory for a picture's rows");
+    if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a picture's rows");
     r->layout = *layout;
     r->channels = layout->bands - has_alpha(layout) < 3 ? 1 : 3;
     r->reduction = picture_reduction(layout->width, layout->height);

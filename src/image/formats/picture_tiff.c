@@ -124,7 +124,7 @@ static status check_samples(const tiff_head *t, uint64_t page, const char *path)
     uint32_t most = tiff_value(t, page, TIFF_PHOTOMETRIC) == CMYK ? 5 : 4;
     if (samples > most)
         return fail(
-            ERROR_INPUT,
+            MERLIN_BAD_INPUT,
             "cannot read %s: it has %u samples a pixel, not the %u at most of grey or colour with alpha; save it "
             "as RGB",
             path, samples, most);
@@ -142,12 +142,12 @@ static status check_meaning(const tiff_head *t, uint64_t page, const char *path)
     uint32_t meaning = tiff_value(t, page, TIFF_PHOTOMETRIC), bits = tiff_value(t, page, TIFF_BITS);
     uint32_t format = tiff_value(t, page, TIFF_SAMPLE_FORMAT);
     if (meaning == ICC_LAB || meaning == ITU_LAB)
-        return fail(ERROR_INPUT, "cannot read %s: its colours are %s L*a*b*; save it as RGB", path,
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are %s L*a*b*; save it as RGB", path,
                     meaning == ICC_LAB ? "ICC" : "ITU");
     bool whole = bits <= 2 || bits == 4 || bits == 8 || bits == 16;
     bool logarithmic = meaning == LOG_L || meaning == LOG_LUV; /* its decoder makes floats */
     if (logarithmic || (format == FLOATS ? bits == 32 : format != SIGNED && whole)) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: its samples are %s of %u bits; whole ones of 8 or 16 bits without a sign, or floats "
                 "of 32, are read",
                 path,
@@ -164,13 +164,14 @@ static status check_open(const tiff_head *t, const char *path, picture_tiff_page
     uint64_t page = t->page[found];
     *out = (picture_tiff_page){.number = found, .pages = t->pages};
     if (others)
-        return fail(ERROR_INPUT, "cannot read %s: it has %d pages of about the same size; save the one that is meant",
-                    path, others + 1);
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot read %s: it has %d pages of about the same size; save the one that is meant", path,
+                    others + 1);
     status s = check_meaning(t, page, path);
     if (s != OK) return s;
     /* those of JPEG its decoder makes RGB */
     if (tiff_value(t, page, TIFF_PHOTOMETRIC) == YCBCR && tiff_value(t, page, TIFF_COMPRESSION) != JPEG)
-        return fail(ERROR_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path);
     out->premultiplied =
         tiff_count(t, page, TIFF_EXTRA_SAMPLES) == 1 && tiff_value(t, page, TIFF_EXTRA_SAMPLES) == ASSOCIATED;
     s = check_samples(t, page, path);
@@ -181,9 +182,9 @@ status picture_check_tiff(const char *path, picture_tiff_page *out)
 {
     tiff_head t;
     FILE *file = file_open(path);
-    if (!file) return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+    if (!file) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
     status s = tiff_open(&t, file) ? check_open(&t, path, out)
-                                   : fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", path);
+                                   : fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
     fclose(file);
     return s;
 }

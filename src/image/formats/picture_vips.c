@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "image/formats/picture_rows.h"
 #include "image/metadata/box_file.h"
 #include "image/metadata/exif.h"
-#include "image/formats/picture_rows.h"
 #include "image/metadata/profile.h"
 #include "image/start.h"
 #include "image/vips_library.h"
@@ -76,7 +76,7 @@ static status find_heif_light(const char *path, picture_light *light)
         light->said = true;
         return OK;
     }
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: it states primaries %d and transfer %d, which are not known here; save it as sRGB",
                 path, n[0], n[1]);
 }
@@ -104,7 +104,7 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
     VipsImage *image = NULL;
     picture_tiff_page page = {.number = 0};
     loader *load = loader_of(kind);
-    if (!load) return fail(ERROR_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
+    if (!load) return fail(MERLIN_BAD_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
     status s = find_light(path, kind, &page, light);
     if (s != OK) return s;
     /* what is read in sequence is not kept for the next time, when the file may be another */
@@ -112,11 +112,11 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
                      ? load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, "page",
                             page.number, NULL)
                      : load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, NULL);
-    if (failed && (s = picture_check_cut(path, kind)) == OK) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (failed && (s = picture_check_cut(path, kind)) == OK) s = vips_refusal(MERLIN_BAD_INPUT, "read", path);
     if (failed) return s;
     s = picture_check_size(path, vips()->image_get_width(image), vips()->image_get_height(image));
     if (s == OK) s = picture_check_held(path, kind, vips()->image_get_width(image), vips()->image_get_height(image));
-    if (s == OK && !divide_by_alpha(&image, &page)) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (s == OK && !divide_by_alpha(&image, &page)) s = vips_refusal(MERLIN_BAD_INPUT, "read", path);
     if (s == OK)
         *out = image;
     else
@@ -187,7 +187,7 @@ static status find_sample(VipsImage *image, const char *path, picture_sample *sa
               : format == VIPS_FORMAT_USHORT ? PICTURE_UINT16
                                              : PICTURE_FLOAT;
     if (*sample != PICTURE_FLOAT || format == VIPS_FORMAT_FLOAT || format == VIPS_FORMAT_DOUBLE) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: its samples are of type %s; 8 or 16 bits or floats are read", path,
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: its samples are of type %s; 8 or 16 bits or floats are read", path,
                 vips()->enum_nick(vips()->band_format_get_type(), format));
 }
 
@@ -207,9 +207,9 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
     VipsImage *made = NULL;
     picture_rows *rows;
     if (layout->sample == PICTURE_FLOAT && !replace(image, &made, vips()->cast(*image, &made, VIPS_FORMAT_FLOAT, NULL)))
-        return vips_refusal(ERROR_INPUT, "read", path);
+        return vips_refusal(MERLIN_BAD_INPUT, "read", path);
     status s = picture_rows_new(layout, how, color, alpha, &rows);
-    if (s == OK && vips()->sink_disc(*image, put_rows, rows)) s = vips_refusal(ERROR_INPUT, "read", path);
+    if (s == OK && vips()->sink_disc(*image, put_rows, rows)) s = vips_refusal(MERLIN_BAD_INPUT, "read", path);
     picture_rows_free(rows);
     return s;
 }
@@ -234,10 +234,10 @@ static status decode_open(VipsImage **image, const request *r, picture_light lig
         status known = profile_light(*image, r->path, &light);
         if (known != OK) return known;
     }
-    if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(ERROR_INPUT, "read", r->path);
+    if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(MERLIN_BAD_INPUT, "read", r->path);
     VipsInterpretation space = vips()->image_get_interpretation(*image);
     if (!decode && !is_plain(space))
-        return fail(ERROR_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
                     vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = find_layout(*image, r->path, &layout);
     if (r->kind == PICTURE_PNG) layout.orientation = orientation_of(r->path);

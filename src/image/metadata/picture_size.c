@@ -10,20 +10,23 @@ enum { MOST_SIDE = 1000000, MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
 
 status picture_check_size(const char *path, long long width, long long height)
 {
-    if (width < 1 || height < 1) return fail(ERROR_INPUT, "cannot read %s: it has no pixels", path);
+    if (width < 1 || height < 1) return fail(MERLIN_BAD_INPUT, "cannot read %s: it has no pixels", path);
     if (width > MOST_SIDE || height > MOST_SIDE) /* a row of which is too much to hold */
-        return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
-                    path, width, height, MOST_SIDE);
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", path, width,
+                    height, MOST_SIDE);
     if (width <= MOST_PIXELS / height) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d million; make it smaller first",
-                path, width, height, MOST_PIXELS / 1000000);
+    return fail(MERLIN_BAD_INPUT,
+                "cannot read %s: it is %lld x %lld pixels, more than %d million; make it smaller first", path, width,
+                height, MOST_PIXELS / 1000000);
 }
 
 status picture_check_sides(const char *path, long long width, long long height)
 {
     if (width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE) return picture_check_size(path, width, height);
-    return fail(ERROR_INPUT, "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first",
-                path, width, height, IMAGE_MAX_SIDE);
+    return fail(MERLIN_BAD_INPUT,
+                "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", path, width,
+                height, IMAGE_MAX_SIDE);
 }
 
 status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice)
@@ -31,7 +34,7 @@ status picture_check_whole(const char *path, long long width, long long height, 
     status s = picture_check_size(path, width, height);
     if (s != OK || width * height <= MOST_BYTES / bytes) return s;
     return fail(
-        ERROR_INPUT,
+        MERLIN_BAD_INPUT,
         "cannot read %s: its %lld x %lld pixels would have to be held as a whole; save it %s or make it smaller", path,
         width, height, advice);
 }

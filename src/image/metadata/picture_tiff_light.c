@@ -32,8 +32,8 @@ static status find_curve(const tiff_head *t, uint64_t page, const char *path, pi
     light->said = true;
     if (distance(v, y, 0) < near) return OK;
     if (!(exponent > 0) || distance(v, y, exponent) >= near)
-        return fail(ERROR_INPUT, "cannot read %s: its TransferFunction is no curve that is known here; save it as sRGB",
-                    path);
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot read %s: its TransferFunction is no curve that is known here; save it as sRGB", path);
     light->curve = PICTURE_CURVE_POWER;
     light->exponent = (float)exponent;
     return OK;

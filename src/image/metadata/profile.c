@@ -86,7 +86,7 @@ status profile_light(VipsImage *image, const char *path, picture_light *out)
     *out = (picture_light){.said = false};
     if (!profile_is_fit(image) || vips()->image_get_blob(image, VIPS_META_ICC_NAME, &data, &size)) return OK;
     if (icc_light(data, size, out)) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: its floats have a colour profile that is no curve and three primaries; save it as "
                 "linear sRGB",
                 path);

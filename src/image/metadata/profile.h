@@ -15,7 +15,7 @@ bool profile_is_fit(VipsImage *image);
 /* Colours by the profile, alpha as it is; false without memory, or where the profile is damaged. */
 bool profile_apply(VipsImage *image, VipsImage **out);
 
-/* What a profile says of floats: ERROR_INPUT where it cannot be told (icc.h). */
+/* What a profile says of floats: MERLIN_BAD_INPUT where it cannot be told (icc.h). */
 status profile_light(VipsImage *image, const char *path, picture_light *out);
 
 #endif

@@ -77,7 +77,7 @@ static bool is_known(const bmp *b, unsigned length)
 
 static status refuse(const plain_file *f, const bmp *b)
 {
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: a BMP of %d bits a pixel and compression %d is not read here; save it as PNG", f->path,
                 b->bits, b->packing);
 }
@@ -139,7 +139,7 @@ static status make_row(plain_file *f, bmp *b)
     if (s != OK) return s;
     if (b->row_bytes == 0) return plain_damaged(f);
     b->bytes = malloc(b->row_bytes);
-    return b->bytes ? OK : fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    return b->bytes ? OK : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
 }
 
 static status read_head(plain_file *f, bmp *b)
@@ -168,7 +168,7 @@ static status bmp_open(plain_file *f, void **state)
 {
     bmp *b = calloc(1, sizeof *b);
     *state = b;
-    return b ? read_head(f, b) : fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    return b ? read_head(f, b) : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
 }
 
 /* Puts indices into the row at hand, in which some writers' runs reach beyond its end. */

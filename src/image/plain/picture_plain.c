@@ -21,7 +21,7 @@ static status read_rows(plain_file *f, const plain_format *format, void *state, 
 {
     const picture_layout *l = &f->layout;
     void *samples = malloc((size_t)l->width * (size_t)l->bands * bytes_of_sample(l->sample));
-    status s = samples ? OK : fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    status s = samples ? OK : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
     for (int y = 0; s == OK && y < l->height; y++) {
         s = format->row(f, state, samples) ? OK : plain_damaged(f);
         if (s == OK) picture_rows_put(rows, y, samples);
@@ -57,7 +57,7 @@ status picture_read_plain(const char *path, picture_kind kind, picture_colour ho
     void *state = NULL;
     if (!f.file || fstat(fileno(f.file), &about) != 0) {
         if (f.file) fclose(f.file);
-        return fail(ERROR_INPUT, "cannot read %s: it cannot be opened", path);
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
     }
     f.size = (uint64_t)about.st_size;
     status s = format->open(&f, &state);

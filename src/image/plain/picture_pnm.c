@@ -146,7 +146,7 @@ static status pnm_open(plain_file *f, void **state)
 {
     pnm *p = calloc(1, sizeof *p);
     *state = p;
-    if (!p) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    if (!p) return fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
     if (!read_head(f, p)) return plain_damaged(f);
     size_t samples = (size_t)f->layout.width * (size_t)f->layout.bands;
     bool wide = p->most > UINT8_MAX;
@@ -159,7 +159,7 @@ static status pnm_open(plain_file *f, void **state)
     status s = plain_check(f, (double)(digits ? samples : p->row_bytes) * f->layout.height);
     if (s != OK || digits) return s;
     p->bytes = malloc(p->row_bytes);
-    return p->bytes ? OK : fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    return p->bytes ? OK : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
 }
 
 /* The digits of P1 need no space between them. */

@@ -86,7 +86,7 @@ static status read_map(plain_file *f, tga *t, const uint8_t *head)
     if (t->kind != MAPPED) return fseeko(f->file, (off_t)t->count * bytes, SEEK_CUR) == 0 ? OK : plain_damaged(f);
     t->bits = bits;
     t->map = calloc(t->count ? t->count : 1, 4);
-    if (!t->map) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    if (!t->map) return fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
     for (unsigned i = 0; i < t->count; i++)
         if (!plain_get(f, t->map + 4 * (size_t)i, (size_t)bytes)) return plain_damaged(f);
     return OK;
@@ -109,15 +109,16 @@ static status tga_open(plain_file *f, void **state)
     uint8_t head[HEAD];
     tga *t = calloc(1, sizeof *t);
     *state = t;
-    if (!t) return fail(ERROR_MEMORY, "no memory to read %s", f->path);
+    if (!t) return fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
     if (!plain_get(f, head, HEAD)) return plain_damaged(f);
     t->runs = head[2] & RUNS;
     t->kind = head[2] & ~RUNS;
     t->bits = head[16];
     t->bytes = (t->bits + 7) / 8;
     if (!is_known(t, head))
-        return fail(ERROR_INPUT, "cannot read %s: it is a TGA of type %d with %d bits a pixel, which is not read here",
-                    f->path, head[2], head[16]);
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot read %s: it is a TGA of type %d with %d bits a pixel, which is not read here", f->path,
+                    head[2], head[16]);
     f->layout.width = (int)plain_little16(head + 12);
     f->layout.height = (int)plain_little16(head + 14);
     double pixels = (double)f->layout.width * f->layout.height;

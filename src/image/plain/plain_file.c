@@ -3,7 +3,7 @@
 
 status plain_damaged(const plain_file *f)
 {
-    return fail(ERROR_INPUT, "cannot read %s: it is damaged or cut short", f->path);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", f->path);
 }
 
 status plain_check(const plain_file *f, double least_bytes)

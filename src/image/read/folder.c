@@ -63,17 +63,17 @@ status img_folder_find_own_mask(const char *photo, char **mask)
     char **names, *folder = file_folder_of(photo);
     size_t count;
     *mask = NULL;
-    if (!folder) return fail(ERROR_MEMORY, "no memory for file names");
+    if (!folder) return fail(MERLIN_NO_MEMORY, "no memory for file names");
     status s = file_list(folder, NULL, &names, &count);
     if (s == OK) {
         const char *found = find_by_name(names, count, file_name_of(photo));
         if (found) /* spelled as the photograph is */
             *mask = strchr(photo, '/') ? file_join(folder, found) : strdup(found);
-        if (found && !*mask) s = fail(ERROR_MEMORY, "no memory for file names");
+        if (found && !*mask) s = fail(MERLIN_NO_MEMORY, "no memory for file names");
         file_list_free(names, count);
     }
     free(folder);
-    return s == ERROR_MEMORY ? s : OK; /* a folder may be closed to us whose files are not */
+    return s == MERLIN_NO_MEMORY ? s : OK; /* a folder may be closed to us whose files are not */
 }
 
 /* Whether a photograph of its name lies beside it. */
@@ -101,7 +101,7 @@ status img_folder_read(const char *folder, img_folder *out)
     out->at = calloc(count + 1, sizeof *out->at);
     if (!out->at) {
         file_list_free(names, count);
-        return fail(ERROR_MEMORY, "no memory for the names in %s", folder);
+        return fail(MERLIN_NO_MEMORY, "no memory for the names in %s", folder);
     }
     for (size_t i = 0; i < count; i++)
         if (is_left_by_systems(file_name_of(names[i])))

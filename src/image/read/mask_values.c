@@ -162,15 +162,16 @@ static status refuse_labels(const char *path, const tally *t, int channels)
 {
     char words[128];
     list_values(t, channels, words, sizeof words);
-    return fail(ERROR_INPUT, "the mask %s has areas of %zu %s (%s): which is the object? Save it as white on black",
-                path, t->count, channels > 1 ? "colours" : "values", words);
+    return fail(MERLIN_BAD_INPUT,
+                "the mask %s has areas of %zu %s (%s): which is the object? Save it as white on black", path, t->count,
+                channels > 1 ? "colours" : "values", words);
 }
 
 static status refuse_equals(const char *path, const tally *t, int channels)
 {
     char words[128];
     list_values(t, channels, words, sizeof words);
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "the mask %s has two colours that are equally bright (%s): which is the object? Save it as white on "
                 "black",
                 path, words);
@@ -257,7 +258,7 @@ static status from_groups(const char *path, const img *values, img *mask)
     if (even || (g.low < 0.5f && g.high >= 0.5f)) return as_it_is(values, mask);
     if (g.near >= least_near && g.high - g.low >= least_contrast) return spread(values, g.low, g.high, mask);
     if (across) return as_it_is(values, mask);
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "the mask %s has no two values that stand out: they run from %.0f to %.0f of 255, all on one side of "
                 "half white; save it as white on black",
                 path, (double)(255 * g.least), (double)(255 * g.most));
@@ -305,7 +306,7 @@ bool mask_is_even(const img *values)
 status mask_from_alpha(const img *alpha, img *mask)
 {
     tally *t = calloc(1, sizeof *t);
-    if (!t) return fail(ERROR_MEMORY, "no memory to read a mask");
+    if (!t) return fail(MERLIN_NO_MEMORY, "no memory to read a mask");
     count_values(alpha, t);
     status s =
         are_two(t, false) ? spread(alpha, t->at[0].brightness, t->at[1].brightness, mask) : as_it_is(alpha, mask);
@@ -316,7 +317,7 @@ status mask_from_alpha(const img *alpha, img *mask)
 status mask_from_values(const char *path, img *values, bool lossy, img *mask)
 {
     tally *t = calloc(1, sizeof *t);
-    if (!t) return fail(ERROR_MEMORY, "no memory to read %s", path);
+    if (!t) return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
     scale(values);
     status s = from_tally(path, values, lossy, t, mask);
     free(t);

@@ -10,8 +10,8 @@
 
 /* Makes coverage in [0, 1], 1 channel, of a mask's samples, 1 or 3 channels, which may be scaled: the brighter of two
  * values, or of two areas with softened edges between them, is the object; with others between black and white what is
- * half white or more is. ERROR_INPUT, naming the file, where more than two values have areas of their own, or none is
- * half white and no two stand out. lossy: values scatter about those that were meant. */
+ * half white or more is. MERLIN_BAD_INPUT, naming the file, where more than two values have areas of their own, or none
+ * is half white and no two stand out. lossy: values scatter about those that were meant. */
 status mask_from_values(const char *path, img *values, bool lossy, img *mask);
 /* The same of an alpha, which is coverage already unless it has two values alone. */
 status mask_from_alpha(const img *alpha, img *mask);

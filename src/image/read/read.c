@@ -12,16 +12,16 @@
 #include "base/file.h"
 #include "base/messages.h"
 #include "image/formats/kind.h"
-#include "image/read/mask_values.h"
-#include "image/plain/picture_plain.h"
 #include "image/formats/picture_rows.h"
+#include "image/plain/picture_plain.h"
+#include "image/read/mask_values.h"
 
 static status check_plain(const char *path)
 {
     struct stat about;
-    if (stat(path, &about) != 0) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
-    if (S_ISDIR(about.st_mode)) return fail(ERROR_INPUT, "cannot read %s: it is a folder, not a picture", path);
-    return S_ISREG(about.st_mode) ? OK : fail(ERROR_INPUT, "cannot read %s: it is not a plain file", path);
+    if (stat(path, &about) != 0) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (S_ISDIR(about.st_mode)) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is a folder, not a picture", path);
+    return S_ISREG(about.st_mode) ? OK : fail(MERLIN_BAD_INPUT, "cannot read %s: it is not a plain file", path);
 }
 
 /* Says what is wrong with a path before any decoder sees it, and which of them is to. */
@@ -30,17 +30,17 @@ static status look_at(const char *path, picture_kind *kind)
     status s = check_plain(path); /* before it is opened: a device may already do something then */
     if (s != OK) return s;
     FILE *f = file_open(path);
-    if (!f) return fail(ERROR_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (!f) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
     bool empty = getc(f) == EOF;
     fclose(f);
-    if (empty) return fail(ERROR_INPUT, "cannot read %s: the file is empty", path);
+    if (empty) return fail(MERLIN_BAD_INPUT, "cannot read %s: the file is empty", path);
     img_format format = img_format_of(path);
     *kind = format.kind;
     if (format.is_read) return OK;
     if (format.name)
-        return fail(ERROR_INPUT, "cannot read %s: its format, %s, is not read here; save it as PNG or TIFF", path,
+        return fail(MERLIN_BAD_INPUT, "cannot read %s: its format, %s, is not read here; save it as PNG or TIFF", path,
                     format.name);
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, GIF, BMP, TGA, "
                 "PNM, EXR, HDR, raw)",
                 path);
@@ -100,7 +100,8 @@ static status check_finite(const char *path, const img *image)
     for (ptrdiff_t i = 0; i < count; i++)
         bad += !isfinite(image->data[i]);
     if (!bad) return OK;
-    return fail(ERROR_INPUT, "cannot read %s: %td of its values are not finite numbers (NaN or infinity)", path, bad);
+    return fail(MERLIN_BAD_INPUT, "cannot read %s: %td of its values are not finite numbers (NaN or infinity)", path,
+                bad);
 }
 
 static status decode_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)

@@ -18,16 +18,16 @@ status img_animation_new(int width, int height, int most, img_animation *a)
 {
     *a = (img_animation){.width = width, .height = height, .most = most};
     if (width < 1 || height < 1 || most < 1 || height > INT_MAX / most)
-        return fail(ERROR_USAGE, "no animation of %d frames of %d x %d", most, width, height);
+        return fail(MERLIN_WRONG_USE, "no animation of %d frames of %d x %d", most, width, height);
     a->codes = malloc(frame_bytes(a) * (size_t)most);
-    return a->codes ? OK : fail(ERROR_MEMORY, "no memory for an animation of %d frames", most);
+    return a->codes ? OK : fail(MERLIN_NO_MEMORY, "no memory for an animation of %d frames", most);
 }
 
 status img_animation_add(img_animation *a, const img *frame)
 {
-    if (a->count == a->most) return fail(ERROR_USAGE, "an animation of %d frames is full", a->most);
+    if (a->count == a->most) return fail(MERLIN_WRONG_USE, "an animation of %d frames is full", a->most);
     if (!frame->data || frame->channels != 3 || frame->width != a->width || frame->height != a->height)
-        return fail(ERROR_USAGE, "frame %d of an animation is not a colour image of %d x %d", a->count, a->width,
+        return fail(MERLIN_WRONG_USE, "frame %d of an animation is not a colour image of %d x %d", a->count, a->width,
                     a->height);
     size_t each = frame_bytes(a);
     srgb_codes8(frame->data, each, a->codes + each * (size_t)a->count++);
@@ -50,10 +50,10 @@ static VipsImage *wrap(const img_animation *a)
 static status check(const img_animation *a, const char *path)
 {
     if (!file_ends_in(path, ".webp") && !file_ends_in(path, ".gif"))
-        return fail(ERROR_USAGE, "cannot write %s: an animation's name ends in .webp or .gif", path);
-    if (a->count < 1) return fail(ERROR_USAGE, "cannot write %s: an animation needs at least one frame", path);
+        return fail(MERLIN_WRONG_USE, "cannot write %s: an animation's name ends in .webp or .gif", path);
+    if (a->count < 1) return fail(MERLIN_WRONG_USE, "cannot write %s: an animation needs at least one frame", path);
     if (file_ends_in(path, ".gif") && !vips()->type_find("VipsOperation", "gifsave_buffer"))
-        return fail(ERROR_OUTPUT, "cannot write %s: this libvips has no GIF writer, use .webp", path);
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: this libvips has no GIF writer, use .webp", path);
     return OK;
 }
 
@@ -86,7 +86,7 @@ status img_animation_write(const img_animation *a, const char *path, int millise
     void *data = NULL;
     size_t size = 0;
     if (save(a, path, milliseconds, &data, &size))
-        s = vips_refusal(ERROR_OUTPUT, "write", path);
+        s = vips_refusal(MERLIN_CANNOT_WRITE, "write", path);
     else
         s = file_write(path, data, size);
     vips()->g_free(data);

@@ -4,19 +4,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "image/write/codes.h"
 #include "image/color.h"
 #include "image/start.h"
 #include "image/vips_library.h"
+#include "image/write/codes.h"
 
 status canvas_new(canvas *out, int width, int height)
 {
     static const uint8_t ground[3] = {CANVAS_GROUND};
     *out = (canvas){0};
-    if (width < 1 || height < 1) return fail(ERROR_USAGE, "a figure of %d x %d pixels cannot be", width, height);
+    if (width < 1 || height < 1) return fail(MERLIN_WRONG_USE, "a figure of %d x %d pixels cannot be", width, height);
     size_t count = 3 * (size_t)width * (size_t)height;
     uint8_t *rgb = malloc(count);
-    if (!rgb) return fail(ERROR_MEMORY, "no memory for a figure of %d x %d pixels", width, height);
+    if (!rgb) return fail(MERLIN_NO_MEMORY, "no memory for a figure of %d x %d pixels", width, height);
     const size_t row = 3 * (size_t)width;
     for (size_t i = 0; i < row; i++)
         rgb[i] = ground[i % 3];
@@ -49,7 +49,7 @@ status canvas_draw_begin(const canvas *c, canvas_drawing *d)
     status s = vips_begin();
     if (s != OK) return s;
     d->out = open_memstream(&d->text, &d->size);
-    if (!d->out) return fail(ERROR_MEMORY, "no memory for a drawing");
+    if (!d->out) return fail(MERLIN_NO_MEMORY, "no memory for a drawing");
     fprintf(d->out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" font-family=\"" CANVAS_FONT
             "\" fill=\"" CANVAS_INK_CSS "\">\n",
@@ -83,16 +83,17 @@ static void lay_over(canvas *c, const uint8_t *rgba)
 static status draw(canvas *c, const canvas_drawing *d)
 {
     VipsImage *image = NULL;
-    if (vips()->svgload_buffer(d->text, d->size, &image, NULL)) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
+    if (vips()->svgload_buffer(d->text, d->size, &image, NULL))
+        return vips_refusal(MERLIN_DEVICE_FAILED, "draw", "a figure");
     size_t size = 0;
     uint8_t *rgba = vips()->image_write_to_memory(image, &size);
     vips()->g_object_unref(image);
-    if (!rgba) return vips_refusal(ERROR_DEVICE, "draw", "a figure");
+    if (!rgba) return vips_refusal(MERLIN_DEVICE_FAILED, "draw", "a figure");
     status s = OK;
     if (size == 4 * (size_t)c->width * (size_t)c->height)
         lay_over(c, rgba);
     else
-        s = fail(ERROR_DEVICE, "cannot draw a figure: the drawing has another size than its canvas");
+        s = fail(MERLIN_DEVICE_FAILED, "cannot draw a figure: the drawing has another size than its canvas");
     vips()->g_free(rgba);
     return s;
 }
@@ -101,7 +102,7 @@ status canvas_draw_end(canvas *c, canvas_drawing *d)
 {
     fputs("</svg>\n", d->out);
     int failed = fclose(d->out);
-    status s = failed ? fail(ERROR_MEMORY, "no memory for a drawing") : OK;
+    status s = failed ? fail(MERLIN_NO_MEMORY, "no memory for a drawing") : OK;
     if (s == OK) s = draw(c, d);
     free(d->text);
     *d = (canvas_drawing){0};

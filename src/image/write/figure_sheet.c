@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "image/write/canvas.h"
 #include "image/color.h"
-#include "image/write/figure.h"
 #include "image/resize.h"
+#include "image/write/canvas.h"
+#include "image/write/figure.h"
 
 typedef struct layout {
     int columns, rows, tile, margin, gap, label, font;
@@ -38,7 +38,7 @@ static int tile_y(const layout *l, int index)
 static status paste_tile(canvas *c, const layout *l, int index, const img *image)
 {
     if (!image || !image->data || (image->channels != 1 && image->channels != 3))
-        return fail(ERROR_USAGE, "tile %d of a contact sheet is not a grey or colour image", index);
+        return fail(MERLIN_WRONG_USE, "tile %d of a contact sheet is not a grey or colour image", index);
     int larger = image->width > image->height ? image->width : image->height;
     int width = (int)lround((double)image->width * l->tile / larger);
     int height = (int)lround((double)image->height * l->tile / larger);
@@ -71,7 +71,7 @@ static status draw_words(canvas *c, const canvas_words *words, int count, int si
 static status draw_labels(canvas *c, const layout *l, const figure_tile *tiles, int count)
 {
     canvas_words *words = malloc((size_t)count * sizeof *words);
-    if (!words) return fail(ERROR_MEMORY, "no memory for %d labels", count);
+    if (!words) return fail(MERLIN_NO_MEMORY, "no memory for %d labels", count);
     for (int i = 0; i < count; i++)
         words[i] = (canvas_words){tiles[i].label ? tiles[i].label : "", tile_x(l, i) + l->tile / 2,
                                   tile_y(l, i) + l->tile + l->font * 3 / 2};
@@ -83,7 +83,7 @@ static status draw_labels(canvas *c, const layout *l, const figure_tile *tiles, 
 status figure_sheet(const char *path, const figure_tile *tiles, int count, int columns, int tile_size)
 {
     if (count < 1 || columns < 1 || tile_size < 1)
-        return fail(ERROR_USAGE, "a contact sheet needs tiles, columns and a tile size");
+        return fail(MERLIN_WRONG_USE, "a contact sheet needs tiles, columns and a tile size");
     layout l = lay_out(count, columns, tile_size);
     canvas c;
     status s = canvas_new(&c, 2 * l.margin + l.columns * (l.tile + l.gap) - l.gap,
@@ -100,9 +100,9 @@ status figure_sheet(const char *path, const figure_tile *tiles, int count, int c
 static status check_map(const img *map, const img *mask, int channels, const char *what)
 {
     if (!map->data || map->channels != channels)
-        return fail(ERROR_USAGE, "a %s map has %d channels, not %d", what, channels, map->channels);
+        return fail(MERLIN_WRONG_USE, "a %s map has %d channels, not %d", what, channels, map->channels);
     if (mask && (mask->channels != 1 || mask->width != map->width || mask->height != map->height))
-        return fail(ERROR_USAGE, "the mask is not of the size of the %s map", what);
+        return fail(MERLIN_WRONG_USE, "the mask is not of the size of the %s map", what);
     return OK;
 }
 

@@ -71,7 +71,7 @@ status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *s
 {
     const img_jpeg how = {.quality = 95};
     if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
-        return fail(ERROR_USAGE, "cannot write %s: a JPEG is at most %ld pixels wide and high", name,
+        return fail(MERLIN_WRONG_USE, "cannot write %s: a JPEG is at most %ld pixels wide and high", name,
                     (long)JPEG_MAX_DIMENSION);
     bytes made = {0};
     uint8_t *rgb = malloc(img_value_count(image));
@@ -84,7 +84,7 @@ status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *s
     }
     *data = made.data;
     *size = made.size;
-    return done ? OK : fail(ERROR_MEMORY, "no memory to write %s", name);
+    return done ? OK : fail(MERLIN_NO_MEMORY, "no memory to write %s", name);
 }
 
 static bool decompress(const bytes *from, int width, uint8_t *rgb)
@@ -115,5 +115,5 @@ status img_jpeg_spoil(uint8_t *rgb, int width, int height, const img_jpeg *how)
     bytes between = {0};
     bool done = compress(rgb, width, height, how, &between) && decompress(&between, width, rgb);
     free(between.data);
-    return done ? OK : fail(ERROR_MEMORY, "cannot compress %d x %d pixels as JPEG: out of memory", width, height);
+    return done ? OK : fail(MERLIN_NO_MEMORY, "cannot compress %d x %d pixels as JPEG: out of memory", width, height);
 }

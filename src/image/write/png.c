@@ -123,9 +123,9 @@ status codes_encode_png(const char *name, const code_rows *p, uint8_t **data, si
     status s = OK;
     *data = NULL;
     if (room > INT32_MAX)
-        s = fail(ERROR_USAGE, "cannot write %s: %d x %d pixels are too many for a PNG", name, p->width, p->height);
+        s = fail(MERLIN_WRONG_USE, "cannot write %s: %d x %d pixels are too many for a PNG", name, p->width, p->height);
     else if (!rows || !packer || !(*data = malloc(HEAD + room + 2 * CHUNK)))
-        s = fail(ERROR_MEMORY, "no memory to write %s", name);
+        s = fail(MERLIN_NO_MEMORY, "no memory to write %s", name);
     if (s == OK) {
         uint8_t *to = put_head(*data, p);
         packed = libdeflate_zlib_compress(packer, rows, filtered, to + CHUNK_CONTENT, room);

@@ -25,13 +25,13 @@ status img_write_webp(const char *path, const img *image)
     status s = vips_begin();
     if (s != OK) return s;
     uint8_t *codes = malloc(count);
-    if (!codes) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    if (!codes) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
     for (size_t i = 0; i < count; i++) {
         float value = image->data[i];
         codes[i] = (uint8_t)((value > 0 ? (value < 1 ? value : 1) : 0) * 255 + 0.5f);
     }
     if (save(codes, image, &data, &size))
-        s = vips_refusal(ERROR_OUTPUT, "write", path);
+        s = vips_refusal(MERLIN_CANNOT_WRITE, "write", path);
     else
         s = file_write(path, data, size);
     vips()->g_free(data);

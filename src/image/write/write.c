@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "image/write/codes.h"
 #include "image/color.h"
+#include "image/write/codes.h"
 #include "image/write/jpeg.h"
 
 static float unit(float x)
@@ -70,7 +70,7 @@ status img_write_png_changed(const char *path, const img *image, img_encoding en
                              const void *context)
 {
     if (!image->data || (image->channels != 1 && image->channels != 3))
-        return fail(ERROR_USAGE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
+        return fail(MERLIN_WRONG_USE, "cannot write %s: a PNG needs 1 or 3 channels, not %d", path, image->channels);
     encoding_job job = {image, encoding, change, context};
     code_rows rows = rows_of(&job);
     return codes_write_png(path, &rows);
@@ -85,7 +85,7 @@ status img_encode_picture(const char *name, const img *image, img_file_kind kind
 {
     *data = NULL;
     if (!image->data || image->channels != 3)
-        return fail(ERROR_USAGE, "cannot write %s: a picture has 3 channels, not %d", name, image->channels);
+        return fail(MERLIN_WRONG_USE, "cannot write %s: a picture has 3 channels, not %d", name, image->channels);
     if (kind == IMG_JPEG) return jpeg_encode(name, image, data, size);
     encoding_job job = {.image = image, .encoding = IMG_SRGB8};
     code_rows rows = rows_of(&job);

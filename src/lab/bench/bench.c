@@ -36,7 +36,7 @@ static status measure_network(const bench_options *o, const char *weights, const
 static status measure_type(const bench_options *o, nn_type type, bench_report *out)
 {
     status s = nn_measure_peak(type, &out->peak[type]);
-    if (s == ERROR_DEVICE && type != NN_FLOAT32) return OK; /* this processor does without */
+    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does without */
     if (s != OK) return s;
     out->measured[type] = true;
     nn_options infer = {
@@ -115,12 +115,12 @@ status bench_run(const bench_options *options, bench_report *out)
     for (size_t i = 0; s == OK && i < STAGES; i++) {
         progress_update(&p, i, stages[i].what);
         if (options->stopped && options->stopped())
-            s = fail(ERROR_STOPPED, "stopped before measuring %s", stages[i].what);
+            s = fail(MERLIN_STOPPED, "stopped before measuring %s", stages[i].what);
         else
             s = stages[i].measure(options, out);
         /* Ctrl-C goes to the programs that a stage starts, too, and they fail */
         if (s != OK && options->stopped && options->stopped())
-            s = fail(ERROR_STOPPED, "stopped while measuring %s", stages[i].what);
+            s = fail(MERLIN_STOPPED, "stopped while measuring %s", stages[i].what);
     }
     if (s == OK) progress_update(&p, STAGES, NULL);
     progress_end(&p);

@@ -71,15 +71,15 @@ static status explain(const char *errors, int code)
 {
     char *text = NULL;
     size_t size;
-    if (file_read(errors, 1 << 16, &text, &size) != OK) return fail(ERROR_INPUT, "merlin estimate failed");
+    if (file_read(errors, 1 << 16, &text, &size) != OK) return fail(MERLIN_BAD_INPUT, "merlin estimate failed");
     text[strcspn(text, "\n")] = 0;
     status s = OK;
     if (*text)
-        s = fail(ERROR_INPUT, "%s", text);
+        s = fail(MERLIN_BAD_INPUT, "%s", text);
     else if (WIFSIGNALED(code))
-        s = fail(ERROR_INPUT, "merlin estimate was ended by signal %d", WTERMSIG(code));
+        s = fail(MERLIN_BAD_INPUT, "merlin estimate was ended by signal %d", WTERMSIG(code));
     else
-        s = fail(ERROR_INPUT, "merlin estimate ended with status %d", WEXITSTATUS(code));
+        s = fail(MERLIN_BAD_INPUT, "merlin estimate ended with status %d", WEXITSTATUS(code));
     free(text);
     return s;
 }
@@ -100,7 +100,7 @@ static status read_parts(const char *report, bench_estimation *run)
         const cJSON *part = cJSON_GetObjectItem(seconds, part_names[i]);
         bool last = i == BENCH_PARTS - 1;
         if (!last && !cJSON_IsNumber(part))
-            s = fail(ERROR_INPUT, "merlin estimate did not report its \"%s\"", part_names[i]);
+            s = fail(MERLIN_BAD_INPUT, "merlin estimate did not report its \"%s\"", part_names[i]);
         run->part[i] = (bench_part){part_names[i], last ? rest : cJSON_GetNumberValue(part)};
         rest -= run->part[i].seconds;
     }
@@ -118,7 +118,7 @@ typedef struct bench_files {
 static status run_once(char *const *arguments, const bench_files *files, bench_estimation *run)
 {
     posix_spawn_file_actions_t actions;
-    if (posix_spawn_file_actions_init(&actions)) return fail(ERROR_MEMORY, "no memory to start %s", arguments[0]);
+    if (posix_spawn_file_actions_init(&actions)) return fail(MERLIN_NO_MEMORY, "no memory to start %s", arguments[0]);
     enum { FRESH = O_WRONLY | O_CREAT | O_TRUNC };
     pid_t child;
     double started = clock_seconds();
@@ -126,13 +126,13 @@ static status run_once(char *const *arguments, const bench_files *files, bench_e
     if (!refused) refused = posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, files->errors, FRESH, 0600);
     if (!refused) refused = posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (refused) return fail(ERROR_INPUT, "cannot start %s: %s", arguments[0], strerror(refused));
+    if (refused) return fail(MERLIN_BAD_INPUT, "cannot start %s: %s", arguments[0], strerror(refused));
     int code;
     struct rusage usage;
     pid_t ended;
     while ((ended = wait4(child, &code, 0, &usage)) < 0 && errno == EINTR)
         ;
-    if (ended != child) return fail(ERROR_INPUT, "lost sight of %s", arguments[0]);
+    if (ended != child) return fail(MERLIN_BAD_INPUT, "lost sight of %s", arguments[0]);
     run->seconds = clock_seconds() - started;
     run->bytes = (size_t)usage.ru_maxrss * 1024;
     return WIFEXITED(code) && WEXITSTATUS(code) == 0 ? read_parts(files->report, run) : explain(files->errors, code);
@@ -173,7 +173,7 @@ static status run_in(const char *folder, const char *program, const char *weight
     if (files.picture && files.output && files.report && files.errors)
         s = run_often(&files, program, weights, runs, out);
     else
-        s = fail(ERROR_MEMORY, "no memory for a path");
+        s = fail(MERLIN_NO_MEMORY, "no memory for a path");
     free(files.picture);
     free(files.output);
     free(files.report);
@@ -184,13 +184,13 @@ static status run_in(const char *folder, const char *program, const char *weight
 status bench_estimate(const char *program, const char *weights, int runs, bench_estimation *out)
 {
     char *folder = file_in_scratch("merlin-bench-XXXXXX");
-    if (!folder) return fail(ERROR_MEMORY, "no memory for a path");
+    if (!folder) return fail(MERLIN_NO_MEMORY, "no memory for a path");
     status s = OK;
     if (mkdtemp(folder)) {
         s = run_in(folder, program, weights, runs, out);
         nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
     } else {
-        s = fail(ERROR_OUTPUT, "cannot make the folder %s", folder);
+        s = fail(MERLIN_CANNOT_WRITE, "cannot make the folder %s", folder);
     }
     free(folder);
     return s;

@@ -18,7 +18,7 @@ static status keep(void *context, const nn_layer *layer)
     /* inference makes its parameters' copies but once, before the first picture */
     if (run->options.purpose == NN_INFER && strcmp(layer->pass, "refresh") == 0) return OK;
     bench_layer *more = realloc(run->layer, (run->count + 1) * sizeof *more);
-    if (!more) return fail(ERROR_MEMORY, "no memory for the times of %zu layers", run->count + 1);
+    if (!more) return fail(MERLIN_NO_MEMORY, "no memory for the times of %zu layers", run->count + 1);
     run->layer = more;
     bench_layer *l = &more[run->count++];
     *l = (bench_layer){
@@ -75,7 +75,7 @@ static status measure_type(const bench_layers_options *o, nn_type type, progress
 {
     nn_peak peak;
     status s = nn_measure_peak(type, &peak);
-    if (s == ERROR_DEVICE && type != NN_FLOAT32) return OK; /* this processor does without */
+    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does without */
     const nn_options kinds[] = {
         {.batch = 1, .height = BENCH_INFERENCE_SIZE, .width = BENCH_INFERENCE_SIZE, .type = type, .purpose = NN_INFER},
         {.batch = o->batch ? o->batch : 16,
@@ -85,7 +85,7 @@ static status measure_type(const bench_layers_options *o, nn_type type, progress
          .purpose = NN_TRAIN}};
     for (size_t i = 0; s == OK && i < sizeof kinds / sizeof *kinds; i++) {
         progress_update(p, (uint64_t)out->runs, bench_type_name(type));
-        if (o->stopped && o->stopped()) return fail(ERROR_STOPPED, "stopped while measuring layers");
+        if (o->stopped && o->stopped()) return fail(MERLIN_STOPPED, "stopped while measuring layers");
         s = measure_run(o, &kinds[i], &peak, out);
     }
     return s;

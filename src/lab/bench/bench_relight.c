@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_relight.h"
 
-#include "image/public.h"
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "lab/bench/bench_ball.h"
 
 enum { SIDE = 256 };
@@ -17,7 +18,7 @@ static status make_stage(void *context)
 {
     relight_work *w = context;
     merlin_stage_free(w->stage);
-    return (status)merlin_stage_new(w->model, &w->maps, SIDE, w->how, &w->stage);
+    return merlin_stage_new(w->model, &w->maps, SIDE, w->how, &w->stage);
 }
 
 static status light_stage(void *context)
@@ -25,7 +26,7 @@ static status light_stage(void *context)
     relight_work *w = context;
     static const float from_the_left[3] = {-0.67f, 0.47f, -0.43f};
     merlin_image picture;
-    status s = (status)merlin_stage_relight(w->stage, from_the_left, NULL, &picture);
+    status s = merlin_stage_relight(w->stage, from_the_left, NULL, &picture);
     merlin_image_free(&picture);
     return s;
 }
@@ -35,8 +36,8 @@ static status estimate_ball(relight_work *w)
     img ball;
     status s = bench_ball(&ball);
     if (s != OK) return s;
-    merlin_image photo = image_of(&ball);
-    s = (status)merlin_estimate(w->model, &photo, NULL, NULL, &w->maps);
+    merlin_image photo = ball;
+    s = merlin_estimate(w->model, &photo, NULL, NULL, &w->maps);
     img_free(&ball);
     return s;
 }
@@ -44,7 +45,7 @@ static status estimate_ball(relight_work *w)
 status bench_relight(const char *weights, bench_patience patience, bench_relighting *out)
 {
     relight_work w = {0};
-    status s = (status)merlin_model_open(weights, &w.model);
+    status s = merlin_model_open(weights, &w.model);
     if (s == OK) s = estimate_ball(&w);
     for (int i = 0; i < BENCH_WAYS && s == OK; i++) {
         w.how = (merlin_relighting)i;

@@ -40,7 +40,7 @@ static status add_picture(pst_capture *c, bool shadows)
                    .row = row,
                    .shadow = k * row / 7,
                    .shadows = shadows};
-    if (!w.codes) return fail(ERROR_MEMORY, "no memory for %zu pictures of %dx%d", k + 1, c->width, c->height);
+    if (!w.codes) return fail(MERLIN_NO_MEMORY, "no memory for %zu pictures of %dx%d", k + 1, c->width, c->height);
     memory_prefer_large_pages(w.codes, values * sizeof *w.codes);
     parallel_blocks(values, fill_block, &w);
     float turn = 2.4f * (float)k;
@@ -100,7 +100,7 @@ status bench_stereo(const bench_stereo_options *options, bench_stereo_report *ou
     for (int i = 0; i < BENCH_STEREO_RUNS && s == OK; i++) {
         progress_update(&p, (size_t)i + 1, "least squares");
         out->run[i] = cases[i];
-        s = options->stopped && options->stopped() ? fail(ERROR_STOPPED, "stopped")
+        s = options->stopped && options->stopped() ? fail(MERLIN_STOPPED, "stopped")
                                                    : measure(options, out, &out->run[i]);
     }
     progress_end(&p);

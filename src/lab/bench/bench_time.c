@@ -57,7 +57,7 @@ status bench_copy_rate(bench_patience p, double *rate)
         memset(c.from, 1, COPY_BYTES); /* untouched pages are all one page of zeros */
         s = bench_time(copy_all, &c, p, &seconds);
     } else {
-        s = fail(ERROR_MEMORY, "no memory to measure the rate of copying");
+        s = fail(MERLIN_NO_MEMORY, "no memory to measure the rate of copying");
     }
     free(c.from);
     free(c.to);

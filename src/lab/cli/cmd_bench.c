@@ -59,10 +59,10 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
+    if (argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
     if (r->stereo && (r->model || r->config || r->options.batch || r->layers))
-        return fail(ERROR_USAGE, "--stereo goes without --model, --config, --batch and --layers");
-    if (r->model && r->config) return fail(ERROR_USAGE, "--model and --config exclude each other");
+        return fail(MERLIN_WRONG_USE, "--stereo goes without --model, --config, --batch and --layers");
+    if (r->model && r->config) return fail(MERLIN_WRONG_USE, "--model and --config exclude each other");
     return OK;
 }
 
@@ -76,7 +76,7 @@ static status write_random_weights(const char *config_path, const char *path)
     status s = model_config_read(config_path, &config);
     if (s == OK) s = model_build(&config, MODEL_WHOLE, &g);
     if (s == OK) s = nn_params_new(g, 1, &params);
-    if (s == OK && !(json = model_config_write(&config))) s = fail(ERROR_MEMORY, "no memory for a configuration");
+    if (s == OK && !(json = model_config_write(&config))) s = fail(MERLIN_NO_MEMORY, "no memory for a configuration");
     trn_provenance none = {.config = json, .training = "{}", .note = "random weights of merlin-lab bench"};
     if (s == OK) s = train_export(path, params, &none);
     free(json);
@@ -115,11 +115,11 @@ static status run(const request *r, const char *weights)
 static status run_with_random_weights(const request *r)
 {
     char *path = file_in_scratch("merlin-bench-XXXXXX.safetensors");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     int file = mkstemps(path, (int)strlen(".safetensors"));
     status s = OK;
     if (file < 0) {
-        s = fail(ERROR_OUTPUT, "cannot make the file %s: %s (TMPDIR says where)", path, strerror(errno));
+        s = fail(MERLIN_CANNOT_WRITE, "cannot make the file %s: %s (TMPDIR says where)", path, strerror(errno));
     } else {
         close(file);
         s = write_random_weights(r->config, path);

@@ -71,7 +71,7 @@ static status take_precision(const char *text, void *into)
     else if (strcmp(text, "bfloat16") == 0)
         *out = NN_BFLOAT16;
     else
-        return fail(ERROR_USAGE, "--precision wants float32 or bfloat16, not \"%s\"", text);
+        return fail(MERLIN_WRONG_USE, "--precision wants float32 or bfloat16, not \"%s\"", text);
     return OK;
 }
 
@@ -79,18 +79,18 @@ static status take_given(const char *text, void *into)
 {
     int map = eval_given_of(text), *set = into;
     *set |= map;
-    return map ? OK : fail(ERROR_USAGE, "--given wants albedo, normal, roughness or depth, not \"%s\"", text);
+    return map ? OK : fail(MERLIN_WRONG_USE, "--given wants albedo, normal, roughness or depth, not \"%s\"", text);
 }
 
 /* Every EXR of a folder of samples is taken for one, and must be: means among them would end training. */
 static status check_means_apart(const request *r)
 {
     char *folder = file_folder_of(r->output);
-    if (!folder) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!folder) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     bool among = file_is_same(folder, r->means_folder);
     free(folder);
     if (!among) return OK;
-    return fail(ERROR_USAGE, "-o %s would be taken for a sample of %s: name another folder", r->output,
+    return fail(MERLIN_WRONG_USE, "-o %s would be taken for a sample of %s: name another folder", r->output,
                 r->means_folder);
 }
 
@@ -99,14 +99,14 @@ static status check(const request *r)
 {
     const eval_options *o = &r->options;
     if (!r->means_folder && r->output)
-        return fail(ERROR_USAGE, "-o is for --means; an evaluation prints its report, with --json for a program");
+        return fail(MERLIN_WRONG_USE, "-o is for --means; an evaluation prints its report, with --json for a program");
     if (!r->means_folder) return OK;
     bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->given || o->views ||
                      o->figure || o->figure_rows || o->type != NN_FLOAT32;
-    if (evaluates || r->json) return fail(ERROR_USAGE, "--means goes with -o, --count and --quiet alone");
-    if (!r->output) return fail(ERROR_USAGE, "--means needs -o FILE.exr");
+    if (evaluates || r->json) return fail(MERLIN_WRONG_USE, "--means goes with -o, --count and --quiet alone");
+    if (!r->output) return fail(MERLIN_WRONG_USE, "--means needs -o FILE.exr");
     if (!file_ends_in(r->output, ".exr"))
-        return fail(ERROR_USAGE, "-o names mean maps to write, an EXR: let %s end in .exr", r->output);
+        return fail(MERLIN_WRONG_USE, "-o names mean maps to write, an EXR: let %s end in .exr", r->output);
     return check_means_apart(r);
 }
 
@@ -133,7 +133,7 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    return argc == 0 ? check(r) : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
+    return argc == 0 ? check(r) : fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
 }
 
 static int run_means(const request *r)

@@ -44,8 +44,8 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
-    return r->options.data ? OK : fail(ERROR_USAGE, "--data DIR is missing");
+    if (argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
+    return r->options.data ? OK : fail(MERLIN_WRONG_USE, "--data DIR is missing");
 }
 
 static status announce(const request *r, const detail_table *t)

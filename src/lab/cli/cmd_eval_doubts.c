@@ -62,15 +62,16 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
-    return r->right || r->wrong || r->data ? OK
-                                           : fail(ERROR_USAGE, "nothing to judge: give --right, --wrong or --data");
+    if (argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
+    return r->right || r->wrong || r->data
+               ? OK
+               : fail(MERLIN_WRONG_USE, "nothing to judge: give --right, --wrong or --data");
 }
 
 static status step(run *r)
 {
     progress_update(&r->progress, ++r->done, NULL);
-    return cli_interrupted() ? fail(ERROR_STOPPED, "interrupted") : OK;
+    return cli_interrupted() ? fail(MERLIN_STOPPED, "interrupted") : OK;
 }
 
 static status add_photos(run *r, const photo_list *photos, doubt_kind kind)
@@ -81,7 +82,7 @@ static status add_photos(run *r, const photo_list *photos, doubt_kind kind)
         double seconds;
         status one = photo_read_object(&photos->at[i], &photo.picture, &photo.object, &seconds);
         if (one == OK) one = doubt_table_add(&r->table, r->model, &photo);
-        if (one == ERROR_MEMORY) return one;
+        if (one == MERLIN_NO_MEMORY) return one;
         if (one != OK) {
             cli_fail("eval doubts", one);
             r->failures++;

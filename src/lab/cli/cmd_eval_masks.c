@@ -6,11 +6,12 @@
 #include <stdlib.h>
 
 #include "base/file.h"
+#include "base/public.h"
+#include "merlin/merlin.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "image/public.h"
 #include "lab/cli/eval_commands.h"
 #include "lab/eval/mask_table.h"
 
@@ -62,15 +63,16 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (r->mask && *argc == 0) return fail(ERROR_USAGE, "--mask is of photographs, and none is given");
-    return *argc > 0 || r->data ? OK : fail(ERROR_USAGE, "nothing to search: give photographs with masks, or --data");
+    if (r->mask && *argc == 0) return fail(MERLIN_WRONG_USE, "--mask is of photographs, and none is given");
+    return *argc > 0 || r->data ? OK
+                                : fail(MERLIN_WRONG_USE, "nothing to search: give photographs with masks, or --data");
 }
 
 /* ---- photographs ---- */
 
 static status read_mask(const photo_job *job, merlin_image *alpha, merlin_image *mask)
 {
-    if (job->mask) return (status)merlin_mask_read(job->mask, mask);
+    if (job->mask) return merlin_mask_read(job->mask, mask);
     *mask = *alpha;
     *alpha = (merlin_image){0};
     return OK;
@@ -79,10 +81,10 @@ static status read_mask(const photo_job *job, merlin_image *alpha, merlin_image 
 static status add_photo(run *r, const photo_job *job)
 {
     merlin_image photo, alpha, mask = {0};
-    status s = (status)merlin_image_read(job->photo, &photo, &alpha);
+    status s = merlin_image_read(job->photo, &photo, &alpha);
     if (s != OK) return s;
     s = read_mask(job, &alpha, &mask);
-    img picture = img_of(&photo), known = img_of(&mask);
+    img picture = photo, known = mask;
     if (s == OK && mask.data) {
         mask_truth truth = {file_name_of(job->photo), MASK_PHOTO, &picture, &known, NULL};
         s = mask_table_add(&r->table, &truth);
@@ -97,13 +99,13 @@ static status add_photos(run *r)
 {
     for (size_t i = 0; i < r->photos.count; i++) {
         status s = add_photo(r, &r->photos.at[i]);
-        if (s == ERROR_MEMORY) return s;
+        if (s == MERLIN_NO_MEMORY) return s;
         if (s != OK) {
             cli_fail("eval masks", s);
             r->failures++;
         }
         progress_update(&r->progress, i + 1, NULL);
-        if (cli_interrupted()) return fail(ERROR_STOPPED, "interrupted");
+        if (cli_interrupted()) return fail(MERLIN_STOPPED, "interrupted");
     }
     return OK;
 }
@@ -129,7 +131,7 @@ static status judge(run *r)
     if (s == OK) s = mask_table_add_samples(&r->table, r->samples, samples, q->seed, &r->progress, cli_interrupted);
     progress_end(&r->progress);
     if (s == OK && r->table.count == 0 && r->failures == 0)
-        s = fail(ERROR_INPUT, "none of the photographs has a mask to hold what is found against");
+        s = fail(MERLIN_BAD_INPUT, "none of the photographs has a mask to hold what is found against");
     if (s != OK || r->table.count == 0) return s;
     return q->json ? json_report_print(mask_table_json(&r->table)) : mask_table_print(&r->table, stdout);
 }

@@ -39,7 +39,7 @@ typedef struct request {
 static status take_model(const char *path, void *into)
 {
     request *r = into;
-    if (r->model_count == MOST_MODELS) return fail(ERROR_USAGE, "at most %d weights at a time", MOST_MODELS);
+    if (r->model_count == MOST_MODELS) return fail(MERLIN_WRONG_USE, "at most %d weights at a time", MOST_MODELS);
     r->models[r->model_count++] = path;
     return OK;
 }
@@ -56,9 +56,9 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(ERROR_USAGE, "no photograph given");
-    if (r->model_count == 0) return fail(ERROR_USAGE, "--model W is missing");
-    return r->output ? OK : fail(ERROR_USAGE, "-o FILE.png is missing");
+    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no photograph given");
+    if (r->model_count == 0) return fail(MERLIN_WRONG_USE, "--model W is missing");
+    return r->output ? OK : fail(MERLIN_WRONG_USE, "-o FILE.png is missing");
 }
 
 /* ---- the picture ---- */
@@ -84,11 +84,12 @@ static status comparison_new(const request *r, const photo_list *photos, compari
 {
     *c = (comparison){.request = r, .photos = photos, .columns = 1 + (OVERVIEW_TILES - 1) * r->model_count};
     if (photos->count < 1 || photos->count > MOST_PHOTOS)
-        return fail(ERROR_USAGE, "%zu photographs do not fit in one picture; 1 to %d do", photos->count, MOST_PHOTOS);
+        return fail(MERLIN_WRONG_USE, "%zu photographs do not fit in one picture; 1 to %d do", photos->count,
+                    MOST_PHOTOS);
     c->images = calloc(tile_count(c), sizeof *c->images);
     c->labels = calloc(tile_count(c), sizeof *c->labels);
     c->failed = calloc(photos->count, sizeof *c->failed);
-    return c->images && c->labels && c->failed ? OK : fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
+    return c->images && c->labels && c->failed ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu tiles", tile_count(c));
 }
 
 static void comparison_free(comparison *c)
@@ -151,10 +152,10 @@ static status run_model(comparison *c, int model)
     size_t count = c->photos->count;
     char *weights = NULL;
     status s = photo_find_model(c->request->models[model], &weights);
-    if (s == OK) s = (status)merlin_model_open(weights, &m);
+    if (s == OK) s = merlin_model_open(weights, &m);
     free(weights);
     for (size_t i = 0; i < count && s == OK; i++) {
-        if (cli_interrupted()) s = fail(ERROR_STOPPED, "interrupted; nothing was written");
+        if (cli_interrupted()) s = fail(MERLIN_STOPPED, "interrupted; nothing was written");
         if (s == OK && !c->failed[i]) leave_out_bad(c, i, take_apart(c, m, i, model));
         if (s == OK) progress_update(&c->progress, (size_t)model * count + i + 1, NULL);
     }
@@ -166,7 +167,7 @@ static status write_sheet(const comparison *c)
 {
     size_t count = 0;
     figure_tile *tiles = malloc(tile_count(c) * sizeof *tiles);
-    if (!tiles) return fail(ERROR_MEMORY, "no memory for %zu tiles", tile_count(c));
+    if (!tiles) return fail(MERLIN_NO_MEMORY, "no memory for %zu tiles", tile_count(c));
     for (size_t i = 0; i < tile_count(c); i++)
         if (!c->failed[i / (size_t)c->columns]) tiles[count++] = (figure_tile){c->labels[i], &c->images[i]};
     status s = figure_sheet(c->request->output, tiles, (int)count, c->columns, TILE);
@@ -209,7 +210,7 @@ static status check_apart(const request *r, const photo_list *photos)
     for (size_t i = 0; i < photos->count; i++)
         if (file_is_same(r->output, photos->at[i].photo) ||
             (photos->at[i].mask && file_is_same(r->output, photos->at[i].mask)))
-            return fail(ERROR_USAGE, "-o %s is one of the photographs or masks", r->output);
+            return fail(MERLIN_WRONG_USE, "-o %s is one of the photographs or masks", r->output);
     return OK;
 }
 

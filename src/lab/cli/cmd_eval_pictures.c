@@ -47,7 +47,7 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     r->options.folder = (const char *const *)*argv;
     r->options.count = (size_t)*argc;
-    return *argc > 0 ? OK : fail(ERROR_USAGE, "no capture given");
+    return *argc > 0 ? OK : fail(MERLIN_WRONG_USE, "no capture given");
 }
 
 static status announce(const request *r, const picture_table *t)

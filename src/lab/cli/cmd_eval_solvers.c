@@ -39,7 +39,7 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    return argc == 0 ? OK : fail(ERROR_USAGE, "unexpected argument \"%s\"", argv[0]);
+    return argc == 0 ? OK : fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
 }
 
 static status announce(const request *r, const solver_table *t)

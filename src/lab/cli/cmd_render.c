@@ -54,7 +54,7 @@ static status take_strata(const char *text, void *to)
     if (s != OK) return s;
     int strata = (int)lround(sqrt((double)value));
     if (strata * strata != value || (value > 1 && strata % 2))
-        return fail(ERROR_USAGE, "--spp must be 1, 4, 16, 36 or 64, not %s", text);
+        return fail(MERLIN_WRONG_USE, "--spp must be 1, 4, 16, 36 or 64, not %s", text);
     *(int *)to = strata;
     return OK;
 }
@@ -66,7 +66,8 @@ static status take_fov(const char *text, void *to)
     char low[32];
     const char *hyphen = strchr(text, '-');
     size_t length = hyphen ? (size_t)(hyphen - text) : strlen(text);
-    if (length == 0 || length >= sizeof low) return fail(ERROR_USAGE, "--fov must be like 60 or 8-75, not %s", text);
+    if (length == 0 || length >= sizeof low)
+        return fail(MERLIN_WRONG_USE, "--fov must be like 60 or 8-75, not %s", text);
     memcpy(low, text, length);
     low[length] = 0;
     double narrow = 0, wide = 0;
@@ -95,7 +96,7 @@ static status take_angles(const char *text, void *to)
         double angle = 0;
         snprintf(one, sizeof one, "%.*s", (int)strcspn(at, ","), at);
         if (image->lamp_angles == SAMPLE_MAX_LAMPS)
-            return fail(ERROR_USAGE, "--lamp-angles: at most %d lamps", SAMPLE_MAX_LAMPS);
+            return fail(MERLIN_WRONG_USE, "--lamp-angles: at most %d lamps", SAMPLE_MAX_LAMPS);
         status s = cli_float("--lamp-angles", one, 0, 180, &angle);
         if (s != OK) return s;
         image->lamp_angle[image->lamp_angles++] = (float)angle;
@@ -139,15 +140,15 @@ static status parse(int argc, char **argv, request *r)
 {
     status s = read_options(&argc, &argv, r);
     if (s != OK || r->help) return s;
-    if (argc > 0) return fail(ERROR_USAGE, "unexpected argument %s", argv[0]);
-    if (r->options.count == 0) return fail(ERROR_USAGE, "--count is required");
-    if (!r->options.folder) return fail(ERROR_USAGE, "an output folder is required: -o DIR");
+    if (argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument %s", argv[0]);
+    if (r->options.count == 0) return fail(MERLIN_WRONG_USE, "--count is required");
+    if (!r->options.folder) return fail(MERLIN_WRONG_USE, "an output folder is required: -o DIR");
     if (r->no_environment && r->options.environment_folder)
-        return fail(ERROR_USAGE, "--env-dir and --no-env contradict each other");
+        return fail(MERLIN_WRONG_USE, "--env-dir and --no-env contradict each other");
     if (r->options.mesh && r->options.mesh_folder)
-        return fail(ERROR_USAGE, "--mesh and --mesh-dir contradict each other");
+        return fail(MERLIN_WRONG_USE, "--mesh and --mesh-dir contradict each other");
     if (r->options.mesh_share > 0 && !r->options.mesh_folder)
-        return fail(ERROR_USAGE, "--mesh-share is of the meshes in --mesh-dir D");
+        return fail(MERLIN_WRONG_USE, "--mesh-share is of the meshes in --mesh-dir D");
     r->options.environment = !r->no_environment;
     return OK;
 }

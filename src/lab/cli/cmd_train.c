@@ -44,7 +44,7 @@ static status take_shared(const char *name, void *into)
     size_t n = 0;
     while (r->shared[n])
         n++;
-    if (n == MOST_SHARED) return fail(ERROR_USAGE, "--init-shared takes at most %d weights to share", MOST_SHARED);
+    if (n == MOST_SHARED) return fail(MERLIN_WRONG_USE, "--init-shared takes at most %d weights to share", MOST_SHARED);
     r->shared[n] = name;
     return OK;
 }
@@ -66,13 +66,13 @@ static status parse(int argc, char **argv, request *r)
     };
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
-    if (argc != 1) return fail(ERROR_USAGE, "give one configuration file");
-    if (!o->data) return fail(ERROR_USAGE, "--data is missing");
-    if (!o->output) return fail(ERROR_USAGE, "--output is missing");
+    if (argc != 1) return fail(MERLIN_WRONG_USE, "give one configuration file");
+    if (!o->data) return fail(MERLIN_WRONG_USE, "--data is missing");
+    if (!o->output) return fail(MERLIN_WRONG_USE, "--output is missing");
     bool starts_shared = r->shared[0] != NULL;
-    if (o->init && starts_shared) return fail(ERROR_USAGE, "--init and --init-shared exclude each other");
+    if (o->init && starts_shared) return fail(MERLIN_WRONG_USE, "--init and --init-shared exclude each other");
     if ((o->init || starts_shared) && o->resume)
-        return fail(ERROR_USAGE, "%s and --resume exclude each other", o->init ? "--init" : "--init-shared");
+        return fail(MERLIN_WRONG_USE, "%s and --resume exclude each other", o->init ? "--init" : "--init-shared");
     o->init_shared = r->shared;
     o->config = argv[0];
     return OK;
@@ -104,8 +104,8 @@ static status train(request *r)
 /* One of the ranks says what all know. */
 static int end(ranks *together, status s)
 {
-    bool all_know = s == OK || s == ERROR_STOPPED || s == ERROR_ELSEWHERE;
-    bool silent = s == OK || s == ERROR_ELSEWHERE || (s == ERROR_STOPPED && ranks_index(together) > 0);
+    bool all_know = s == OK || s == MERLIN_STOPPED || s == STATUS_ELSEWHERE;
+    bool silent = s == OK || s == STATUS_ELSEWHERE || (s == MERLIN_STOPPED && ranks_index(together) > 0);
     int code = s == OK ? 0 : 1;
     if (!silent) code = cli_fail("train", s);
     if (all_know)

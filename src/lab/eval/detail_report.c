@@ -2,8 +2,8 @@
 /* detail_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
-#include "estimate/photo/network.h"
 #include "estimate/files/report.h"
+#include "estimate/photo/network.h"
 #include "lab/eval/detail_table.h"
 
 typedef struct figure_words {

@@ -143,10 +143,10 @@ static status measure_file(network *n, const char *path, detail_table *t)
     t->size = first;
     t->larger = detail_side(NETWORK_LARGEST_SIZE, first);
     if (s.mask.width != first || s.mask.height != first)
-        st = fail(ERROR_INPUT, "%s is %dx%d but the first sample is %dx%d", path, s.mask.width, s.mask.height, first,
-                  first);
+        st = fail(MERLIN_BAD_INPUT, "%s is %dx%d but the first sample is %dx%d", path, s.mask.width, s.mask.height,
+                  first, first);
     else if (t->larger == 0)
-        st = fail(ERROR_INPUT, "%s: samples of %d pixels a side show nothing finer than %d do; render larger ones",
+        st = fail(MERLIN_BAD_INPUT, "%s: samples of %d pixels a side show nothing finer than %d do; render larger ones",
                   path, first, NETWORK_SIZE);
     if (st == OK) st = measure(n, &s, t);
     if (st == OK) t->samples++;
@@ -161,7 +161,7 @@ static status measure_files(const detail_options *o, network *n, char **names, s
     progress_begin(&p, "evaluating", "samples", 0, count, o->quiet);
     for (size_t i = 0; i < count && s == OK; i++) {
         if (o->stopped && o->stopped())
-            s = fail(ERROR_STOPPED, "stopped after %zu of %zu samples", i, count);
+            s = fail(MERLIN_STOPPED, "stopped after %zu of %zu samples", i, count);
         else
             s = measure_file(n, names[i], out);
         if (s == OK) progress_update(&p, i + 1, NULL);

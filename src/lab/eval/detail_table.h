@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a larger picture adds to an estimate's shape (estimate/photo/detail.h), on samples of more than NETWORK_SIZE pixels.
+/* What a larger picture adds to an estimate's shape (estimate/photo/detail.h), on samples of more than NETWORK_SIZE
+ * pixels.
  *
  *     detail_options options = {.data = "large", .weights = "merlin-point.safetensors", .views = NETWORK_VIEWS};
  *     detail_table table;
@@ -46,7 +47,7 @@ typedef struct detail_options {
     int (*stopped)(void); /* asked between samples; NULL: never */
 } detail_options;
 
-/* ERROR_INPUT for samples of one size with NETWORK_SIZE, or smaller. */
+/* MERLIN_BAD_INPUT for samples of one size with NETWORK_SIZE, or smaller. */
 status detail_table_run(const detail_options *options, detail_table *out);
 
 void detail_table_print(const detail_table *t, FILE *stream);

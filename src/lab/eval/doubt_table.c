@@ -30,7 +30,7 @@ status doubt_table_add(doubt_table *t, merlin_model *model, doubt_photo *photo)
         snprintf(row->name, sizeof row->name, "%s", photo->name);
     }
     merlin_maps_free(&maps);
-    return larger ? OK : fail(ERROR_MEMORY, "no memory for a table");
+    return larger ? OK : fail(MERLIN_NO_MEMORY, "no memory for a table");
 }
 
 void doubt_table_free(doubt_table *t)
@@ -69,7 +69,7 @@ static status bright_part(const img *picture, const img *mask, float *out)
     while (bin < BINS - 1 && (seen += bins[bin]) <= count * 95 / 100)
         bin++;
     *out = exp2f((float)bin / 16 - 20);
-    return count ? OK : fail(ERROR_INPUT, "a sample shows no object");
+    return count ? OK : fail(MERLIN_BAD_INPUT, "a sample shows no object");
 }
 
 /* sum += scale · part, where there is a part. */
@@ -92,8 +92,8 @@ static status add_picture(doubt_table *t, merlin_model *model, const sample *s, 
     float scale = bright > 0 ? bright / part : 1 / EXPOSURE_WHITE;
     for (size_t i = 0; i < img_value_count(&picture); i++)
         picture.data[i] = fminf(picture.data[i] * scale, 1);
-    doubt_photo photo = {.name = name, .kind = kind, .picture = image_of(&picture)};
-    merlin_image mask = image_of(&s->mask);
+    doubt_photo photo = {.name = name, .kind = kind, .picture = picture};
+    merlin_image mask = s->mask;
     st = photo_object_choose(&photo.picture, &mask, NULL, &photo.object);
     if (st == OK) return doubt_table_add(t, model, &photo);
     img_free(&picture);

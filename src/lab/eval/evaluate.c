@@ -42,7 +42,7 @@ static status count_sample(eval_report *report, const sample *s, const eval_scor
     int c = 0;
     while (c < report->class_count && strcmp(report->class_names[c], s->shape) != 0)
         c++;
-    if (c == EVAL_MAX_CLASSES) return fail(ERROR_INPUT, "more than %d classes of shape", EVAL_MAX_CLASSES);
+    if (c == EVAL_MAX_CLASSES) return fail(MERLIN_BAD_INPUT, "more than %d classes of shape", EVAL_MAX_CLASSES);
     if (c == report->class_count) {
         memcpy(report->class_names[c], s->shape, sizeof report->class_names[c]);
         report->class_count++;
@@ -60,7 +60,7 @@ static status evaluate_file(evaluation *e, const char *path)
     if (st != OK) return st;
     eval_scores scores = {0};
     if (s.mask.width != e->report->size || s.mask.height != e->report->size)
-        st = fail(ERROR_INPUT, "%s is %dx%d but the first sample is %dx%d", path, s.mask.width, s.mask.height,
+        st = fail(MERLIN_BAD_INPUT, "%s is %dx%d but the first sample is %dx%d", path, s.mask.width, s.mask.height,
                   e->report->size, e->report->size);
     if (st == OK) st = eval_score_sample(&e->scorer, &s, &scores);
     if (st == OK) st = count_sample(e->report, &s, &scores);
@@ -102,7 +102,7 @@ static status evaluate_files(evaluation *e, char **names, size_t count)
     progress_begin(&p, "evaluating", "samples", 0, count, e->options->quiet);
     for (size_t i = 0; s == OK && i < count; i++) {
         if (e->options->stopped && e->options->stopped())
-            s = fail(ERROR_STOPPED, "stopped after %zu of %zu samples", i, count);
+            s = fail(MERLIN_STOPPED, "stopped after %zu of %zu samples", i, count);
         else
             s = evaluate_file(e, names[i]);
         if (s == OK) progress_update(&p, i + 1, NULL);

@@ -7,10 +7,10 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "estimate/surface/exposure.h"
 #include "estimate/light/found_light.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/light_choice.h"
+#include "estimate/surface/exposure.h"
 #include "image/color.h"
 #include "lab/eval/maps.h"
 #include "lab/eval/metrics.h"
@@ -89,7 +89,7 @@ static status bright_part(const subject *on, const img *photo, float *out)
 {
     size_t count = 0, pixels = img_value_count(&on->mask);
     float *values = malloc((pixels + 1) * sizeof *values);
-    if (!values) return fail(ERROR_MEMORY, "no memory for a photograph's brightness");
+    if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a photograph's brightness");
     for (size_t i = 0; i < pixels; i++)
         if (on->mask.data[i] > 0) values[count++] = color_luminance(photo->data + 3 * i);
     qsort(values, count, sizeof *values, by_size);
@@ -168,7 +168,7 @@ static status note_direction(directions *to, double degrees)
     if (to->count == to->room) {
         size_t room = 2 * to->room + 64;
         double *grown = realloc(to->angle, room * sizeof *grown);
-        if (!grown) return fail(ERROR_MEMORY, "no memory for directions");
+        if (!grown) return fail(MERLIN_NO_MEMORY, "no memory for directions");
         to->angle = grown;
         to->room = room;
     }
@@ -250,11 +250,11 @@ static status measure_file(run *r, const char *path)
     if (st != OK) return st;
     int side = s.mask.width;
     if (s.lamp_count == 0 || !s.env.data)
-        st = fail(ERROR_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
+        st = fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
                   path);
     else if (side != s.mask.height || side % MODEL_SIZE_MULTIPLE || side > NETWORK_SIZE)
-        st = fail(ERROR_INPUT, "%s is %dx%d pixels; squares of a multiple of %d up to %d are evaluated", path, side,
-                  s.mask.height, MODEL_SIZE_MULTIPLE, NETWORK_SIZE);
+        st = fail(MERLIN_BAD_INPUT, "%s is %dx%d pixels; squares of a multiple of %d up to %d are evaluated", path,
+                  side, s.mask.height, MODEL_SIZE_MULTIPLE, NETWORK_SIZE);
     if (st == OK) st = measure_sample(r, &s);
     if (st == OK) r->table->samples++;
     sample_free(&s);
@@ -280,7 +280,7 @@ static status measure_files(run *r, char **names, size_t count)
     progress_begin(&p, "evaluating", "samples", 0, count, r->options->quiet);
     for (size_t i = 0; i < count && s == OK; i++) {
         if (r->options->stopped && r->options->stopped())
-            s = fail(ERROR_STOPPED, "stopped after %zu of %zu samples", i, count);
+            s = fail(MERLIN_STOPPED, "stopped after %zu of %zu samples", i, count);
         else
             s = measure_file(r, names[i]);
         if (s == OK) progress_update(&p, i + 1, NULL);

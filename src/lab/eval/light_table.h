@@ -60,7 +60,7 @@ typedef struct light_options {
     int (*stopped)(void); /* asked between samples; NULL: never */
 } light_options;
 
-/* ERROR_INPUT for samples without lamps or environment, or of sizes that the network does not take. */
+/* MERLIN_BAD_INPUT for samples without lamps or environment, or of sizes that the network does not take. */
 status light_table_run(const light_options *options, light_table *out);
 
 const char *light_kind_name(light_kind kind);

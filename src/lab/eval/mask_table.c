@@ -34,7 +34,7 @@ static status search(const mask_truth *truth, mask_row *row)
     if (row->found) row->iou = overlap(&mask, truth->mask);
     if (row->found) row->confidence = (double)choice.confidence;
     img_free(&mask);
-    return s == ERROR_INPUT ? OK : s;
+    return s == MERLIN_BAD_INPUT ? OK : s;
 }
 
 static mask_row *add_rows(mask_table *t, size_t count)
@@ -51,10 +51,10 @@ status mask_table_add(mask_table *t, const mask_truth *truth)
 {
     const img *photo = truth->photo, *mask = truth->mask;
     if (photo->width != mask->width || photo->height != mask->height)
-        return fail(ERROR_INPUT, "the mask of %s is %d×%d pixels, the photograph %d×%d; they must be equal",
+        return fail(MERLIN_BAD_INPUT, "the mask of %s is %d×%d pixels, the photograph %d×%d; they must be equal",
                     truth->name, mask->width, mask->height, photo->width, photo->height);
     mask_row *row = add_rows(t, 1);
-    return row ? search(truth, row) : fail(ERROR_MEMORY, "no memory for a table");
+    return row ? search(truth, row) : fail(MERLIN_NO_MEMORY, "no memory for a table");
 }
 
 void mask_table_free(mask_table *t)
@@ -98,10 +98,10 @@ status mask_table_add_samples(mask_table *t, char *const *paths, size_t count, u
     for (size_t i = 0; i < count && s == OK; i += at_once) {
         size_t some = count - i < at_once ? count - i : at_once;
         batch b = {paths + i, seed, add_rows(t, some * COMPOSITE_KINDS)};
-        if (!b.row) return fail(ERROR_MEMORY, "no memory for a table");
+        if (!b.row) return fail(MERLIN_NO_MEMORY, "no memory for a table");
         s = parallel_try(some, search_composites, &b);
         if (s == OK) progress_update(shown, t->count, NULL);
-        if (s == OK && stopped && stopped()) s = fail(ERROR_STOPPED, "interrupted");
+        if (s == OK && stopped && stopped()) s = fail(MERLIN_STOPPED, "interrupted");
     }
     return s;
 }
@@ -112,7 +112,7 @@ status mask_table_count(const mask_table *t, int kind, double low, double high, 
 {
     mask_counts c = {0};
     double *ious = malloc((t->count ? t->count : 1) * sizeof *ious);
-    if (!ious) return fail(ERROR_MEMORY, "no memory for a table");
+    if (!ious) return fail(MERLIN_NO_MEMORY, "no memory for a table");
     for (size_t i = 0; i < t->count; i++) {
         const mask_row *row = &t->row[i];
         if ((kind >= 0 && row->kind != kind) || row->confidence < low || row->confidence >= high) continue;

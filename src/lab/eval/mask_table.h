@@ -55,7 +55,7 @@ typedef struct mask_counts {
     size_t told;                              /* with so little confidence that a warning says so */
     double median;                            /* of the intersections over unions */
 } mask_counts;
-/* Of a kind, or of all if that is -1, whose confidence is within [low, high). ERROR_MEMORY alone. */
+/* Of a kind, or of all if that is -1, whose confidence is within [low, high). MERLIN_NO_MEMORY alone. */
 status mask_table_count(const mask_table *t, int kind, double low, double high, mask_counts *out);
 
 status mask_table_print(const mask_table *t, FILE *stream);

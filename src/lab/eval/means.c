@@ -25,11 +25,11 @@ static status add_sample(mean_sums *m, const sample *s, const char *path)
         m->width = s->mask.width;
         m->height = s->mask.height;
         m->sum = calloc((size_t)m->width * (size_t)m->height * SUMS, sizeof *m->sum);
-        if (!m->sum) return fail(ERROR_MEMORY, "no memory for mean maps of %dx%d", m->width, m->height);
+        if (!m->sum) return fail(MERLIN_NO_MEMORY, "no memory for mean maps of %dx%d", m->width, m->height);
     }
     if (s->mask.width != m->width || s->mask.height != m->height)
-        return fail(ERROR_INPUT, "%s is %dx%d but the samples before it are %dx%d", path, s->mask.width, s->mask.height,
-                    m->width, m->height);
+        return fail(MERLIN_BAD_INPUT, "%s is %dx%d but the samples before it are %dx%d", path, s->mask.width,
+                    s->mask.height, m->width, m->height);
     for (size_t i = 0, n = (size_t)m->width * (size_t)m->height; i < n; i++) {
         if (!(s->mask.data[i] > EVAL_MASK_LEVEL)) continue;
         double *sum = m->sum + i * SUMS;
@@ -66,7 +66,7 @@ static status finish_means(const mean_sums *m, eval_means *out)
     for (size_t i = 0; i < pixels; i++)
         for (int c = 0; c < SUMS; c++)
             all[c] += m->sum[i * SUMS + (size_t)c];
-    if (!(all[WEIGHT] > 0)) return fail(ERROR_INPUT, "the samples' masks are empty: no mean to take");
+    if (!(all[WEIGHT] > 0)) return fail(MERLIN_BAD_INPUT, "the samples' masks are empty: no mean to take");
     status s = eval_maps_new(&out->maps, m->width, m->height);
     if (s != OK) return s;
     for (size_t i = 0; i < pixels; i++) {
@@ -103,7 +103,7 @@ status eval_means_of_folder(const char *folder, size_t limit, bool quiet, int (*
     progress p;
     progress_begin(&p, "means", "samples", 0, used, quiet);
     for (size_t i = 0; s == OK && i < used; i++) {
-        s = stopped && stopped() ? fail(ERROR_STOPPED, "stopped after the means of %zu of %zu samples", i, used)
+        s = stopped && stopped() ? fail(MERLIN_STOPPED, "stopped after the means of %zu of %zu samples", i, used)
                                  : add_file(&sums, names[i]);
         if (s == OK) progress_update(&p, i + 1, NULL);
     }
@@ -164,7 +164,7 @@ static status read_means_file(const char *path, exr_file *f, eval_means *out)
     float roughness, depth, samples;
     if (!exr_get_numbers(f, "roughness_mean", &roughness, 1) || !exr_get_numbers(f, "depth_mean", &depth, 1) ||
         !exr_get_numbers(f, "sample_count", &samples, 1) || !(depth > 0 && samples >= 1 && samples < 1e12f))
-        return fail(ERROR_INPUT, "%s holds no mean maps; make them with merlin-lab eval --means", path);
+        return fail(MERLIN_BAD_INPUT, "%s holds no mean maps; make them with merlin-lab eval --means", path);
     status s = eval_maps_new(&out->maps, exr_width(f), exr_height(f));
     if (s != OK) return s;
     exr_target targets[CHANNELS];

@@ -145,11 +145,11 @@ double eval_median(double *values, size_t count)
 status eval_ssim(const img *a, const img *b, double *out)
 {
     if (a->width != b->width || a->height != b->height || a->channels != b->channels)
-        return fail(ERROR_USAGE, "structural similarity needs images of one size, not %dx%dx%d and %dx%dx%d", a->width,
-                    a->height, a->channels, b->width, b->height, b->channels);
+        return fail(MERLIN_WRONG_USE, "structural similarity needs images of one size, not %dx%dx%d and %dx%dx%d",
+                    a->width, a->height, a->channels, b->width, b->height, b->channels);
     if (a->width < WINDOW || a->height < WINDOW)
-        return fail(ERROR_USAGE, "structural similarity needs sides of %d pixels or more, not %dx%d", WINDOW, a->width,
-                    a->height);
+        return fail(MERLIN_WRONG_USE, "structural similarity needs sides of %d pixels or more, not %dx%d", WINDOW,
+                    a->width, a->height);
     ssim_work w = {.a = a, .b = b, .width = a->width - WINDOW + 1};
     size_t height = (size_t)a->height, windows = height - WINDOW + 1;
     w.rows = malloc(height * MOMENTS * (size_t)w.width * sizeof *w.rows);
@@ -157,7 +157,7 @@ status eval_ssim(const img *a, const img *b, double *out)
     if (!w.rows || !w.means) {
         free(w.rows);
         free(w.means);
-        return fail(ERROR_MEMORY, "no memory to compare images of %dx%d", a->width, a->height);
+        return fail(MERLIN_NO_MEMORY, "no memory to compare images of %dx%d", a->width, a->height);
     }
     gaussian(w.weights);
     double sum = 0;

@@ -11,8 +11,8 @@
 #include "lab/eval/normal_frame.h"
 #include "lab/eval/stereo_frame.h"
 #include "lab/eval/stereo_object.h"
-#include "stereo/methods/solve.h"
 #include "stereo/integrate/surface_error.h"
+#include "stereo/methods/solve.h"
 
 typedef struct run {
     const picture_options *options;
@@ -42,7 +42,7 @@ static status judge(const pst_capture *c, const merlin_maps *maps, picture_score
     img normal = {0};
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
     const bool by_sight = !maps->light.known;
-    const img from = img_of(&maps->normal);
+    const img from = maps->normal;
     const pinhole assumed = pinhole_of(c->width, c->height, SURFACE_FOV);
     status s = stereo_frame_check(c, maps);
     if (s == OK) s = img_copy(&normal, &from);
@@ -59,8 +59,8 @@ static status measure(run *r, const pst_capture *c, int i, picture_score *score)
     img photo = {0};
     snprintf(score->name, sizeof score->name, "%s", file_name_of(c->name[i]));
     status s = stereo_object_photo(c, i, &photo);
-    const merlin_image picture = image_of(&photo), mask = image_of(&c->mask);
-    if (s == OK) s = (status)merlin_estimate(r->model, &picture, &mask, NULL, &maps);
+    const merlin_image picture = photo, mask = c->mask;
+    if (s == OK) s = merlin_estimate(r->model, &picture, &mask, NULL, &maps);
     if (s == OK) s = judge(c, &maps, score);
     score->aside = aside_of(c, i);
     score->light = light_error(c, i, &maps.light);
@@ -87,13 +87,13 @@ static status find_truth(pst_capture *c)
 static status measure_all(run *r, const pst_capture *c, picture_column *out)
 {
     out->picture = calloc((size_t)c->count, sizeof *out->picture);
-    if (!out->picture) return fail(ERROR_MEMORY, "no memory for a table of %d pictures", c->count);
+    if (!out->picture) return fail(MERLIN_NO_MEMORY, "no memory for a table of %d pictures", c->count);
     out->count = c->count;
     out->frontal = stereo_object_frontal(c);
     status s = OK;
     for (int i = 0; i < c->count && s == OK; i++) {
         progress_update(&r->bar, 1000 * r->done + (size_t)(1000 * i / c->count), out->name);
-        s = r->options->stopped && r->options->stopped() ? fail(ERROR_STOPPED, "stopped")
+        s = r->options->stopped && r->options->stopped() ? fail(MERLIN_STOPPED, "stopped")
                                                          : measure(r, c, i, &out->picture[i]);
     }
     return s;
@@ -118,7 +118,7 @@ status picture_table_run(const picture_options *options, picture_table *out)
     run r = {.options = options};
     double began = clock_seconds();
     *out = (picture_table){.object = calloc(options->count + 1, sizeof *out->object), .count = options->count};
-    if (!out->object) return fail(ERROR_MEMORY, "no memory for a table of %zu objects", options->count);
+    if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", options->count);
     status s = model_open_pair(options->weights, options->flash, &r.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(r.model));
     progress_begin(&r.bar, "estimating", "thousandths", 0, 1000 * options->count, options->quiet);

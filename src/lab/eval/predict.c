@@ -52,10 +52,11 @@ status eval_model_open(const char *weights, int size, nn_type type, int views, e
 {
     *out = NULL;
     if (size < MODEL_SIZE_MULTIPLE || size % MODEL_SIZE_MULTIPLE)
-        return fail(ERROR_INPUT, "samples of %d pixels a side do not fit the model: the side must be a multiple of %d",
-                    size, MODEL_SIZE_MULTIPLE);
+        return fail(MERLIN_BAD_INPUT,
+                    "samples of %d pixels a side do not fit the model: the side must be a multiple of %d", size,
+                    MODEL_SIZE_MULTIPLE);
     eval_model *m = calloc(1, sizeof *m);
-    if (!m) return fail(ERROR_MEMORY, "no memory for a model");
+    if (!m) return fail(MERLIN_NO_MEMORY, "no memory for a model");
     m->size = size;
     m->views = views;
     status s = model_load(weights, &m->config, &m->params);

@@ -106,7 +106,7 @@ static status show_by_rendering(eval_model *m, const img *mask, eval_prediction 
 status eval_estimate(eval_model *m, const img *image, const img *mask, eval_prediction *out)
 {
     if (image->width != m->size || image->height != m->size)
-        return fail(ERROR_INPUT, "a picture of %dx%d does not fit a model prepared for %dx%d", image->width,
+        return fail(MERLIN_BAD_INPUT, "a picture of %dx%d does not fit a model prepared for %dx%d", image->width,
                     image->height, m->size, m->size);
     network_estimation mean = {0};
     status s = mean_of_views(m, image, mask, out->seen, &mean);

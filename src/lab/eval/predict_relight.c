@@ -3,8 +3,8 @@
 
 #include "estimate/light/bounce.h"
 #include "estimate/light/shadow.h"
-#include "estimate/surface/smooth.h"
 #include "estimate/photo/view.h"
+#include "estimate/surface/smooth.h"
 #include "lab/eval/predict.h"
 #include "lab/eval/predict_parts.h"
 

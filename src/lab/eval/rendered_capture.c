@@ -244,7 +244,7 @@ static status allocate(const rendered *how, pst_capture *c)
     if (s != OK) return s;
     for (int k = 0; k < how->lights; k++) {
         c->picture[k] = calloc(values, sizeof **c->picture);
-        if (!c->picture[k]) return fail(ERROR_MEMORY, "no memory for %d pictures", how->lights);
+        if (!c->picture[k]) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", how->lights);
         c->light[k] = light_of(how, k);
     }
     return OK;

@@ -131,8 +131,8 @@ static status take_photograph(const eval_scorer *e, eval_subject *on)
     if (config->lighting != MODEL_LIGHT_BOTH)
         return eval_photograph(&s->direct, config->input_global ? &s->indirect : NULL, &on->mask, e->white, &on->photo);
     if (!s->env.data)
-        return fail(ERROR_INPUT, "model \"%s\" is for photographs in surroundings: render samples without --no-env",
-                    config->name);
+        return fail(MERLIN_BAD_INPUT,
+                    "model \"%s\" is for photographs in surroundings: render samples without --no-env", config->name);
     status st = img_copy(&more, &s->env);
     if (st != OK) return st;
     for (size_t i = 0, n = 3 * (size_t)more.width * (size_t)more.height; i < n; i++)

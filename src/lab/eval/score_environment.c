@@ -36,7 +36,7 @@ static status check_same(const eval_subject *on, const sample *again)
                 eval_mse(&maps.depth, &on->truth.depth, &on->mask) < SAME_DEPTH;
     eval_maps_free(&maps);
     return same ? OK
-                : fail(ERROR_INPUT,
+                : fail(MERLIN_BAD_INPUT,
                        "sample %llu of seed %llu is not what merlin-lab render makes of these numbers (a mesh, other "
                        "materials or another version): it cannot be relit by environments",
                        (unsigned long long)on->sample->index, (unsigned long long)on->sample->seed);
@@ -50,7 +50,8 @@ static status render_truth(const eval_subject *on, elsewhere *out)
     environment env;
     *out = (elsewhere){0};
     if (fabsf(s->fov - SURFACE_FOV) > 0.01f)
-        return fail(ERROR_INPUT, "sample %llu was rendered %g degrees wide: environments light what %g degrees show",
+        return fail(MERLIN_BAD_INPUT,
+                    "sample %llu was rendered %g degrees wide: environments light what %g degrees show",
                     (unsigned long long)s->index, (double)s->fov, (double)SURFACE_FOV);
     o.seed = s->seed;
     o.image.size = s->mask.width;

@@ -17,7 +17,7 @@ status sheet_rows_new(size_t rows, size_t columns, const char *const *labels, sh
 {
     sheet_rows *sheet = calloc(1, sizeof *sheet + rows * columns * sizeof(img));
     *out = sheet;
-    if (!sheet) return fail(ERROR_MEMORY, "no memory for a sheet of %zu rows", rows);
+    if (!sheet) return fail(MERLIN_NO_MEMORY, "no memory for a sheet of %zu rows", rows);
     sheet->rows = rows;
     sheet->columns = columns;
     sheet->labels = labels;
@@ -50,7 +50,7 @@ status sheet_rows_write(const sheet_rows *sheet, const char *path)
 {
     size_t count = sheet->used * sheet->columns;
     figure_tile *tiles = malloc((count ? count : 1) * sizeof *tiles);
-    if (!tiles) return fail(ERROR_MEMORY, "no memory for a sheet of %zu rows", sheet->used);
+    if (!tiles) return fail(MERLIN_NO_MEMORY, "no memory for a sheet of %zu rows", sheet->used);
     for (size_t i = 0; i < count; i++)
         tiles[i] = (figure_tile){sheet->labels[i % sheet->columns], &sheet->images[i]};
     status s = figure_sheet(path, tiles, (int)count, (int)sheet->columns, TILE);

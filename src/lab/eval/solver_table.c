@@ -7,8 +7,8 @@
 #include "base/progress.h"
 #include "lab/eval/rendered_capture.h"
 #include "lab/scene/material/material.h"
-#include "stereo/methods/solve.h"
 #include "stereo/integrate/surface_error.h"
+#include "stereo/methods/solve.h"
 
 enum { CAPTURES = 4, TIMED_RUNS = 3 };
 static const float field_of_view = 60;
@@ -96,7 +96,7 @@ typedef status (*capture_figures)(const pst_capture *c, solver_row *row);
 
 static status measure(evaluation *e, const rendered *how, capture_figures take)
 {
-    if (e->options->stopped && e->options->stopped()) return fail(ERROR_STOPPED, "stopped");
+    if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
     pst_capture c;
     status s = rendered_capture(how, &e->object, &c);
     if (s != OK) return s;
@@ -138,7 +138,7 @@ status solver_table_run(const solver_options *options, solver_table *out)
     evaluation e = {.options = options};
     double began = clock_seconds();
     *out = (solver_table){.count = options->count, .object = calloc(options->count, sizeof *out->object)};
-    if (!out->object) return fail(ERROR_MEMORY, "no memory for a table of %zu objects", options->count);
+    if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", options->count);
     progress_begin(&e.bar, "photometric stereo", "captures", 0, options->count * CAPTURES, options->quiet);
     status s = OK;
     for (size_t i = 0; i < options->count && s == OK; i++) {

@@ -73,6 +73,6 @@ status stereo_frame(pst_capture *c, img *photo, int most_side)
 status stereo_frame_check(const pst_capture *c, const merlin_maps *maps)
 {
     if (maps->crop.x == 0 && maps->crop.y == 0 && maps->crop.side == c->width) return OK;
-    return fail(ERROR_INPUT, "shrunk to %d pixels a side the object does not fill its frame: its parts are too thin",
-                c->width);
+    return fail(MERLIN_BAD_INPUT,
+                "shrunk to %d pixels a side the object does not fill its frame: its parts are too thin", c->width);
 }

@@ -29,7 +29,7 @@ static status add_folders(const char *folder, DIR *open, char **path, size_t *co
     for (struct dirent *entry; (entry = readdir(open));) {
         if (entry->d_name[0] == '.') continue;
         char *inner = file_join(folder, entry->d_name);
-        if (!inner) return fail(ERROR_MEMORY, "no memory for a file name");
+        if (!inner) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
         if (*count < MOST_OBJECTS && file_is_folder(inner) && pst_is_of_data_set(inner))
             path[(*count)++] = inner;
         else
@@ -43,12 +43,13 @@ static status list_folders(const char *folder, char ***path, size_t *count)
 {
     *count = 0;
     *path = calloc(MOST_OBJECTS, sizeof **path);
-    if (!*path) return fail(ERROR_MEMORY, "no memory for a list of objects");
+    if (!*path) return fail(MERLIN_NO_MEMORY, "no memory for a list of objects");
     DIR *open = opendir(folder);
-    status s = open ? add_folders(folder, open, *path, count) : fail(ERROR_INPUT, "cannot open the folder %s", folder);
+    status s =
+        open ? add_folders(folder, open, *path, count) : fail(MERLIN_BAD_INPUT, "cannot open the folder %s", folder);
     if (open) closedir(open);
     if (s == OK && *count == 0)
-        s = fail(ERROR_INPUT,
+        s = fail(MERLIN_BAD_INPUT,
                  "%s holds no samples of merlin-lab render, and no folders in the LUCES or DiLiGenT layout", folder);
     if (s != OK) file_list_free(*path, *count);
     return s;
@@ -61,7 +62,7 @@ static status list_itself(const char *folder, char ***path, size_t *count)
     *count = 1;
     if (*path && **path) return OK;
     free(*path);
-    return fail(ERROR_MEMORY, "no memory for a file name");
+    return fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
 status stereo_object_list(const char *folder, char ***path, size_t *count)
@@ -102,7 +103,7 @@ static status read_sample(const char *path, stereo_object *out)
     status s = sample_read(path, &from);
     if (s != OK) return s;
     if (from.target_count < 3)
-        s = fail(ERROR_INPUT, "%s has %d pictures under other lights; render it with --targets 52", path,
+        s = fail(MERLIN_BAD_INPUT, "%s has %d pictures under other lights; render it with --targets 52", path,
                  from.target_count);
     if (s == OK) s = take_targets(&from, &out->capture);
     if (s == OK) s = img_new(&out->photo, from.mask.width, from.mask.height, 3);
@@ -152,7 +153,7 @@ static status read_capture(const char *path, stereo_object *out)
     snprintf(out->name, sizeof out->name, "%.31s", slash && slash[1] ? slash + 1 : path);
     status s = pst_capture_read(path, NULL, &out->capture);
     if (s != OK) return s;
-    if (!out->capture.normal_true.data) return fail(ERROR_INPUT, "%s has no true normals to compare with", path);
+    if (!out->capture.normal_true.data) return fail(MERLIN_BAD_INPUT, "%s has no true normals to compare with", path);
     return stereo_object_photo(&out->capture, stereo_object_frontal(&out->capture), &out->photo);
 }
 

@@ -29,7 +29,7 @@ typedef struct stereo_object {
 /* The objects of a folder, sorted: samples, objects' folders, or the folder itself if it is an object's. Free with
  * file_list_free. */
 status stereo_object_list(const char *folder, char ***path, size_t *count);
-/* ERROR_INPUT for a capture without ground truth and a sample without targets. */
+/* MERLIN_BAD_INPUT for a capture without ground truth and a sample without targets. */
 status stereo_object_read(const char *path, stereo_object *out);
 void stereo_object_free(stereo_object *o);
 

@@ -44,8 +44,8 @@ static void subject_free(subject *s)
 static status estimate(evaluation *e, subject *s)
 {
     merlin_maps maps = {0};
-    merlin_image photo = image_of(&s->object.photo), mask = image_of(&s->object.capture.mask);
-    status result = (status)merlin_estimate(e->model, &photo, &mask, NULL, &maps);
+    merlin_image photo = s->object.photo, mask = s->object.capture.mask;
+    status result = merlin_estimate(e->model, &photo, &mask, NULL, &maps);
     if (result == OK) result = stereo_frame_check(&s->object.capture, &maps);
     if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
     merlin_maps_free(&maps);
@@ -78,9 +78,9 @@ static status solve_draws(evaluation *e, subject *s, stereo_row row, const pst_c
     stereo_score *score = &s->column->row[row];
     double sum = 0, squares = 0, angle = 0, count = 0;
     for (int d = 0; d < draw_count(from); d++) {
-        if (e->options->stopped && e->options->stopped()) return fail(ERROR_STOPPED, "stopped");
+        if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
         status result = solve_draw(s, row, from, d, &angle);
-        if (result != OK && result != ERROR_INPUT) return fail_in(result, "%s", s->object.name);
+        if (result != OK && result != MERLIN_BAD_INPUT) return fail_in(result, "%s", s->object.name);
         score->failed += result != OK;
         sum += result == OK ? angle : 0;
         squares += result == OK ? angle * angle : 0;
@@ -128,7 +128,7 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
 {
     evaluation e = {.options = options};
     out->object = calloc(out->count, sizeof *out->object);
-    if (!out->object) return fail(ERROR_MEMORY, "no memory for a table of %zu objects", out->count);
+    if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = model_open_pair(options->weights, options->flash, &e.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);

@@ -48,7 +48,7 @@ typedef struct stereo_options {
     int (*stopped)(void); /* asked between solutions; NULL: never */
 } stereo_options;
 
-/* ERROR_INPUT, with the object's path in the message, for data that stereo_object_read refuses. */
+/* MERLIN_BAD_INPUT, with the object's path in the message, for data that stereo_object_read refuses. */
 status stereo_table_run(const stereo_options *options, stereo_table *out);
 void stereo_table_free(stereo_table *t);
 

@@ -35,8 +35,8 @@ status eval_means_write(const eval_means *means, const char *path);
 status eval_means_read(const char *path, int width, int height, eval_means *out);
 
 /* Maps from one flash picture (linear, times the mask) without learning anything: normals and relief by pst_inflate
- * (stereo/uncalibrated/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were diffuse (I π d² /
- * Φ, clipped), the data's mean roughness. */
+ * (stereo/uncalibrated/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were
+ * diffuse (I π d² / Φ, clipped), the data's mean roughness. */
 status eval_inflate(const img *image, const img *mask, const eval_means *means, float fov, float power, eval_maps *out);
 
 #endif

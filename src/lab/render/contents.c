@@ -90,11 +90,11 @@ status contents_describe(const render_options *o, char **lines)
     status s = OK;
     *lines = NULL;
     FILE *out = open_memstream(lines, &size);
-    if (!out) return fail(ERROR_MEMORY, "no memory to describe what samples are made of");
+    if (!out) return fail(MERLIN_NO_MEMORY, "no memory to describe what samples are made of");
     for (size_t i = 0; i < sizeof sources / sizeof sources[0] && s == OK; i++)
         if (sources[i].path) s = describe(&sources[i], out);
     bool complete = fclose(out) == 0;
-    if (s == OK && !complete) s = fail(ERROR_MEMORY, "no memory to describe what samples are made of");
+    if (s == OK && !complete) s = fail(MERLIN_NO_MEMORY, "no memory to describe what samples are made of");
     if (s == OK) return OK;
     free(*lines);
     *lines = NULL;

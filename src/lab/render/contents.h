@@ -11,7 +11,7 @@
 #include "lab/render/options.h"
 
 /* Describes the mesh and the folders that the options name, these by names and bytes of all files that are read, in any
- * order. Empty where they name none; ERROR_INPUT for what cannot be read. */
+ * order. Empty where they name none; MERLIN_BAD_INPUT for what cannot be read. */
 status contents_describe(const render_options *options, char **lines);
 
 #endif

@@ -89,7 +89,7 @@ static status finish(environment *env, float exposure)
     env->columns = malloc(h * (w + 1) * sizeof *env->columns);
     if (!env->rows || !env->cosines || !env->columns) {
         environment_free(env);
-        return fail(ERROR_MEMORY, "out of memory for an environment map");
+        return fail(MERLIN_NO_MEMORY, "out of memory for an environment map");
     }
     for (size_t y = 0; y <= h; y++)
         env->cosines[y] = cosf(pi * (float)y / (float)h);

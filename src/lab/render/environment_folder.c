@@ -25,7 +25,7 @@ static status refuse_empty(const char *path, const skipped_files *skipped)
 {
     char left[256];
     skipped_words(skipped, left, sizeof left);
-    return fail(ERROR_INPUT, "%s: no environment maps (HDR, EXR, ...) in this folder%s%s", path, *left ? "; " : "",
+    return fail(MERLIN_BAD_INPUT, "%s: no environment maps (HDR, EXR, ...) in this folder%s%s", path, *left ? "; " : "",
                 left);
 }
 
@@ -35,7 +35,7 @@ status environment_folder_read(const char *path, environment_folder *out)
     *out = (environment_folder){0};
     status s = img_folder_read(path, &f);
     if (s != OK) return s;
-    if (!(out->maps = calloc(f.count + 1, sizeof *out->maps))) s = fail(ERROR_MEMORY, "out of memory for maps");
+    if (!(out->maps = calloc(f.count + 1, sizeof *out->maps))) s = fail(MERLIN_NO_MEMORY, "out of memory for maps");
     for (size_t i = 0; s == OK && i < f.count; i++)
         s = f.at[i].is_picture ? read_map(f.at[i].path, &out->maps[out->count++])
                                : img_folder_skip(&f.at[i], "no picture", false, &out->skipped);

@@ -13,8 +13,8 @@
 #include "base/progress.h"
 #include "lab/render/contents.h"
 #include "lab/render/streams.h"
-#include "lab/scene/model_folder.h"
 #include "lab/scene/material/texture.h"
+#include "lab/scene/model_folder.h"
 
 /* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
 typedef struct run {
@@ -118,7 +118,7 @@ static status produce(const run *r, uint64_t index, bool *kept, uint64_t *rays)
     status st = OK;
     if (r->options->folder) {
         path = sample_path(r->options->folder, index);
-        if (!path) return fail(ERROR_MEMORY, "out of memory");
+        if (!path) return fail(MERLIN_NO_MEMORY, "out of memory");
         *kept = file_exists(path);
     }
     if (!*kept) {
@@ -155,7 +155,7 @@ static void body(void *context, size_t i)
     if (stop) return;
     status st;
     if (r->options->interrupted && r->options->interrupted())
-        st = fail(ERROR_STOPPED, "interrupted; run the same command again to continue");
+        st = fail(MERLIN_STOPPED, "interrupted; run the same command again to continue");
     else
         st = produce(r, r->options->first + i, &kept, &rays);
 #pragma omp critical(render_run)
@@ -226,7 +226,8 @@ static status check_apart(const render_options *o)
     if (maps && file_is_same(o->folder, maps)) read = maps;
     if (materials && lies_in(o->folder, materials)) read = materials;
     if (!read) return OK;
-    return fail(ERROR_USAGE, "samples in %s would be taken for pictures of %s: choose another folder", o->folder, read);
+    return fail(MERLIN_WRONG_USE, "samples in %s would be taken for pictures of %s: choose another folder", o->folder,
+                read);
 }
 
 /* Folders of older versions do not tell the contents, and go on. */
@@ -237,10 +238,10 @@ static status compare_claims(const render_options *o, const char *path, const ch
     status s = file_read(path, length + 4096, &found, &size);
     if (s != OK) return s;
     if (strncmp(found, options, length) != 0 || (found[length] && strncmp(found + length, "contents ", 9) != 0))
-        s = fail(ERROR_USAGE, "%s holds samples made with other options (see %s): choose another folder", o->folder,
-                 path);
+        s = fail(MERLIN_WRONG_USE, "%s holds samples made with other options (see %s): choose another folder",
+                 o->folder, path);
     else if (found[length] && strcmp(found + length, contents) != 0)
-        s = fail(ERROR_USAGE,
+        s = fail(MERLIN_WRONG_USE,
                  "%s holds samples made of other files than are there now (see contents in %s): choose another folder",
                  o->folder, path);
     free(found);
@@ -253,7 +254,7 @@ static status claim_for(const render_options *o, const char *contents)
     describe(o, options, sizeof options);
     char *path = file_join(o->folder, "render.txt"), *text = NULL;
     if (path && asprintf(&text, "%s%s", options, contents) < 0) text = NULL;
-    status s = path && text ? OK : fail(ERROR_MEMORY, "out of memory");
+    status s = path && text ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
     if (s == OK)
         s = file_exists(path) ? compare_claims(o, path, options, contents) : file_write(path, text, strlen(text));
     free(text);
@@ -275,21 +276,22 @@ static status claim_folder(const render_options *o)
 static status check_options(const render_options *o)
 {
     const image_settings *m = &o->image;
-    if (m->size < 1 || m->size > 4096) return fail(ERROR_USAGE, "image size %d is not within 1..4096", m->size);
+    if (m->size < 1 || m->size > 4096) return fail(MERLIN_WRONG_USE, "image size %d is not within 1..4096", m->size);
     if (!(m->fov >= 1 && m->fov <= 150))
-        return fail(ERROR_USAGE, "field of view %g is not within 1..150", (double)m->fov);
+        return fail(MERLIN_WRONG_USE, "field of view %g is not within 1..150", (double)m->fov);
     if (o->widest_fov != 0 && !(o->widest_fov >= m->fov && o->widest_fov <= 150))
-        return fail(ERROR_USAGE, "lenses of %g to %g degrees: the wider one belongs behind, up to 150", (double)m->fov,
-                    (double)o->widest_fov);
+        return fail(MERLIN_WRONG_USE, "lenses of %g to %g degrees: the wider one belongs behind, up to 150",
+                    (double)m->fov, (double)o->widest_fov);
     if (!(o->off_axis >= 0 && o->off_axis <= HALF_FRAME))
-        return fail(ERROR_USAGE, "pictures %g degrees off the axis: 0 to %g", (double)o->off_axis, (double)HALF_FRAME);
+        return fail(MERLIN_WRONG_USE, "pictures %g degrees off the axis: 0 to %g", (double)o->off_axis,
+                    (double)HALF_FRAME);
     if (m->lamps < 0 || m->lamps > SAMPLE_MAX_LAMPS)
-        return fail(ERROR_USAGE, "%d lamps: at most %d", m->lamps, SAMPLE_MAX_LAMPS);
+        return fail(MERLIN_WRONG_USE, "%d lamps: at most %d", m->lamps, SAMPLE_MAX_LAMPS);
     if (m->strata < 1 || m->strata > VISIBILITY_MAX_STRATA || (m->strata > 1 && m->strata % 2))
-        return fail(ERROR_USAGE, "%d x %d rays a pixel: must be 1, 4, 16, 36 or 64 in all", m->strata, m->strata);
-    if (m->paths < 1) return fail(ERROR_USAGE, "at least one path a pixel is needed");
+        return fail(MERLIN_WRONG_USE, "%d x %d rays a pixel: must be 1, 4, 16, 36 or 64 in all", m->strata, m->strata);
+    if (m->paths < 1) return fail(MERLIN_WRONG_USE, "at least one path a pixel is needed");
     if (m->targets < 0 || m->targets > SAMPLE_MAX_TARGETS)
-        return fail(ERROR_USAGE, "%d targets: at most %d", m->targets, SAMPLE_MAX_TARGETS);
+        return fail(MERLIN_WRONG_USE, "%d targets: at most %d", m->targets, SAMPLE_MAX_TARGETS);
     return OK;
 }
 

@@ -30,7 +30,7 @@ void render_stats_free(render_stats *stats);
 /* 128 pixels, 60 degrees, 4 × 4 strata, 8 paths, environment on; no folder, count 0. */
 render_options render_options_default(void);
 
-/* Stops at the first failure, or with ERROR_STOPPED when interrupted; finished samples stay. stats is filled either
+/* Stops at the first failure, or with MERLIN_STOPPED when interrupted; finished samples stay. stats is filled either
  * way. */
 /* After a failure, too, *stats is for render_stats_free. */
 status render_samples(const render_options *options, render_stats *stats);

@@ -218,7 +218,7 @@ static status make_lamps(const image_settings *set, sample *out)
 {
     if (set->lamps == 0) return OK;
     out->lamps = calloc((size_t)set->lamps, sizeof *out->lamps);
-    if (!out->lamps) return fail(ERROR_MEMORY, "out of memory for images under %d lamps", set->lamps);
+    if (!out->lamps) return fail(MERLIN_NO_MEMORY, "out of memory for images under %d lamps", set->lamps);
     out->lamp_count = set->lamps;
     status s = OK;
     for (int i = 0; s == OK && i < set->lamps; i++) {
@@ -252,7 +252,7 @@ static status make_layers(const image_settings *set, bool env, sample *out)
     if (s == OK) s = make_lamps(set, out);
     if (s != OK || set->targets == 0) return s;
     out->targets = calloc((size_t)set->targets, sizeof *out->targets);
-    if (!out->targets) return fail(ERROR_MEMORY, "out of memory for %d target images", set->targets);
+    if (!out->targets) return fail(MERLIN_NO_MEMORY, "out of memory for %d target images", set->targets);
     out->target_count = set->targets;
     for (int t = 0; s == OK && t < set->targets; t++) {
         s = img_new(&out->targets[t].direct, set->size, set->size, 3);

@@ -163,7 +163,7 @@ status sample_write(const char *path, const sample *s)
         attribute_list attributes;
         exr_channel written[MAX_CHANNELS];
     } *work = malloc(sizeof *work);
-    if (!work) return fail(ERROR_MEMORY, "out of memory to write %s", path);
+    if (!work) return fail(MERLIN_NO_MEMORY, "out of memory to write %s", path);
     channel_list *list = &work->channels;
     list->count = 0;
     for (int i = 0; i < LAYER_COUNT; i++) {
@@ -201,15 +201,15 @@ static status read_optics(const exr_file *f, const char *path, sample *s)
     float light[3];
     if (!exr_get_numbers(f, "light", light, 3) || !exr_get_numbers(f, "lightPower", &s->light_power, 1) ||
         !exr_get_numbers(f, "fieldOfView", &s->fov, 1))
-        return fail(ERROR_INPUT, "%s: not a sample of this renderer (no light, lightPower or fieldOfView)", path);
+        return fail(MERLIN_BAD_INPUT, "%s: not a sample of this renderer (no light, lightPower or fieldOfView)", path);
     s->light = vec3_of(light);
     float slant[2] = {0, 0};
     exr_get_numbers(f, "slant", slant, 2);
     s->slant = (camera_slant){slant[0], slant[1]};
     if (!(slant[0] * slant[0] + slant[1] * slant[1] < 1))
-        return fail(ERROR_INPUT, "%s: impossible slant %g, %g", path, (double)slant[0], (double)slant[1]);
+        return fail(MERLIN_BAD_INPUT, "%s: impossible slant %g, %g", path, (double)slant[0], (double)slant[1]);
     if (!(s->fov > 0 && s->fov < 180) || !(s->light_power > 0))
-        return fail(ERROR_INPUT, "%s: impossible field of view %g or light power %g", path, (double)s->fov,
+        return fail(MERLIN_BAD_INPUT, "%s: impossible field of view %g or light power %g", path, (double)s->fov,
                     (double)s->light_power);
     return OK;
 }
@@ -219,15 +219,15 @@ static status make_targets(const exr_file *f, const char *path, sample *s)
     float count = 0;
     if (!exr_get_numbers(f, "targets", &count, 1) || count == 0) return OK;
     if (!(count > 0 && count <= SAMPLE_MAX_TARGETS))
-        return fail(ERROR_INPUT, "%s: impossible number of targets %g", path, (double)count);
+        return fail(MERLIN_BAD_INPUT, "%s: impossible number of targets %g", path, (double)count);
     s->targets = calloc((size_t)count, sizeof *s->targets);
-    if (!s->targets) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    if (!s->targets) return fail(MERLIN_NO_MEMORY, "out of memory to read %s", path);
     s->target_count = (int)count;
     for (int t = 0; t < s->target_count; t++) {
         char name[NAME_SIZE];
         float at[3];
         snprintf(name, sizeof name, "target%02d.light", t);
-        if (!exr_get_numbers(f, name, at, 3)) return fail(ERROR_INPUT, "%s: attribute %s is missing", path, name);
+        if (!exr_get_numbers(f, name, at, 3)) return fail(MERLIN_BAD_INPUT, "%s: attribute %s is missing", path, name);
         s->targets[t].light = vec3_of(at);
         status st = img_new(&s->targets[t].direct, exr_width(f), exr_height(f), 3);
         if (st == OK) st = img_new(&s->targets[t].indirect, exr_width(f), exr_height(f), 3);
@@ -244,7 +244,7 @@ static status make_lamp(const exr_file *f, const char *path, int i, sample_lamp 
     bool known = exr_get_numbers(f, name, at, 3);
     if (known) snprintf(name, sizeof name, "lamp%02d.distantRadius", i);
     if (!known || !exr_get_numbers(f, name, kind, 2))
-        return fail(ERROR_INPUT, "%s: attribute %s is missing", path, name);
+        return fail(MERLIN_BAD_INPUT, "%s: attribute %s is missing", path, name);
     under->at = vec3_of(at);
     under->distant = kind[0] != 0;
     under->radius = kind[1];
@@ -258,9 +258,9 @@ static status make_lamps(const exr_file *f, const char *path, sample *s)
     float count = 0;
     if (!exr_get_numbers(f, "lamps", &count, 1) || count == 0) return OK;
     if (!(count > 0 && count <= SAMPLE_MAX_LAMPS))
-        return fail(ERROR_INPUT, "%s: impossible number of lamps %g", path, (double)count);
+        return fail(MERLIN_BAD_INPUT, "%s: impossible number of lamps %g", path, (double)count);
     s->lamps = calloc((size_t)count, sizeof *s->lamps);
-    if (!s->lamps) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    if (!s->lamps) return fail(MERLIN_NO_MEMORY, "out of memory to read %s", path);
     s->lamp_count = (int)count;
     status st = OK;
     for (int i = 0; i < s->lamp_count && st == OK; i++)
@@ -304,7 +304,7 @@ static status check_finite(const char *path, const channel_list *list)
         size_t pixels = (size_t)image->width * (size_t)image->height;
         for (size_t p = 0; p < pixels; p++)
             if (!isfinite(image->data[p * (size_t)image->channels + (size_t)list->part[i]]))
-                return fail(ERROR_INPUT, "%s: %s holds NaN or infinity at pixel %zu,%zu", path, list->names[i],
+                return fail(MERLIN_BAD_INPUT, "%s: %s holds NaN or infinity at pixel %zu,%zu", path, list->names[i],
                             p % (size_t)image->width, p / (size_t)image->width);
     }
     return OK;
@@ -312,7 +312,7 @@ static status check_finite(const char *path, const channel_list *list)
 
 static status no_environment(const char *path)
 {
-    return fail(ERROR_INPUT, "%s was rendered without environment: render samples without --no-env", path);
+    return fail(MERLIN_BAD_INPUT, "%s was rendered without environment: render samples without --no-env", path);
 }
 
 /* False, and sh as it was, without an environment: an image and its coefficients. */
@@ -327,7 +327,7 @@ static status read_open(exr_file *f, const char *path, extent what, sample *s)
         channel_list channels;
         exr_target targets[MAX_CHANNELS];
     } *work = malloc(sizeof *work);
-    if (!work) return fail(ERROR_MEMORY, "out of memory to read %s", path);
+    if (!work) return fail(MERLIN_NO_MEMORY, "out of memory to read %s", path);
     channel_list *list = &work->channels;
     read_identity(f, s);
     bool lit = read_environment(f, s->sh);
@@ -402,7 +402,7 @@ status sample_list(const char *folder, char ***paths, size_t *count)
     if (s != OK || *count > 0) return s;
     file_list_free(*paths, 0);
     *paths = NULL;
-    return fail(ERROR_INPUT, "%s holds no samples (*.exr); make some with merlin-lab render", folder);
+    return fail(MERLIN_BAD_INPUT, "%s holds no samples (*.exr); make some with merlin-lab render", folder);
 }
 
 char *sample_path(const char *folder, uint64_t index)

@@ -30,7 +30,7 @@ static status guides_new(const sample *s, const img *layer, int radius, guides *
     /* a slope of two pixels' depth a pixel still counts half */
     g->depth_scale = 0.5f / camera_pixel_size(&eye);
     float *all = calloc(PLANES * size, sizeof *all);
-    if (!all) return fail(ERROR_MEMORY, "out of memory for smoothing a picture of %d pixels' width", layer->width);
+    if (!all) return fail(MERLIN_NO_MEMORY, "out of memory for smoothing a picture of %d pixels' width", layer->width);
     for (size_t k = 0; k < PLANES; k++)
         g->plane[k] = all + k * size;
     return OK;

@@ -25,16 +25,17 @@ static status device_fail(RTCDevice device, const char *what)
                                         "cancelled"};
     enum RTCError error = rtcGetDeviceError(device);
     const char *word = (unsigned)error < 7 ? words[error] : "unknown error";
-    return fail(error == RTC_ERROR_OUT_OF_MEMORY ? ERROR_MEMORY : ERROR_DEVICE, "Embree cannot %s: %s", what, word);
+    return fail(error == RTC_ERROR_OUT_OF_MEMORY ? MERLIN_NO_MEMORY : MERLIN_DEVICE_FAILED, "Embree cannot %s: %s",
+                what, word);
 }
 
 status trace_device_new(trace_device **out)
 {
     *out = NULL;
     /* TBB behind it ends the program where it gets none */
-    if (!threads_are_left(1)) return fail(ERROR_MEMORY, "no thread for the ray tracer");
+    if (!threads_are_left(1)) return fail(MERLIN_NO_MEMORY, "no thread for the ray tracer");
     *out = calloc(1, sizeof **out);
-    if (!*out) return fail(ERROR_MEMORY, "out of memory for the ray tracer");
+    if (!*out) return fail(MERLIN_NO_MEMORY, "out of memory for the ray tracer");
     /* samples are parallel, so each hierarchy is built by the thread that wants it */
     (*out)->device = rtcNewDevice("threads=1,user_threads=1");
     if ((*out)->device) return OK;
@@ -82,7 +83,7 @@ status trace_scene_new(trace_device *device, const scn_object *object, trace_sur
                        trace_scene *out)
 {
     *out = (trace_scene){.object = object, .surface = surface};
-    if (object->triangle_count == 0) return fail(ERROR_INPUT, "the object has no triangles");
+    if (object->triangle_count == 0) return fail(MERLIN_BAD_INPUT, "the object has no triangles");
     RTCScene bvh = rtcNewScene(device->device);
     if (!bvh) return device_fail(device->device, "make a scene");
     bool quick = rays < few_rays * (double)object->triangle_count;
@@ -92,7 +93,8 @@ status trace_scene_new(trace_device *device, const scn_object *object, trace_sur
     status s = attach_triangles(device->device, bvh, object, quality);
     if (s == OK) {
         rtcCommitScene(bvh);
-        if (rtcGetDeviceError(device->device) != RTC_ERROR_NONE) s = fail(ERROR_DEVICE, "Embree cannot build its tree");
+        if (rtcGetDeviceError(device->device) != RTC_ERROR_NONE)
+            s = fail(MERLIN_DEVICE_FAILED, "Embree cannot build its tree");
     }
     if (s != OK) {
         rtcReleaseScene(bvh);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/rng.h"
 #include "base/number.h"
+#include "base/rng.h"
 
 enum { ROWS = 3 }; /* of probes kept: a pixel's own and those around it */
 
@@ -31,7 +31,7 @@ status visibility_new(trace_scene *scene, const camera *eye, int strata, uint64_
     if (v) v->probes = malloc(ROWS * (size_t)eye->width * sizeof *v->probes);
     if (!v || !v->probes) {
         visibility_free(v);
-        return fail(ERROR_MEMORY, "out of memory for %d pixels' rays", ROWS * eye->width);
+        return fail(MERLIN_NO_MEMORY, "out of memory for %d pixels' rays", ROWS * eye->width);
     }
     v->scene = scene;
     v->eye = *eye;

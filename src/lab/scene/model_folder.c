@@ -17,7 +17,7 @@ static status read_one(const char *path, const char *folder, scn_models *out)
         out->count++;
         return OK;
     }
-    if (s == ERROR_MEMORY) return s;
+    if (s == MERLIN_NO_MEMORY) return s;
     const char *inside = path + strlen(folder), *why = strrchr(status_message(), ':');
     return skipped_add(&out->skipped, inside + strspn(inside, "/"), why ? why + 2 : status_message());
 }
@@ -31,11 +31,11 @@ status scn_models_read(const char *folder, scn_models *out)
     status s = file_list_deep(folder, endings, &names, &count);
     if (s != OK) return s;
     out->at = calloc(count + 1, sizeof *out->at);
-    if (!out->at) s = fail(ERROR_MEMORY, "no memory for the meshes of %s", folder);
+    if (!out->at) s = fail(MERLIN_NO_MEMORY, "no memory for the meshes of %s", folder);
     for (size_t i = 0; s == OK && i < count; i++)
         s = read_one(names[i], folder, out);
     if (s == OK && out->count == 0)
-        s = fail(ERROR_INPUT, "%s holds no meshes that can be read (.ply, .obj, .gltf, .glb)", folder);
+        s = fail(MERLIN_BAD_INPUT, "%s holds no meshes that can be read (.ply, .obj, .gltf, .glb)", folder);
     file_list_free(names, count);
     if (s != OK) scn_models_free(out);
     return s;

@@ -21,8 +21,8 @@ typedef struct scn_models {
     skipped_files skipped; /* meshes that cannot be read */
 } scn_models;
 
-/* The .ply, .obj, .gltf and .glb files of a folder and of those in it; other files are passed over. ERROR_INPUT if none
- * can be read. */
+/* The .ply, .obj, .gltf and .glb files of a folder and of those in it; other files are passed over. MERLIN_BAD_INPUT if
+ * none can be read. */
 status scn_models_read(const char *folder, scn_models *out);
 void scn_models_free(scn_models *models);
 

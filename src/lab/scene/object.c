@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "lab/scene/material/material.h"
-#include "lab/scene/shape/mesh_deform.h"
-#include "mesh/read/mesh_file.h"
 #include "lab/scene/pose.h"
 #include "lab/scene/scene.h"
+#include "lab/scene/shape/mesh_deform.h"
+#include "mesh/read/mesh_file.h"
 
 /* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
 enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, STREAM_DEFORM };
@@ -15,7 +15,7 @@ enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, 
 static status check_fov(float fov)
 {
     if (fov >= 5 && fov <= 150) return OK;
-    return fail(ERROR_USAGE, "a field of view of %g degrees; give 5 to 150", (double)fov);
+    return fail(MERLIN_WRONG_USE, "a field of view of %g degrees; give 5 to 150", (double)fov);
 }
 
 /* Poses the mesh, finishes it and gives it a material; the object takes over the mesh's arrays. */
@@ -31,7 +31,7 @@ static status complete(scn_mesh *mesh, const shape_traits *traits, uint64_t seed
                         .triangle_count = mesh->triangle_count,
                         .material = material_random(&material, mesh, traits),
                         .shape = traits->name};
-    if (!out->material) return fail(ERROR_MEMORY, "no memory for a material");
+    if (!out->material) return fail(MERLIN_NO_MEMORY, "no memory for a material");
     out->position = mesh->position;
     out->normal = mesh->normal;
     out->reference = mesh->reference;
@@ -77,7 +77,7 @@ status scn_model_read(const char *path, scn_model **out)
     *out = NULL;
     if (!m || !(m->path = strdup(path))) {
         free(m);
-        return fail(ERROR_MEMORY, "no memory for the mesh %s", path);
+        return fail(MERLIN_NO_MEMORY, "no memory for the mesh %s", path);
     }
     status s = mesh_read(path, &m->mesh, &m->parts);
     if (s != OK) {

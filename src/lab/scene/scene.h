@@ -42,8 +42,8 @@ typedef struct scn_surface {
  * a square frame, now and then near its edge. Deterministic from (seed, index). */
 status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out);
 
-/* The mesh of an OBJ, PLY or glTF file, read once for any number of objects and threads. ERROR_INPUT, with its path, as
- * of mesh_read. */
+/* The mesh of an OBJ, PLY or glTF file, read once for any number of objects and threads. MERLIN_BAD_INPUT, with its
+ * path, as of mesh_read. */
 typedef struct scn_model scn_model;
 status scn_model_read(const char *path, scn_model **out);
 void scn_model_free(scn_model *model);

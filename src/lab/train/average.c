@@ -24,7 +24,7 @@ status trn_average_new(nn_params *params, double decay, trn_average **out)
     if (!a || !values) {
         free(a);
         free(values);
-        return fail(ERROR_MEMORY, "no memory for the mean of %zu weights", total);
+        return fail(MERLIN_NO_MEMORY, "no memory for the mean of %zu weights", total);
     }
     *a = (trn_average){.params = params, .decay = decay, .values = values};
     for (size_t i = 0; i < nn_params_count(params); i++) {

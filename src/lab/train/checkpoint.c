@@ -32,7 +32,7 @@ static status collect(const trn_learner *learner, st_tensor *tensors, char (*nam
             const float *data = part_of(learner, i, which);
             if (!data) continue;
             if (snprintf(names[n], NAME, "%s%s", part_names[which], p->name) >= NAME)
-                return fail(ERROR_USAGE, "parameter name %s is too long for a checkpoint", p->name);
+                return fail(MERLIN_WRONG_USE, "parameter name %s is too long for a checkpoint", p->name);
             tensors[n] =
                 (st_tensor){.name = names[n], .type = ST_F32, .rank = p->rank, .count = p->count, .data = data};
             memcpy(tensors[n].shape, p->shape, sizeof p->shape);
@@ -92,7 +92,7 @@ status trn_checkpoint_write(const char *path, const trn_learner *learner, const 
     size_t most = PARTS * nn_params_count(learner->params), count = 0;
     st_tensor *tensors = calloc(most, sizeof *tensors);
     char(*names)[NAME] = calloc(most, sizeof *names);
-    status s = tensors && names ? OK : fail(ERROR_MEMORY, "out of memory writing %s", path);
+    status s = tensors && names ? OK : fail(MERLIN_NO_MEMORY, "out of memory writing %s", path);
     if (s == OK) s = collect(learner, tensors, names, &count);
     if (s == OK) s = write_tensors(path, tensors, count, learner->adam, state, identity);
     free(names);
@@ -103,7 +103,7 @@ status trn_checkpoint_write(const char *path, const trn_learner *learner, const 
 static status must_equal(const char *path, const char *what, const char *found, const char *wanted)
 {
     if (found && strcmp(found, wanted) == 0) return OK;
-    return fail(ERROR_INPUT, "%s was made with another %s; start afresh in another folder", path, what);
+    return fail(MERLIN_BAD_INPUT, "%s was made with another %s; start afresh in another folder", path, what);
 }
 
 /* Settings that say how a run is held, and nothing of what comes of it. */
@@ -130,7 +130,7 @@ static status must_match(const char *path, const char *found, const char *wanted
     const char *key = before && now ? first_difference(now, before) : "training";
     if (!key) key = first_difference(before, now);
     status s =
-        key ? fail(ERROR_INPUT, "%s was made with another \"%s\"; start afresh in another folder", path, key) : OK;
+        key ? fail(MERLIN_BAD_INPUT, "%s was made with another \"%s\"; start afresh in another folder", path, key) : OK;
     cJSON_Delete(before);
     cJSON_Delete(now);
     return s;
@@ -141,7 +141,7 @@ static status must_have_ranks(const char *path, const char *found, int wanted)
 {
     long before = found ? strtol(found, NULL, 10) : 1;
     if (before == wanted) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s was made by %ld %s, these are %d: go on with as many, or start afresh in another folder", path,
                 before, before == 1 ? "process" : "ranks", wanted);
 }
@@ -162,9 +162,9 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     if (!counters || !open || !best || !scan_losses(open, &state->open) ||
         sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 ||
         !is_count(state->step) || !is_count(steps) || !is_count(skipped))
-        return fail(ERROR_INPUT, "%s is not a checkpoint of merlin-lab train", path);
+        return fail(MERLIN_BAD_INPUT, "%s is not a checkpoint of merlin-lab train", path);
     state->best = strtod(best, NULL);
-    if (isnan(state->best)) return fail(ERROR_INPUT, "%s is damaged: its best loss is no number", path);
+    if (isnan(state->best)) return fail(MERLIN_BAD_INPUT, "%s is damaged: its best loss is no number", path);
     nn_adam_set_steps(adam, steps, skipped);
     return OK;
 }
@@ -180,7 +180,7 @@ static status read_tensors(const st_file *f, const char *path, const trn_learner
             snprintf(name, sizeof name, "%s%s", part_names[which], p->name);
             const st_tensor *t = st_find(f, name);
             if (!t || t->count != p->count || t->type != ST_F32)
-                return fail(ERROR_INPUT, "%s lacks the tensor %s", path, name);
+                return fail(MERLIN_BAD_INPUT, "%s lacks the tensor %s", path, name);
             status s = st_to_float(t, to);
             if (s != OK) return s;
         }

@@ -85,10 +85,10 @@ static status read_training(json_object *o, const char *where, train_config *c)
     int type = 0;
     status s = json_int(o, "size", MODEL_SIZE_MULTIPLE, 4096, &c->size);
     if (s == OK && c->size % MODEL_SIZE_MULTIPLE)
-        s = fail(ERROR_INPUT, "%s: \"size\" must be a multiple of %d", where, MODEL_SIZE_MULTIPLE);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"size\" must be a multiple of %d", where, MODEL_SIZE_MULTIPLE);
     if (s == OK) s = json_int(o, "batch", 1, 1024, &c->batch);
     if (s == OK && c->size == MODEL_SIZE_MULTIPLE && c->batch == 1) /* a batch of one pixel has no variance */
-        s = fail(ERROR_INPUT, "%s: \"batch\" must be 2 at least where \"size\" is %d", where, MODEL_SIZE_MULTIPLE);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"batch\" must be 2 at least where \"size\" is %d", where, MODEL_SIZE_MULTIPLE);
     if (s == OK) s = json_int(o, "presentations", 1, INT_MAX, &c->presentations);
     if (s == OK) s = read_rates(o, c);
     if (s == OK) s = json_choice(o, "type", type_words, 3, &type);
@@ -99,7 +99,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)
-        s = fail(ERROR_INPUT, "%s: \"validation_count\" must be a multiple of \"batch\"", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"validation_count\" must be a multiple of \"batch\"", where);
     c->type = type == 2 ? nn_fastest_type() : type == 1 ? NN_BFLOAT16 : NN_FLOAT32;
     return s == OK ? json_finish(o) : s;
 }
@@ -119,7 +119,7 @@ static status parse_parts(json_object *o, model_config *model, train_config *tra
     const char *where = json_where(o);
     char *model_json = NULL, *training_json = NULL;
     if (json_has(o, "name") && !json_has(o, "model"))
-        return fail(ERROR_INPUT, "%s describes a network; what is trained is a file that has it as its \"model\"",
+        return fail(MERLIN_BAD_INPUT, "%s describes a network; what is trained is a file that has it as its \"model\"",
                     where);
     status s = json_inner(o, "model", &model_json);
     if (s == OK) s = json_inner(o, "training", &training_json);
@@ -127,7 +127,7 @@ static status parse_parts(json_object *o, model_config *model, train_config *tra
     if (s == OK) s = model_config_parse(model_json, strlen(model_json), where, model);
     if (s == OK) s = parse_training(training_json, where, training);
     if (s == OK && training->relight_brdf_weight > 0 && model->relight != MODEL_RELIGHT_NETWORK)
-        s = fail(ERROR_INPUT, "%s: \"relight_brdf_weight\" needs \"relight\": \"network\"", where);
+        s = fail(MERLIN_BAD_INPUT, "%s: \"relight_brdf_weight\" needs \"relight\": \"network\"", where);
     free(model_json);
     free(training_json);
     return s;

@@ -34,7 +34,7 @@ static void write_header(FILE *f)
 status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l)
 {
     FILE *f = fopen(path, "a");
-    if (!f) return fail(ERROR_OUTPUT, "cannot append to %s: %s", path, strerror(errno));
+    if (!f) return fail(MERLIN_CANNOT_WRITE, "cannot append to %s: %s", path, strerror(errno));
     struct stat before;
     if (fstat(fileno(f), &before) == 0 && before.st_size == 0) write_header(f);
     double n = l->count ? (double)l->count : 1;
@@ -48,17 +48,17 @@ status trn_curve_append(const char *path, const trn_curve_row *row, const trn_lo
     }
     fputc('\n', f);
     bool bad = ferror(f) != 0;
-    if (fclose(f) != 0 || bad) return fail(ERROR_OUTPUT, "cannot append to %s: %s", path, strerror(errno));
+    if (fclose(f) != 0 || bad) return fail(MERLIN_CANNOT_WRITE, "cannot append to %s: %s", path, strerror(errno));
     return OK;
 }
 
 status trn_curve_keep(const char *path)
 {
     int file = open(path, O_RDONLY);
-    if (file < 0) return errno == ENOENT ? OK : fail(ERROR_OUTPUT, "cannot open %s: %s", path, strerror(errno));
+    if (file < 0) return errno == ENOENT ? OK : fail(MERLIN_CANNOT_WRITE, "cannot open %s: %s", path, strerror(errno));
     bool good = fsync(file) == 0;
     close(file);
-    return good ? OK : fail(ERROR_OUTPUT, "cannot write %s: %s", path, strerror(errno));
+    return good ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
 }
 
 status trn_curve_truncate(const char *path, int64_t step)
@@ -117,7 +117,7 @@ static status read_table(const char *path, table *t)
         lines += text[i] == '\n';
     for (int c = 0; c < COLUMNS && s == OK; c++) {
         t->value[c] = malloc(lines * sizeof(float));
-        if (!t->value[c]) s = fail(ERROR_MEMORY, "out of memory reading %s", path);
+        if (!t->value[c]) s = fail(MERLIN_NO_MEMORY, "out of memory reading %s", path);
     }
     const char *line = s == OK ? strchr(text, '\n') : NULL;
     for (; line && line[1]; line = strchr(line + 1, '\n'))

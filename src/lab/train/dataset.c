@@ -39,14 +39,14 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
 {
     *out = NULL;
     trn_dataset *d = calloc(1, sizeof *d);
-    if (!d) return fail(ERROR_MEMORY, "out of memory opening %s", folder);
+    if (!d) return fail(MERLIN_NO_MEMORY, "out of memory opening %s", folder);
     d->options = *options;
     d->values = options->environment || options->lamps ? VALUES_WITH_ENVIRONMENT : VALUES;
     d->memory_limit = (size_t)(options->memory_gib * 0x1p30);
     status s = sample_list(folder, &d->paths, &d->count);
     if (s == OK) {
         d->kept = calloc(d->count, sizeof *d->kept);
-        if (!d->kept) s = fail(ERROR_MEMORY, "out of memory opening %s", folder);
+        if (!d->kept) s = fail(MERLIN_NO_MEMORY, "out of memory opening %s", folder);
     }
     if (s == OK) s = sample_read_version(d->paths[0], &d->generator_version);
     if (s != OK) {
@@ -144,14 +144,14 @@ static packed *pack(const trn_dataset *d, const sample *s)
 static status check_optics(const char *path, const sample *s, bool any_lens)
 {
     if (!any_lens && fabsf(s->fov - MODEL_FOV) > 0.01f)
-        return fail(ERROR_INPUT, "%s was rendered with a field of view of %g degrees, training wants %g", path,
+        return fail(MERLIN_BAD_INPUT, "%s was rendered with a field of view of %g degrees, training wants %g", path,
                     (double)s->fov, (double)MODEL_FOV);
     if (fabsf(s->light_power - MODEL_LIGHT_POWER) > 0.001f * MODEL_LIGHT_POWER)
-        return fail(ERROR_INPUT, "%s was rendered with a light of power %g, training wants %g", path,
+        return fail(MERLIN_BAD_INPUT, "%s was rendered with a light of power %g, training wants %g", path,
                     (double)s->light_power, (double)MODEL_LIGHT_POWER);
     if (!(vec3_length(s->light) <= 0.001f))
-        return fail(ERROR_INPUT, "%s was rendered with its light at %g, %g, %g, training wants it at the camera", path,
-                    (double)s->light.x, (double)s->light.y, (double)s->light.z);
+        return fail(MERLIN_BAD_INPUT, "%s was rendered with its light at %g, %g, %g, training wants it at the camera",
+                    path, (double)s->light.x, (double)s->light.y, (double)s->light.z);
     return OK;
 }
 
@@ -162,7 +162,8 @@ static status read_layers(const trn_dataset *d, const char *path, sample *out)
     status s = sample_read(path, out);
     if (s != OK || (out->lamp_count > 0 && out->env.data)) return s;
     sample_free(out);
-    return fail(ERROR_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps", path);
+    return fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
+                path);
 }
 
 static status read_packed(trn_dataset *d, size_t i, packed **out)
@@ -172,13 +173,13 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
     status s = read_layers(d, d->paths[i], &one);
     if (s != OK) return s;
     if (one.mask.width != size || one.mask.height != size)
-        s = fail(ERROR_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i], one.mask.width,
-                 one.mask.height, size, size);
+        s = fail(MERLIN_BAD_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i],
+                 one.mask.width, one.mask.height, size, size);
     else
         s = check_optics(d->paths[i], &one, d->options.lamps);
     if (s == OK) {
         *out = pack(d, &one);
-        if (!*out) s = fail(ERROR_MEMORY, "out of memory reading %s", d->paths[i]);
+        if (!*out) s = fail(MERLIN_NO_MEMORY, "out of memory reading %s", d->paths[i]);
     }
     sample_free(&one);
     return s;

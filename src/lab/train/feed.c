@@ -79,7 +79,7 @@ static status connect(trn_feed *f, nn_program *program, int which)
     size_t stride = (size_t)d->channels * (d->vector ? 1 : size * size);
     float *data = d->input ? nn_input_data(program, d->input) : NULL;
     if (!data) data = f->spare[which] = calloc(f->batch * stride, sizeof *data);
-    if (!data) return fail(ERROR_MEMORY, "out of memory for a batch of %zu", f->batch);
+    if (!data) return fail(MERLIN_NO_MEMORY, "out of memory for a batch of %zu", f->batch);
     for (size_t i = 0; i < f->batch; i++) {
         float *place = data + i * stride;
         memcpy((char *)&f->items[i].view + d->offset, &place, sizeof place);
@@ -92,11 +92,11 @@ status trn_feed_new(nn_program *program, const trn_source *source, trn_feed **ou
 {
     *out = NULL;
     trn_feed *f = calloc(1, sizeof *f);
-    if (!f) return fail(ERROR_MEMORY, "out of memory for a batch");
+    if (!f) return fail(MERLIN_NO_MEMORY, "out of memory for a batch");
     f->source = *source;
     f->batch = (size_t)source->batch;
     f->items = calloc(f->batch, sizeof *f->items);
-    status s = f->items ? OK : fail(ERROR_MEMORY, "out of memory for a batch");
+    status s = f->items ? OK : fail(MERLIN_NO_MEMORY, "out of memory for a batch");
     for (int i = 0; i < buffer_count(source) && s == OK; i++)
         s = connect(f, program, i);
     f->light_code = nn_input_data(program, "light");

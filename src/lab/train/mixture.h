@@ -28,7 +28,7 @@ typedef struct trn_mixture {
 void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *out);
 
 /* As trn_prepare does, of a view with lamps: the photograph is lit by the mixture. Direct, indirect and relit images
- * stay those of flash and target alone; depth becomes relief (nn_render). ERROR_MEMORY. */
+ * stay those of flash and target alone; depth becomes relief (nn_render). MERLIN_NO_MEMORY. */
 status trn_prepare_any(const trn_view *v, const trn_mixture *m, const trn_camera *lens, vec3 target, rng *noise);
 
 #endif

@@ -69,7 +69,7 @@ static status copy_picture(const trn_view *v, picture *out)
     for (int i = 0; i < out->layers; i++)
         floats += pixels * (size_t)all[i].channels;
     float *at = out->memory = malloc(floats * sizeof *at);
-    if (!at) return fail(ERROR_MEMORY, "out of memory for turning a picture");
+    if (!at) return fail(MERLIN_NO_MEMORY, "out of memory for turning a picture");
     memcpy(at, v->mask, pixels * sizeof *at);
     out->coverage = at;
     at += pixels;

@@ -29,7 +29,7 @@ trn_motion trn_motion_draw(const train_config *c, rng *r);
 bool trn_motion_moves(const trn_motion *m);
 
 /* Moves an unpacked sample. An object that the frame cuts off is not turned: nothing is known of what would come into
- * view. ERROR_MEMORY. */
+ * view. MERLIN_NO_MEMORY. */
 status trn_move(const trn_view *v, const trn_motion *m);
 
 #endif

@@ -129,7 +129,7 @@ static status compress(const trn_view *v, const trn_camera *lens)
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
     uint8_t *rgb = malloc(values);
-    if (!rgb) return fail(ERROR_MEMORY, "out of memory for a photograph of %d pixels' width", v->size);
+    if (!rgb) return fail(MERLIN_NO_MEMORY, "out of memory for a photograph of %d pixels' width", v->size);
     for (size_t i = 0; i < values; i++)
         rgb[i] = (uint8_t)(srgb_encode(v->image[i] / lens->white) * 255 + 0.5f);
     status s = img_jpeg_spoil(rgb, v->size, v->size, &lens->jpeg_settings);

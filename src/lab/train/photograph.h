@@ -41,7 +41,7 @@ void trn_camera_develop(rng *r, trn_camera *lens);
 
 /* The network's input "image", encoded, of the light in the view's pictures (direct, with `global` indirect, and env;
  * or photo, where that is there), zero where whoever cut the object out saw none; there, loss_mask is 1. mask is still
- * coverage. ERROR_MEMORY. */
+ * coverage. MERLIN_NO_MEMORY. */
 status trn_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise);
 
 #endif

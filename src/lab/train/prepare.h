@@ -38,7 +38,7 @@ typedef struct trn_lighting {
  * With an environment (setting B) the input is the sum of both images; direct is what the rendering layer makes of
  * flash and coefficients, and indirect takes up what that lacks of the truth: bounces, and the environment's shadows.
  * The environment's highlights, as far as its coefficients know them (optics/ambient.h), are in the input alone, so
- * that they are not counted twice where the relighter samples a map. ERROR_MEMORY. */
+ * that they are not counted twice where the relighter samples a map. MERLIN_NO_MEMORY. */
 status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise);
 
 /* What is left to do for the point setting behind trn_photograph: the relit image, clipped direct light, binary masks,

@@ -10,7 +10,7 @@
 status trn_order_new(trn_order *o, uint64_t seed, size_t count)
 {
     *o = (trn_order){.seed = seed, .count = count, .epoch = UINT64_MAX, .index = malloc(count * sizeof *o->index)};
-    return o->index ? OK : fail(ERROR_MEMORY, "out of memory for the order of %zu samples", count);
+    return o->index ? OK : fail(MERLIN_NO_MEMORY, "out of memory for the order of %zu samples", count);
 }
 
 void trn_order_free(trn_order *o)

@@ -71,9 +71,9 @@ static status read_configuration(run *r)
     if (s != OK) return s;
     r->batch = r->training.batch / sharing;
     if (r->training.batch % sharing)
-        return fail(ERROR_USAGE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
+        return fail(MERLIN_WRONG_USE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
     r->model_json = model_config_write(&r->model);
-    return r->model_json ? OK : fail(ERROR_MEMORY, "out of memory");
+    return r->model_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
 
 /* The type of rank 0, where each would take what is faster on its machine. */
@@ -89,7 +89,7 @@ static status record_training(run *r)
 {
     r->training.type = nn_program_type(r->program);
     r->training_json = train_config_write(&r->training);
-    return r->training_json ? OK : fail(ERROR_MEMORY, "out of memory");
+    return r->training_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
 
 /* What a run begins from is not what it writes. */
@@ -99,7 +99,8 @@ static status check_kept(const run *r)
     for (const char *const *w = r->options->init_shared; w && *w; w++)
         replaces |= file_is_same(*w, r->paths.weights);
     if (!replaces) return OK;
-    return fail(ERROR_USAGE, "%s would be replaced by what is trained from it: name another folder", r->paths.weights);
+    return fail(MERLIN_WRONG_USE, "%s would be replaced by what is trained from it: name another folder",
+                r->paths.weights);
 }
 
 /* The folder itself is made once data and model are accepted. */
@@ -111,15 +112,15 @@ static status name_output(run *r)
                        file_join(folder, "weights.safetensors"),    file_join(folder, "seconds.txt")};
     const paths *p = &r->paths;
     if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights || !p->seconds)
-        return fail(ERROR_MEMORY, "out of memory");
+        return fail(MERLIN_NO_MEMORY, "out of memory");
     bool exists = file_exists(p->checkpoint);
     if (exists && !r->options->resume)
-        return fail(ERROR_USAGE, "%s holds a run already: add --resume to go on with it, or name another folder",
+        return fail(MERLIN_WRONG_USE, "%s holds a run already: add --resume to go on with it, or name another folder",
                     folder);
-    if (!exists && r->options->resume) return fail(ERROR_INPUT, "%s has no checkpoint to resume from", folder);
+    if (!exists && r->options->resume) return fail(MERLIN_BAD_INPUT, "%s has no checkpoint to resume from", folder);
     status s = check_kept(r);
     if (s == OK && !exists && file_exists(p->weights))
-        s = fail(ERROR_USAGE, "%s are a run's whose checkpoint is gone: name another folder, or move them away",
+        s = fail(MERLIN_WRONG_USE, "%s are a run's whose checkpoint is gone: name another folder, or move them away",
                  p->weights);
     return s;
 }
@@ -144,7 +145,7 @@ static status open_data(run *r)
     if (s != OK) return s;
     size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
     if (count <= held_back)
-        return fail(ERROR_INPUT, "%s holds %zu samples and \"validation_count\" %zu leaves none to train on",
+        return fail(MERLIN_BAD_INPUT, "%s holds %zu samples and \"validation_count\" %zu leaves none to train on",
                     r->options->data, count, held_back);
     r->training_count = count - held_back;
     return trn_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
@@ -394,7 +395,7 @@ static status end_row(run *r)
     trn_curve_row row = row_of(r);
     status s = is_first(r) ? trn_curve_append(r->paths.curves, &row, &r->state.open) : OK;
     if (s == OK && !isfinite(r->state.open.total))
-        s = fail(ERROR_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
+        s = fail(MERLIN_BAD_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
                  (long long)r->state.step);
     r->state.open = (trn_losses){0};
     return s;
@@ -447,7 +448,7 @@ static status steps(run *r, int64_t last, progress *bar)
         if (stop) {
             s = save(r);
             return s != OK ? s
-                           : fail(ERROR_STOPPED, "stopped after %lld presentations; --resume goes on from there",
+                           : fail(MERLIN_STOPPED, "stopped after %lld presentations; --resume goes on from there",
                                   (long long)presented(r));
         }
     }

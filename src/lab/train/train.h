@@ -28,8 +28,8 @@ typedef struct trn_options {
     ranks *together;          /* NULL, or processes that share every batch: rank 0 alone writes */
 } trn_options;
 
-/* ERROR_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
- * ERROR_ELSEWHERE. Later the others wait for one that has failed: ranks_abandon ends them. */
+/* MERLIN_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
+ * STATUS_ELSEWHERE. Later the others wait for one that has failed: ranks_abandon ends them. */
 status trn_train(const trn_options *o);
 
 #endif

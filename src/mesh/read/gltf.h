@@ -62,8 +62,8 @@ typedef struct gltf {
 } gltf;
 
 /* Reads all but the buffers, which come as they are needed; the bytes must outlive it. folder: where its files lie, or
- * NULL. ERROR_INPUT for what is damaged, glTF 1, or requires an extension by which its surface is something else than
- * it says. */
+ * NULL. MERLIN_BAD_INPUT for what is damaged, glTF 1, or requires an extension by which its surface is something else
+ * than it says. */
 status gltf_parse(const void *bytes, size_t size, const char *folder, gltf **out);
 void gltf_close(gltf *g);
 

@@ -124,9 +124,10 @@ static status read_accessor(gltf *g, const cJSON *about, gltf_accessor *a)
         bytes_of(type) == 0 || a->components == 0)
         return gltf_damaged("an accessor without type or count");
     a->type = (int)type;
-    if (a->count > COUNT_LIMIT) return fail(ERROR_INPUT, "%zu vertices or corners; at most %d", a->count, COUNT_LIMIT);
+    if (a->count > COUNT_LIMIT)
+        return fail(MERLIN_BAD_INPUT, "%zu vertices or corners; at most %d", a->count, COUNT_LIMIT);
     bool stored = cJSON_HasObjectItem(about, "bufferView");
-    if (!stored && !sparse) return fail(ERROR_INPUT, "a mesh that is not stored; save it without compression");
+    if (!stored && !sparse) return fail(MERLIN_BAD_INPUT, "a mesh that is not stored; save it without compression");
     status s =
         stored ? find_elements(g, about, a->count, bytes_of(type) * (size_t)a->components, &a->data, &a->stride) : OK;
     return s == OK && sparse ? read_sparse(g, sparse, a) : s;

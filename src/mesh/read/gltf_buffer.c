@@ -22,7 +22,7 @@ static status decode(const char *text, uint8_t **out, size_t *size)
     while (length > 0 && text[length - 1] == '=')
         length--;
     uint8_t *to = *out = malloc(length / 4 * 3 + 3);
-    if (!to) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (!to) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     uint32_t bits = 0;
     for (size_t i = 0; i < length; i++) {
         int value = value_of(text[i]);
@@ -39,7 +39,7 @@ static status take_data(gltf_buffer *b, const char *uri)
 {
     const char *comma = strchr(uri, ',');
     if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
-        return fail(ERROR_INPUT, "a data: URI that is not base 64 is not supported");
+        return fail(MERLIN_BAD_INPUT, "a data: URI that is not base 64 is not supported");
     status s = decode(comma + 1, &b->decoded, &b->size);
     b->data = b->decoded;
     return s;
@@ -67,11 +67,11 @@ static bool unescape(char *name)
 /* A file beside the document. */
 static status map_file(const gltf *g, gltf_buffer *b, const char *uri)
 {
-    if (!g->folder || strstr(uri, "://")) return fail(ERROR_INPUT, "its buffer %.60s is no file beside it", uri);
+    if (!g->folder || strstr(uri, "://")) return fail(MERLIN_BAD_INPUT, "its buffer %.60s is no file beside it", uri);
     char *name = strdup(uri), *path = NULL;
-    status s = name ? OK : fail(ERROR_MEMORY, "no memory for the mesh");
+    status s = name ? OK : fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     if (s == OK && !unescape(name)) s = gltf_damaged("a URI with a zero");
-    if (s == OK && !(path = file_join(g->folder, name))) s = fail(ERROR_MEMORY, "no memory for the mesh");
+    if (s == OK && !(path = file_join(g->folder, name))) s = fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     if (s == OK) s = file_map(path, MESH_BYTES - g->bytes, &b->file);
     b->data = b->file.data;
     b->size = b->file.size;
@@ -92,13 +92,13 @@ static status load(gltf *g, size_t index)
         b->data = g->binary;
         b->size = g->binary_size;
     } else if (!uri) {
-        s = fail(ERROR_INPUT, "its buffer %zu is not in the file; save it without compression", index);
+        s = fail(MERLIN_BAD_INPUT, "its buffer %zu is not in the file; save it without compression", index);
     } else {
         s = strncmp(uri, "data:", 5) == 0 ? take_data(b, uri) : map_file(g, b, uri);
         g->bytes += b->size;
     }
     if (s == OK && b->size < size) s = gltf_damaged("a buffer is shorter than it says");
-    if (s == OK && g->bytes > MESH_BYTES) s = fail(ERROR_INPUT, "more than %d bytes", MESH_BYTES);
+    if (s == OK && g->bytes > MESH_BYTES) s = fail(MERLIN_BAD_INPUT, "more than %d bytes", MESH_BYTES);
     b->loaded = s == OK;
     return s;
 }

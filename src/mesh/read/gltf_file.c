@@ -10,7 +10,7 @@ enum { CHUNK_JSON = 0x4e4f534a, CHUNK_BINARY = 0x004e4942 };
 
 status gltf_damaged(const char *what)
 {
-    return fail(ERROR_INPUT, "damaged glTF: %s", what);
+    return fail(MERLIN_BAD_INPUT, "damaged glTF: %s", what);
 }
 
 bool gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out)
@@ -56,7 +56,7 @@ static status find_json(gltf *g, const char **text, size_t *size)
     *text = g->file.data;
     if (g->file.size < GLB_HEAD || memcmp(at, "glTF", 4) != 0) return OK;
     if (word_at(at + 4) != 2)
-        return fail(ERROR_INPUT, "glTF of version %u is not supported; save it as version 2", word_at(at + 4));
+        return fail(MERLIN_BAD_INPUT, "glTF of version %u is not supported; save it as version 2", word_at(at + 4));
     at += GLB_HEAD;
     json = NULL;
     status s = take_chunk(&at, end, CHUNK_JSON, &json, size);
@@ -82,14 +82,14 @@ static status check_json(const char *text, size_t size)
         } else if (c == '"') {
             quoted = true;
         } else if (c == '[' || c == '{') {
-            if (++depth > DEEPEST) return fail(ERROR_INPUT, "its JSON is more than %d levels deep", DEEPEST);
+            if (++depth > DEEPEST) return fail(MERLIN_BAD_INPUT, "its JSON is more than %d levels deep", DEEPEST);
             values++;
         } else if (c == ']' || c == '}') {
             depth -= depth > 0;
         } else {
             values += c == ',';
         }
-        if (values > MOST_VALUES) return fail(ERROR_INPUT, "its JSON has more than %d values", MOST_VALUES);
+        if (values > MOST_VALUES) return fail(MERLIN_BAD_INPUT, "its JSON has more than %d values", MOST_VALUES);
     }
     return OK;
 }
@@ -104,7 +104,7 @@ static status list_items(const cJSON *root, const char *key, gltf_list *out)
         count++;
     }
     out->at = malloc((count + 1) * sizeof *out->at);
-    if (!out->at) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (!out->at) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     cJSON_ArrayForEach(item, array)
     {
         out->at[out->count++] = item;
@@ -122,7 +122,7 @@ static status list_all(gltf *g)
     if (s != OK) return s;
     g->buffer = calloc(g->buffers.count + 1, sizeof *g->buffer);
     g->accessor = calloc(g->accessors.count + 1, sizeof *g->accessor);
-    return g->buffer && g->accessor ? OK : fail(ERROR_MEMORY, "no memory for the mesh");
+    return g->buffer && g->accessor ? OK : fail(MERLIN_NO_MEMORY, "no memory for the mesh");
 }
 
 /* An extension that a file requires is understood, says nothing of the surface, or else the file is not. */
@@ -133,16 +133,16 @@ static status check_extension(const char *name)
                                        "KHR_animation_",        "MSFT_lod"};
     for (size_t i = 0; i < sizeof fine / sizeof *fine; i++)
         if (strncmp(name, fine[i], strlen(fine[i])) == 0) return OK;
-    return fail(ERROR_INPUT, "its extension %.60s is not supported; export it without", name);
+    return fail(MERLIN_BAD_INPUT, "its extension %.60s is not supported; export it without", name);
 }
 
 static status check_document(const cJSON *root)
 {
     const cJSON *asset = cJSON_GetObjectItemCaseSensitive(root, "asset"), *name;
     const char *version = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(asset, "version"));
-    if (!version) return fail(ERROR_INPUT, "not a glTF file");
+    if (!version) return fail(MERLIN_BAD_INPUT, "not a glTF file");
     if (version[0] != '2')
-        return fail(ERROR_INPUT, "glTF of version %.10s is not supported; save it as version 2", version);
+        return fail(MERLIN_BAD_INPUT, "glTF of version %.10s is not supported; save it as version 2", version);
     cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(root, "extensionsRequired"))
     {
         status s = cJSON_IsString(name) ? check_extension(name->valuestring) : OK;
@@ -168,7 +168,7 @@ status gltf_parse(const void *bytes, size_t size, const char *folder, gltf **out
 {
     *out = NULL;
     gltf *g = calloc(1, sizeof *g);
-    if (!g) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (!g) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     *g = (gltf){.folder = folder, .file = {bytes, size}, .bytes = size};
     status s = read_document(g);
     if (s == OK)

@@ -81,7 +81,7 @@ static void multiply(const double *a, const double *b, double *out)
 static status meet(walk *w, size_t node, const double *parent)
 {
     if (node >= w->g->nodes.count) return gltf_damaged("a node that is not there");
-    if (w->met[node]) return fail(ERROR_INPUT, "damaged glTF: node %zu has two parents", node);
+    if (w->met[node]) return fail(MERLIN_BAD_INPUT, "damaged glTF: node %zu has two parents", node);
     w->met[node] = true;
     double own[12] = {0};
     status s = read_transform(w->g->nodes.at[node], own);
@@ -110,7 +110,7 @@ static status meet_roots(walk *w)
 {
     size_t count = w->g->nodes.count;
     bool *child = calloc(count + 1, sizeof *child);
-    if (!child) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (!child) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     for (size_t i = 0; i < count; i++) {
         const cJSON *item;
         cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(w->g->nodes.at[i], "children"))
@@ -167,8 +167,8 @@ status gltf_place_meshes(const gltf *g, gltf_instance **out, size_t *count)
     walk w = {.g = g, .placed = calloc(room, sizeof *w.placed), .met = calloc(room, sizeof *w.met)};
     *out = NULL;
     *count = 0;
-    status s = w.placed && w.met ? walk_nodes(&w) : fail(ERROR_MEMORY, "no memory for the mesh");
-    if (s == OK && !(*out = calloc(w.count + 1, sizeof **out))) s = fail(ERROR_MEMORY, "no memory for the mesh");
+    status s = w.placed && w.met ? walk_nodes(&w) : fail(MERLIN_NO_MEMORY, "no memory for the mesh");
+    if (s == OK && !(*out = calloc(w.count + 1, sizeof **out))) s = fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     if (s == OK) s = collect(&w, *out, count);
     free(w.placed);
     free(w.met);

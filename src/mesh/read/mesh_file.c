@@ -42,24 +42,24 @@ static status read_kind(const char *path, scn_mesh *mesh, int *parts)
     if (file_ends_in(path, ".ply")) return mesh_read_ply(path, mesh);
     if (file_ends_in(path, ".obj")) return mesh_read_obj(path, MESH_TRIANGLES, mesh, parts);
     if (file_ends_in_any(path, gltf)) return mesh_read_gltf(path, mesh, parts);
-    return fail(ERROR_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
+    return fail(MERLIN_BAD_INPUT, "not a mesh that can be read; give .obj, .ply, .gltf or .glb");
 }
 
 status mesh_read(const char *path, scn_mesh *mesh, int *parts)
 {
     struct stat file;
-    if (stat(path, &file) != 0) return fail(ERROR_INPUT, "no such file");
-    if (!S_ISREG(file.st_mode)) return fail(ERROR_INPUT, "not a plain file");
+    if (stat(path, &file) != 0) return fail(MERLIN_BAD_INPUT, "no such file");
+    if (!S_ISREG(file.st_mode)) return fail(MERLIN_BAD_INPUT, "not a plain file");
     locale_t before = uselocale(plain_locale());
     status s = read_kind(path, mesh, parts);
     uselocale(before);
     if (s != OK) return s;
-    if (mesh->triangle_count == 0) return fail(ERROR_INPUT, "no triangles in it");
+    if (mesh->triangle_count == 0) return fail(MERLIN_BAD_INPUT, "no triangles in it");
     if (mesh->triangle_count > MESH_TRIANGLES)
-        return fail(ERROR_INPUT, "%u triangles; at most %d", mesh->triangle_count, MESH_TRIANGLES);
+        return fail(MERLIN_BAD_INPUT, "%u triangles; at most %d", mesh->triangle_count, MESH_TRIANGLES);
     mesh_drop_repeated(mesh);
     mesh_weld(mesh);
-    if (mesh->failed) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (mesh->failed) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     wind_outward(mesh);
     return OK;
 }

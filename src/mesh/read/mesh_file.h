@@ -7,7 +7,7 @@
 
 /* Reads all triangles of the file's scene, its node transforms applied, into an empty mesh; the file's normals are kept
  * when all of it has them. Surfaces that wind inward are turned. *parts becomes the number of materials in the file, at
- * most MESH_PARTS. ERROR_INPUT when the file is missing, of another kind, damaged, empty or over five million
+ * most MESH_PARTS. MERLIN_BAD_INPUT when the file is missing, of another kind, damaged, empty or over five million
  * triangles. Only plain files are opened. */
 status mesh_read(const char *path, scn_mesh *mesh, int *parts);
 

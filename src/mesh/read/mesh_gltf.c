@@ -35,7 +35,7 @@ typedef struct reader {
 
 static status no_memory(void)
 {
-    return fail(ERROR_MEMORY, "no memory for the mesh");
+    return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
 }
 
 /* ---- primitives ---- */
@@ -178,14 +178,14 @@ static status add_vertex(reader *r, const primitive *p, const double *m, size_t 
     for (int row = 0; row < 3; row++) {
         const double *line = m + 4 * row;
         to[row] = line[0] * from[0] + line[1] * from[1] + line[2] * from[2] + (line[3] - r->origin[row]);
-        if (!(fabs(to[row]) < 1e15)) return fail(ERROR_INPUT, "a vertex that is not finite");
+        if (!(fabs(to[row]) < 1e15)) return fail(MERLIN_BAD_INPUT, "a vertex that is not finite");
     }
     *out = mesh_add_vertex(r->mesh, vec3_make((real)to[0], (real)to[1], (real)to[2]));
     if (r->mesh->failed) return no_memory();
     if (!r->smooth) return OK;
     gltf_numbers(&p->normal, place, n);
     for (int k = 0; k < 3; k++)
-        if (!(fabs(n[k]) < 1e15)) return fail(ERROR_INPUT, "a normal that is not finite");
+        if (!(fabs(n[k]) < 1e15)) return fail(MERLIN_BAD_INPUT, "a normal that is not finite");
     r->mesh->normal[*out] = turn_normal(m, n);
     return OK;
 }
@@ -233,9 +233,9 @@ static status prepare(reader *r)
             triangles += p->triangles;
             vertices += most_vertices(p);
             if (p->position.count > longest) longest = p->position.count;
-            if (triangles > most) return fail(ERROR_INPUT, "more than %zu triangles", most);
+            if (triangles > most) return fail(MERLIN_BAD_INPUT, "more than %zu triangles", most);
         }
-    if (triangles == 0) return fail(ERROR_INPUT, "no triangles in it");
+    if (triangles == 0) return fail(MERLIN_BAD_INPUT, "no triangles in it");
     for (int row = 0; row < 3; row++) /* coordinates may be too far away for floats */
         r->origin[row] = r->instance[0].m[4 * row + 3];
     r->stamp = calloc(longest + 1, sizeof *r->stamp);

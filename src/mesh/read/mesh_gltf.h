@@ -8,8 +8,8 @@
 
 #include "mesh/mesh.h"
 
-/* Into an empty mesh: a part for each material, 32 at most; normals where all of it has them. ERROR_INPUT for what is
- * damaged, compressed, or has more triangles than mesh_most_triangles. */
+/* Into an empty mesh: a part for each material, 32 at most; normals where all of it has them. MERLIN_BAD_INPUT for what
+ * is damaged, compressed, or has more triangles than mesh_most_triangles. */
 status mesh_read_gltf(const char *path, scn_mesh *mesh, int *parts);
 /* The same from bytes; folder: where its buffers lie, or NULL. */
 status mesh_parse_gltf(const void *bytes, size_t size, const char *folder, scn_mesh *mesh, int *parts);

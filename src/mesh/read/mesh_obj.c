@@ -45,7 +45,7 @@ typedef struct obj {
 
 static status damaged(const obj *o, const char *what)
 {
-    return fail(ERROR_INPUT, "line %zu: %s", o->line, what);
+    return fail(MERLIN_BAD_INPUT, "line %zu: %s", o->line, what);
 }
 
 /* ---- words ---- */
@@ -106,7 +106,7 @@ static status add_triple(obj *o, triples *list)
     if (list->count == list->room) {
         size_t room = list->room ? 2 * list->room : 4096;
         void *larger = realloc(list->at, room * sizeof *list->at);
-        if (!larger) return fail(ERROR_MEMORY, "no memory for the mesh");
+        if (!larger) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
         list->at = larger;
         list->room = room;
     }
@@ -230,13 +230,13 @@ static status add_face(obj *o)
         if (s != OK) return s;
         if (count == CORNERS) return damaged(o, "a face of more than 1024 corners; cut it into triangles first");
         polygon[count] = o->smooth ? twin_of(o, c) : c.vertex;
-        if (polygon[count++] == UINT32_MAX) return fail(ERROR_MEMORY, "no memory for the mesh");
+        if (polygon[count++] == UINT32_MAX) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     }
     if (count < 3) return OK;
     if (o->mesh->triangle_count + (size_t)count - 2 > o->most)
-        return fail(ERROR_INPUT, "more than %zu triangles", o->most);
+        return fail(MERLIN_BAD_INPUT, "more than %zu triangles", o->most);
     mesh_add_polygon(o->mesh, polygon, count, current_part(o));
-    return o->mesh->failed ? fail(ERROR_MEMORY, "no memory for the mesh") : OK;
+    return o->mesh->failed ? fail(MERLIN_NO_MEMORY, "no memory for the mesh") : OK;
 }
 
 /* The last of many materials stands for those that have no room. */
@@ -312,10 +312,10 @@ static status begin_faces(obj *o)
     memset(o->part_of, -1, sizeof o->part_of);
     o->smooth &= o->normal.count > 0;
     if (o->smooth && !(o->first_twin = calloc(o->vertex.count + 1, sizeof *o->first_twin)))
-        return fail(ERROR_MEMORY, "no memory for the mesh");
+        return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     for (size_t i = 0; !o->smooth && i < o->vertex.count; i++)
         mesh_add_vertex(o->mesh, place_of(o, (uint32_t)i));
-    return o->mesh->failed ? fail(ERROR_MEMORY, "no memory for the mesh") : OK;
+    return o->mesh->failed ? fail(MERLIN_NO_MEMORY, "no memory for the mesh") : OK;
 }
 
 static status read_text(obj *o, const char *text)
@@ -323,14 +323,14 @@ static status read_text(obj *o, const char *text)
     status s = each_line(o, text, look_at_line);
     if (s == OK) s = begin_faces(o);
     if (s == OK) s = each_line(o, text, take_line);
-    if (s == OK && o->mesh->triangle_count == 0) s = fail(ERROR_INPUT, "no triangles in it");
+    if (s == OK && o->mesh->triangle_count == 0) s = fail(MERLIN_BAD_INPUT, "no triangles in it");
     return s;
 }
 
 status mesh_parse_obj(const char *text, size_t size, size_t most, scn_mesh *mesh, int *parts)
 {
     obj *o = calloc(1, sizeof *o);
-    if (!o) return fail(ERROR_MEMORY, "no memory for the mesh");
+    if (!o) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
     *o = (obj){.end = text + size, .smooth = true, .most = most, .mesh = mesh};
     status s = read_text(o, text + file_text_mark(text, size));
     *parts = o->parts < MESH_PARTS ? o->parts : MESH_PARTS;

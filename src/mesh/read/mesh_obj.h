@@ -9,7 +9,8 @@
 #include "mesh/mesh.h"
 
 /* Reads polygons, cut into triangles, into an empty mesh: a part for each material that a face has, 32 at most; normals
- * where every corner has one. ERROR_INPUT, with the line, for what is damaged, or has more than `most` triangles. */
+ * where every corner has one. MERLIN_BAD_INPUT, with the line, for what is damaged, or has more than `most` triangles.
+ */
 status mesh_read_obj(const char *path, size_t most, scn_mesh *mesh, int *parts);
 /* The same from a text that ends in a zero byte. */
 status mesh_parse_obj(const char *text, size_t size, size_t most, scn_mesh *mesh, int *parts);

@@ -47,7 +47,7 @@ static number_type type_of(const char *word)
 
 static status damaged(const char *what)
 {
-    return fail(ERROR_INPUT, "damaged PLY: %s", what);
+    return fail(MERLIN_BAD_INPUT, "damaged PLY: %s", what);
 }
 
 static status header_property(ply *p, const char *line)
@@ -79,7 +79,7 @@ static status header_line(ply *p, const char *line, bool *done)
         if (sscanf(line, "format %31s", name) != 1) return damaged("no format");
         p->binary = strcmp(name, "binary_little_endian") == 0;
         if (!p->binary && strcmp(name, "ascii") != 0)
-            return fail(ERROR_INPUT, "PLY of format %s; save it as ascii or binary_little_endian", name);
+            return fail(MERLIN_BAD_INPUT, "PLY of format %s; save it as ascii or binary_little_endian", name);
     } else if (strcmp(word, "element") == 0) {
         element *e = &p->element[p->elements];
         if (p->elements == ELEMENTS || sscanf(line, "element %31s %zu", e->name, &e->count) != 2)
@@ -92,7 +92,7 @@ static status header_line(ply *p, const char *line, bool *done)
 
 static status read_header(ply *p)
 {
-    if (strncmp(p->at, "ply", 3) != 0) return fail(ERROR_INPUT, "not a PLY file");
+    if (strncmp(p->at, "ply", 3) != 0) return fail(MERLIN_BAD_INPUT, "not a PLY file");
     bool done = false;
     while (!done) {
         const char *newline = memchr(p->at, '\n', (size_t)(p->end - p->at));
@@ -202,12 +202,12 @@ static status read_elements(ply *p)
         if (vertices) {
             if (p->normal) return damaged("two sets of vertices");
             p->normal = malloc((e->count + 1) * sizeof *p->normal);
-            if (!p->normal) return fail(ERROR_MEMORY, "no memory for the mesh");
+            if (!p->normal) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
         }
         for (size_t k = 0; k < e->count; k++) {
             status s = vertices ? read_vertex(p, e) : read_face(p, e, faces);
             if (s != OK) return s;
-            if (p->mesh->failed) return fail(ERROR_MEMORY, "no memory for the mesh");
+            if (p->mesh->failed) return fail(MERLIN_NO_MEMORY, "no memory for the mesh");
         }
     }
     return OK;

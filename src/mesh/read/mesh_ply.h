@@ -7,8 +7,8 @@
 
 #include "mesh/mesh.h"
 
-/* Reads vertices (with normals, if they have nx, ny, nz) and polygons, cut into fans, into an empty mesh. ERROR_INPUT
- * for what is damaged or not PLY. */
+/* Reads vertices (with normals, if they have nx, ny, nz) and polygons, cut into fans, into an empty mesh.
+ * MERLIN_BAD_INPUT for what is damaged or not PLY. */
 status mesh_read_ply(const char *path, scn_mesh *mesh);
 /* The same from bytes with a zero behind them. */
 status mesh_parse_ply(const char *data, size_t size, scn_mesh *mesh);

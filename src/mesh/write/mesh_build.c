@@ -132,7 +132,7 @@ static void build(builder *b, uint32_t *vertex)
 status surface_mesh_check_size(const pst_mesh_source *from, const img *map)
 {
     if (!map || (map->width == from->depth->width && map->height == from->depth->height)) return OK;
-    return fail(ERROR_USAGE, "the maps of a mesh differ in size: %d × %d and %d × %d", from->depth->width,
+    return fail(MERLIN_WRONG_USE, "the maps of a mesh differ in size: %d × %d and %d × %d", from->depth->width,
                 from->depth->height, map->width, map->height);
 }
 
@@ -142,7 +142,7 @@ static status check(const pst_mesh_source *from)
     if (s == OK) s = surface_mesh_check_size(from, from->normal);
     if (s != OK) return s;
     if (from->camera.perspective && !(from->camera.focal > 0))
-        return fail(ERROR_USAGE, "a mesh seen in perspective needs a focal length in pixels");
+        return fail(MERLIN_WRONG_USE, "a mesh seen in perspective needs a focal length in pixels");
     return OK;
 }
 
@@ -155,7 +155,7 @@ status surface_mesh_new(const pst_mesh_source *from, surface_mesh *out)
     for (size_t p = 0; p < pixels; p++)
         out->vertices += inside(from, p);
     size_t n = out->vertices;
-    if (pixels == 0 || n == 0) return fail(ERROR_INPUT, "the mask is empty: there is no mesh to write");
+    if (pixels == 0 || n == 0) return fail(MERLIN_BAD_INPUT, "the mask is empty: there is no mesh to write");
     uint32_t *vertex = calloc(pixels, sizeof *vertex);
     out->position = calloc(3 * n, sizeof *out->position);
     out->normal = calloc(3 * n, sizeof *out->normal);
@@ -166,7 +166,7 @@ status surface_mesh_new(const pst_mesh_source *from, surface_mesh *out)
     if (vertex && out->position && out->normal && out->texture && out->pixel && out->index)
         build(&(builder){from, out, vertex}, vertex);
     else
-        s = fail(ERROR_MEMORY, "no memory for a mesh of %zu vertices", n);
+        s = fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", n);
     free(vertex);
     if (s != OK) surface_mesh_free(out);
     return s;

@@ -19,7 +19,7 @@ typedef struct surface_mesh {
 status surface_mesh_new(const pst_mesh_source *from, surface_mesh *out);
 void surface_mesh_free(surface_mesh *m);
 
-/* ERROR_USAGE unless the map (may be NULL) has a value for each of depth's. */
+/* MERLIN_WRONG_USE unless the map (may be NULL) has a value for each of depth's. */
 status surface_mesh_check_size(const pst_mesh_source *from, const img *map);
 
 /* The vertex's normal: the map's where there is one, else the triangles'. */

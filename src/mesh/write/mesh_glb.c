@@ -59,7 +59,7 @@ static vec3 tangent_of(vec3 n)
 static status add_tangents(glb *g, const surface_mesh *m)
 {
     g->tangent = malloc(4 * m->vertices * sizeof *g->tangent);
-    if (!g->tangent) return fail(ERROR_MEMORY, "no memory for a mesh of %zu vertices", m->vertices);
+    if (!g->tangent) return fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", m->vertices);
     for (size_t v = 0; v < m->vertices; v++) {
         vec3 t = tangent_of(vertex_normal(m, v));
         float *to = g->tangent + 4 * v;
@@ -108,7 +108,7 @@ static void add_geometry(glb *g, const surface_mesh *m)
 static status png_bytes(const char *beside, const img *picture, img_encoding encoding, char **bytes, size_t *size)
 {
     char *name = NULL, *temporary = NULL;
-    if (asprintf(&name, "%s.png", beside) < 0) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (asprintf(&name, "%s.png", beside) < 0) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = file_temporary(name, &temporary);
     if (s == OK) {
         s = img_write_png(temporary, picture, encoding);
@@ -318,7 +318,8 @@ static status write_file(const char *path, const glb *g, const char *json)
     for (int i = 0; i < g->count; i++)
         c.binary += padded(g->parts[i].size);
     c.total = HEADER + 2 * (size_t)CHUNK_HEADER + c.text + c.binary;
-    if (c.total > UINT32_MAX) return fail(ERROR_OUTPUT, "cannot write %s: a GLB holds at most 4 GiB; use .ply", path);
+    if (c.total > UINT32_MAX)
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: a GLB holds at most 4 GiB; use .ply", path);
     return file_print(path, write_chunks, &c);
 }
 
@@ -330,7 +331,7 @@ static status assemble(const char *path, const glb *g)
     put_parts(root, g);
     char *json = cJSON_PrintUnformatted(root);
     cJSON_Delete(root);
-    if (!json) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    if (!json) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
     status s = write_file(path, g, json);
     free(json);
     return s;
@@ -339,7 +340,7 @@ static status assemble(const char *path, const glb *g)
 status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
     if (m->triangles == 0)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "cannot write %s: the surface has no triangle; its mask is too thin, or depth jumps everywhere",
                     path);
     glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/text/decimal.h"
 #include "base/file.h"
+#include "base/text/decimal.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
 
@@ -85,7 +85,7 @@ static status write_material(const char *path, const char *texture)
     int length = asprintf(&text, "# written by merlin\nnewmtl surface\nKa 0 0 0\n%s\nKs 0 0 0\nillum 1\n%s%s%s",
                           texture ? "Kd 1 1 1" : "Kd 0.6 0.6 0.6", texture ? "map_Kd " : "",
                           texture ? file_name_of(texture) : "", texture ? "\n" : "");
-    if (length < 0) return fail(ERROR_MEMORY, "no memory to write %s", path);
+    if (length < 0) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
     status s = file_write(path, text, (size_t)length);
     free(text);
     return s;
@@ -95,7 +95,7 @@ static status write_material(const char *path, const char *texture)
 status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from)
 {
     char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png");
-    status s = material && texture ? OK : fail(ERROR_MEMORY, "no memory for file names");
+    status s = material && texture ? OK : fail(MERLIN_NO_MEMORY, "no memory for file names");
     if (s == OK && from->albedo) s = write_texture(texture, from->albedo);
     if (s == OK) s = write_material(material, from->albedo ? texture : NULL);
     if (s == OK) s = file_print(path, print_mesh, &(obj){m, from, material});

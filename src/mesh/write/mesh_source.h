@@ -3,8 +3,8 @@
 #ifndef MERLIN_MESH_WRITE_MESH_SOURCE_H
 #define MERLIN_MESH_WRITE_MESH_SOURCE_H
 
-#include "optics/camera.h"
 #include "image/image.h"
+#include "optics/camera.h"
 #include "optics/pinhole.h"
 
 typedef struct pst_mesh_source {

@@ -21,7 +21,7 @@ static const format *format_of(const char *path)
 
 status pst_mesh_check_name(const char *path)
 {
-    return format_of(path) ? OK : fail(ERROR_USAGE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
+    return format_of(path) ? OK : fail(MERLIN_WRONG_USE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
 }
 
 status pst_mesh_write(const char *path, const pst_mesh_source *from)

@@ -6,7 +6,7 @@
 
 #include "mesh/write/mesh_source.h"
 
-/* ERROR_USAGE unless the name ends in .ply, .obj or .glb. */
+/* MERLIN_WRONG_USE unless the name ends in .ply, .obj or .glb. */
 status pst_mesh_check_name(const char *path);
 
 /* One vertex a pixel inside the mask; triangles that would bridge a depth jump are left out. Camera space: in

@@ -77,14 +77,14 @@ status norm_create(nn_step *step)
     static const step_functions functions = {
         .forward = norm_forward, .backward = norm_backward_step, .release = norm_release};
     norm *state = calloc(1, sizeof *state);
-    if (!state) return fail(ERROR_MEMORY, "no memory for batch norm");
+    if (!state) return fail(MERLIN_NO_MEMORY, "no memory for batch norm");
     step->run = &functions;
     step->state = state;
     step->reads_in = true;
     size_t c = (size_t)step->out.c, count = 5 * c + norm_partial_floats(step->out.c);
     state->mean = calloc(count, sizeof(float));
     state->sums = calloc(2 * c, sizeof(double));
-    if (!state->mean || !state->sums) return fail(ERROR_MEMORY, "no memory for batch norm");
+    if (!state->mean || !state->sums) return fail(MERLIN_NO_MEMORY, "no memory for batch norm");
     step->own_bytes = count * sizeof(float) + 2 * c * sizeof(double);
     state->variance = state->mean + c;
     state->inverse_deviation = state->variance + c;

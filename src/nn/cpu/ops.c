@@ -373,10 +373,10 @@ static status kernel_create(nn_step *step)
 {
     static const step_functions functions = {.forward = kernel_forward, .backward = kernel_backward};
     const operation *row = &operations[step->op];
-    if (!row->forward || !row->backward) return fail(ERROR_DEVICE, "%s has no kernel", op_name(step->op));
+    if (!row->forward || !row->backward) return fail(MERLIN_DEVICE_FAILED, "%s has no kernel", op_name(step->op));
     step->run = &functions;
     if (step->out.c > CPU_MAX_CHANNELS)
-        return fail(ERROR_USAGE, "%d channels, the CPU's limit is %d", step->out.c, CPU_MAX_CHANNELS);
+        return fail(MERLIN_WRONG_USE, "%d channels, the CPU's limit is %d", step->out.c, CPU_MAX_CHANNELS);
     step->reads_in = row->reads & READS_IN;
     step->reads_out = row->reads & READS_OUT;
     return OK;

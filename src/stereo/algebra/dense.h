@@ -2,7 +2,7 @@
 /* Dense linear algebra of photometric stereo, for matrices of three to some hundred rows.
  *
  *     double value[2 * N];
- *     if (!dense_eigen(gram, N, true, value)) s = fail(ERROR_INPUT, "not numbers");
+ *     if (!dense_eigen(gram, N, true, value)) s = fail(MERLIN_BAD_INPUT, "not numbers");
  *
  * Matrices lie row by row. Nothing here needs memory of its own, or a library: those that there are start threads, and
  * wait for ever where the system refuses them memory. */

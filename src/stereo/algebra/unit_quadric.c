@@ -53,7 +53,7 @@ static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *
     bool solved = dense_solve_positive(form, 6, m);
     memcpy(axis, &(double[9]){m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5]}, sizeof axis);
     if (!solved || !dense_eigen(axis, 3, true, eigenvalue) || !(eigenvalue[2] > 0))
-        return fail(ERROR_INPUT, "the pictures do not tell lights from surface: are the lights equally strong?");
+        return fail(MERLIN_BAD_INPUT, "the pictures do not tell lights from surface: are the lights equally strong?");
     for (int j = 0; j < 9; j++) {
         /* not positive: highlights have bent the factors */
         double root = sqrt(fmax(eigenvalue[j / 3], flattest * eigenvalue[2]));
@@ -66,7 +66,7 @@ static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *
 status unit_quadric_fit(const vec3 *v, size_t count, unit_quadric *out)
 {
     double *distance = malloc(count * sizeof *distance);
-    if (!distance) return fail(ERROR_MEMORY, "no memory for %zu vectors", count);
+    if (!distance) return fail(MERLIN_NO_MEMORY, "no memory for %zu vectors", count);
     status s = fit_once(v, count, HUGE_VAL, out);
     if (s == OK) out->spread = median_distance(out, v, count, distance);
     for (int pass = 0; s == OK && pass < PASSES; pass++) {

@@ -18,7 +18,8 @@ typedef struct unit_quadric {
     double spread;           /* of the lengths |make v| about 1: their median distance, six that fit anyhow left out */
 } unit_quadric;
 
-/* By least squares, reweighted for the vectors that are not like most. ERROR_INPUT if there is no such ellipsoid. */
+/* By least squares, reweighted for the vectors that are not like most. MERLIN_BAD_INPUT if there is no such ellipsoid.
+ */
 status unit_quadric_fit(const vec3 *v, size_t count, unit_quadric *out);
 
 #endif

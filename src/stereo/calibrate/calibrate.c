@@ -115,8 +115,8 @@ static status find_outlines(const char *folder, const pst_calibrate_options *opt
     if (s == OK && !mask) s = search_outlines(c, options->ball, picture, outlines);
     if (found) outlines->count = 1;
     if (s == OK && outlines->count == 0)
-        s = mask ? fail(ERROR_INPUT, "the mask %s is not round", mask)
-                 : fail(ERROR_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
+        s = mask ? fail(MERLIN_BAD_INPUT, "the mask %s is not round", mask)
+                 : fail(MERLIN_BAD_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
     free(mask);
     return s;
 }
@@ -148,7 +148,7 @@ static status take_picture(const pst_capture *c, int i, pst_ball ball, const img
 static status find_room(const pst_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
 {
     float *level = malloc((size_t)c->count * sizeof *level);
-    if (!level) return fail(ERROR_MEMORY, "no memory for a room's light");
+    if (!level) return fail(MERLIN_NO_MEMORY, "no memory for a room's light");
     size_t count = 0;
     status s = OK;
     for (int i = 0; i < c->count && s == OK; i++) {
@@ -172,7 +172,7 @@ static status find_light(const pst_capture *c, int i, const img *constant, const
     s = out->ball == PST_CHROME ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
                                 : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
     img_free(&picture);
-    if (s == ERROR_INPUT && !out->from_mask)
+    if (s == MERLIN_BAD_INPUT && !out->from_mask)
         s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
                     (double)out->circle.x, (double)out->circle.y, (double)out->circle.radius);
     return s == OK ? OK : fail_in(s, "%s", out->name[i]);
@@ -194,7 +194,7 @@ static status reserve(int count, pst_calibration *out)
         out->highlight = calloc((size_t)count, sizeof *out->highlight);
     else
         out->residual = calloc((size_t)count, sizeof *out->residual);
-    return out->direction && (out->highlight || out->residual) ? OK : fail(ERROR_MEMORY, "no memory for lights");
+    return out->direction && (out->highlight || out->residual) ? OK : fail(MERLIN_NO_MEMORY, "no memory for lights");
 }
 
 /* All lights by one outline. */
@@ -273,7 +273,7 @@ static status choose_outline(const pst_capture *c, const img *picture, ball_outl
         if (i == 0 && (first = s) != OK) snprintf(words, sizeof words, "%s", status_message());
         trial.name = NULL;
         pst_calibration_free(&trial);
-        if (s != OK && s != ERROR_INPUT) return s;
+        if (s != OK && s != MERLIN_BAD_INPUT) return s;
     }
     return *chosen >= 0 ? OK : fail(first, "%s", words);
 }

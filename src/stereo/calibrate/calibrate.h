@@ -21,7 +21,7 @@ typedef struct pst_calibrate_options {
     bool linear;         /* 8-bit pictures are linear already */
 } pst_calibrate_options;
 
-/* ERROR_INPUT with one clear line if the ball, or the light in a picture of it, is not found. */
+/* MERLIN_BAD_INPUT with one clear line if the ball, or the light in a picture of it, is not found. */
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out);
 /* The first words of the list that is written, by which it is known again. */
 #define PST_CALIBRATION_LIST "# Directions to the lights, found from"

@@ -72,7 +72,7 @@ static status find_edges(const img *picture, size_t most, edges *out)
     *out = (edges){malloc((size_t)picture->width * (size_t)picture->height * sizeof *out->at), 0};
     if (!out->at) {
         img_free(&strength);
-        return fail(ERROR_MEMORY, "no memory for edges");
+        return fail(MERLIN_NO_MEMORY, "no memory for edges");
     }
     for (int y = 1; y < picture->height - 1; y++)
         for (int x = 1; x < picture->width - 1; x++) {
@@ -309,7 +309,7 @@ status ball_center(const img *picture, const pinhole *camera, const pst_circle *
     if (turned.at)
         *center = center_of(&e, &turned, camera, circle);
     else
-        s = fail(ERROR_MEMORY, "no memory for edges");
+        s = fail(MERLIN_NO_MEMORY, "no memory for edges");
     free(turned.at);
     free(e.at);
     return s;

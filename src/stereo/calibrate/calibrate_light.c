@@ -107,7 +107,7 @@ static status list_blobs(const ball_view *view, flood *f, blobs *out)
             int at = y * w + x;
             if (!(f->left.data[at] > f->level) || !inside(view, x, y, INSIDE)) continue;
             blob *larger = realloc(out->at, (out->count + 1) * sizeof *larger);
-            if (!larger) return fail(ERROR_MEMORY, "no memory for highlights");
+            if (!larger) return fail(MERLIN_NO_MEMORY, "no memory for highlights");
             out->at = larger;
             out->at[out->count++] = grow(f, at);
         }
@@ -121,7 +121,7 @@ static status find_blobs(const img *p, const ball_view *view, float level, blobs
     status s = img_copy(&f.left, p);
     if (s != OK) return s;
     f.stack = malloc((size_t)p->width * (size_t)p->height * sizeof *f.stack);
-    s = f.stack ? list_blobs(view, &f, out) : fail(ERROR_MEMORY, "no memory for a highlight");
+    s = f.stack ? list_blobs(view, &f, out) : fail(MERLIN_NO_MEMORY, "no memory for a highlight");
     free(f.stack);
     img_free(&f.left);
     return s;
@@ -135,7 +135,7 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
     /* Noise, where the light failed or mirrors beside the picture, has 0.01 to 0.02; a second lamp as bright 0.5. */
     static const double LEAST_SHARE = 0.55;
     float peak = brightest_inside(picture, view);
-    if (!(peak > LEAST_PEAK)) return fail(ERROR_INPUT, "no highlight on the ball");
+    if (!(peak > LEAST_PEAK)) return fail(MERLIN_BAD_INPUT, "no highlight on the ball");
     blob b = {0};
     blobs all;
     status s = find_blobs(picture, view, LEVEL * peak, &all);
@@ -144,13 +144,13 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
     free(all.at);
     if (s != OK) return s;
     if (share < LEAST_SHARE)
-        return fail(ERROR_INPUT, "no highlight on the ball stands out: was the light on, and the only one?");
+        return fail(MERLIN_BAD_INPUT, "no highlight on the ball stands out: was the light on, and the only one?");
     *highlight = (pst_circle){(float)(b.x / b.sum), (float)(b.y / b.sum), sqrtf((float)b.area / 3.14159265f)};
     if (highlight->radius > 0.5f * view->circle.radius)
-        return fail(ERROR_INPUT, "what is bright covers more than a quarter of the ball: is it chrome?");
+        return fail(MERLIN_BAD_INPUT, "what is bright covers more than a quarter of the ball: is it chrome?");
     vec3 n, v;
     if (!ball_point(view, highlight->x, highlight->y, &n, &v))
-        return fail(ERROR_INPUT, "the highlight is not on the ball");
+        return fail(MERLIN_BAD_INPUT, "the highlight is not on the ball");
     *direction = vec3_normalize(vec3_sub(vec3_scale(n, 2 * vec3_dot(n, v)), v));
     return OK;
 }
@@ -222,13 +222,13 @@ static status fit_light(shade *at, size_t count, float *residual, vec3 *directio
         at[i].used = at[i].value > 0.1f * most;
     for (int round = 0; round < ROUNDS; round++) {
         if (!solve_light(at, count, &light) || !(vec3_length(light) > 1e-4f))
-            return fail(ERROR_INPUT, "the ball is not lit enough to tell where from");
+            return fail(MERLIN_BAD_INPUT, "the ball is not lit enough to tell where from");
         spread = select_lit(at, count, light, fmaxf(spread, 0.01f));
     }
     size_t used = 0;
     for (size_t i = 0; i < count; i++)
         used += at[i].used;
-    if (used < LEAST_USED) return fail(ERROR_INPUT, "only %zu pixels of the ball are lit as by one light", used);
+    if (used < LEAST_USED) return fail(MERLIN_BAD_INPUT, "only %zu pixels of the ball are lit as by one light", used);
     *residual = spread;
     *direction = vec3_normalize(light);
     return OK;
@@ -237,7 +237,7 @@ static status fit_light(shade *at, size_t count, float *residual, vec3 *directio
 status ball_shading_light(const img *picture, const ball_view *view, float *residual, vec3 *direction)
 {
     shade *at = malloc((size_t)picture->width * (size_t)picture->height * sizeof *at);
-    if (!at) return fail(ERROR_MEMORY, "no memory for a ball's shading");
+    if (!at) return fail(MERLIN_NO_MEMORY, "no memory for a ball's shading");
     size_t count = collect_shades(picture, view, at);
     status s = fit_light(at, count, residual, direction);
     free(at);

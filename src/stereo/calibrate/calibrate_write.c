@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "image/write/canvas.h"
 #include "image/resize.h"
+#include "image/write/canvas.h"
 #include "stereo/calibrate/calibrate.h"
 
 static status write_lights(const pst_calibration *c, const char *path)
@@ -12,14 +12,15 @@ static status write_lights(const pst_calibration *c, const char *path)
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    if (!out) return fail(ERROR_MEMORY, "no memory for a list of lights");
+    if (!out) return fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
     fprintf(out, PST_CALIBRATION_LIST " a %s ball: x right, y up, z toward the camera.\n",
             c->ball == PST_CHROME ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];
         fprintf(out, "%.6f %.6f %.6f\n", (double)d.x, (double)d.y, (double)d.z);
     }
-    status s = fclose(out) == 0 ? file_write(path, text, size) : fail(ERROR_MEMORY, "no memory for a list of lights");
+    status s =
+        fclose(out) == 0 ? file_write(path, text, size) : fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
     free(text);
     return s;
 }

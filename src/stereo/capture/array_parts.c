@@ -22,13 +22,13 @@ status array_shape(number_array *a, const uint64_t *size, size_t rank, const cha
     for (size_t i = 0; i < ARRAY_MOST_DIMENSIONS; i++)
         a->size[i] = 1;
     for (size_t i = 0; i < rank; i++) {
-        if (size[i] == 0) return fail(ERROR_INPUT, "%s: the array is empty", where);
+        if (size[i] == 0) return fail(MERLIN_BAD_INPUT, "%s: the array is empty", where);
         if (size[i] > ARRAY_MOST_BYTES / 8 || (count *= size[i]) > ARRAY_MOST_BYTES / 8)
-            return fail(ERROR_INPUT, "%s: the array is too large, or the file is damaged", where);
+            return fail(MERLIN_BAD_INPUT, "%s: the array is too large, or the file is damaged", where);
         if (i < ARRAY_MOST_DIMENSIONS)
             a->size[i] = (size_t)size[i];
         else if (size[i] != 1)
-            return fail(ERROR_INPUT, "%s: the array has more than %d dimensions", where, ARRAY_MOST_DIMENSIONS);
+            return fail(MERLIN_BAD_INPUT, "%s: the array has more than %d dimensions", where, ARRAY_MOST_DIMENSIONS);
     }
     return OK;
 }
@@ -58,9 +58,9 @@ status array_fill(number_array *a, const unsigned char *bytes, size_t available,
 {
     size_t count = array_count(a);
     if (available / type.bytes < count)
-        return fail(ERROR_INPUT, "%s: the file ends before its %zu numbers do; it is damaged", where, count);
+        return fail(MERLIN_BAD_INPUT, "%s: the file ends before its %zu numbers do; it is damaged", where, count);
     a->data = malloc(count * sizeof *a->data);
-    if (!a->data) return fail(ERROR_MEMORY, "no memory for the %zu numbers of %s", count, where);
+    if (!a->data) return fail(MERLIN_NO_MEMORY, "no memory for the %zu numbers of %s", count, where);
     for (size_t i = 0; i < count; i++)
         a->data[i] = read_number(bytes + i * type.bytes, type);
     return OK;

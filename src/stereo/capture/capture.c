@@ -9,11 +9,11 @@
 status pst_capture_reserve(pst_capture *c, size_t count)
 {
     if (count < 1 || count > PST_MOST_PICTURES)
-        return fail(ERROR_INPUT, "a capture has 1 to %d pictures, not %zu", PST_MOST_PICTURES, count);
+        return fail(MERLIN_BAD_INPUT, "a capture has 1 to %d pictures, not %zu", PST_MOST_PICTURES, count);
     c->light = calloc(count, sizeof *c->light);
     c->name = calloc(count, sizeof *c->name);
     c->picture = calloc(count, sizeof *c->picture);
-    if (!c->light || !c->name || !c->picture) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    if (!c->light || !c->name || !c->picture) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     c->count = (int)count;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
@@ -24,20 +24,21 @@ status pst_capture_reserve(pst_capture *c, size_t count)
 status pst_capture_set_name(pst_capture *c, size_t i, const char *name)
 {
     c->name[i] = strdup(name);
-    return c->name[i] ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    return c->name[i] ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
 static status make_room(pst_capture *c)
 {
     size_t count = (size_t)c->count + 1;
-    if (count > PST_MOST_PICTURES) return fail(ERROR_USAGE, "a capture has %d pictures at most", PST_MOST_PICTURES);
+    if (count > PST_MOST_PICTURES)
+        return fail(MERLIN_WRONG_USE, "a capture has %d pictures at most", PST_MOST_PICTURES);
     pst_light *light = realloc(c->light, count * sizeof *light);
     if (light) c->light = light;
     char **name = realloc(c->name, count * sizeof *name);
     if (name) c->name = name;
     uint16_t **picture = realloc(c->picture, count * sizeof *picture);
     if (picture) c->picture = picture;
-    return light && name && picture ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    return light && name && picture ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
 }
 
 static uint16_t code_of(float value)
@@ -54,7 +55,7 @@ status pst_capture_add(pst_capture *c, const img *picture, const pst_light *ligh
     char *name = NULL;
     if (!codes || asprintf(&name, "light %d", c->count) < 0) {
         free(codes);
-        return fail(ERROR_MEMORY, "no memory for one more picture");
+        return fail(MERLIN_NO_MEMORY, "no memory for one more picture");
     }
     for (size_t i = 0; i < values; i++)
         codes[i] = code_of(picture->data[i]);

@@ -62,7 +62,8 @@ typedef struct pst_capture {
 
 typedef struct pst_read_options {
     const char *lights; /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
-    const char *mask;   /* NULL: the folder's mask.png or the like (image/read/folder.h), or found (pst_capture_find_mask) */
+    const char
+        *mask; /* NULL: the folder's mask.png or the like (image/read/folder.h), or found (pst_capture_find_mask) */
     const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
     bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object, unless
                           * all have z below 0 */

@@ -27,7 +27,7 @@ status pst_list_skipped(const char *folder, const char *mask, const char *ambien
  * NULL without one. Free it. */
 status pst_find_named(const char *folder, const char *const *usual, char **path);
 /* Finds light_intensities.txt or a file of a name like it, in the folder or beside the list of lights (NULL: there is
- * none), likewise. ERROR_INPUT where there are two. */
+ * none), likewise. MERLIN_BAD_INPUT where there are two. */
 status pst_find_intensities(const char *folder, const char *lights, char **path);
 
 /* Reads what pst_find_intensities finds, if anything: one or three numbers a line, for the capture's lights or, behind

@@ -19,7 +19,7 @@ status pst_find_named(const char *folder, const char *const *usual, char **path)
             bool exact = strcmp(file_name_of(names[i]), usual[k]) == 0;
             if (exact || (!found && strcasecmp(file_name_of(names[i]), usual[k]) == 0)) found = names[i];
         }
-    if (found && !(*path = strdup(found))) s = fail(ERROR_MEMORY, "no memory for a file name");
+    if (found && !(*path = strdup(found))) s = fail(MERLIN_NO_MEMORY, "no memory for a file name");
     file_list_free(names, count);
     return s;
 }
@@ -32,7 +32,7 @@ static status first_with_ending(const char *folder, const char *ending, char **p
     if (s != OK || *found == 0) return s;
     *path = strdup(names[0]);
     file_list_free(names, *found);
-    return *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    return *path ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
 status pst_find_file(const char *folder, const char *asked, const char *usual, const char *ending, char **path,
@@ -40,7 +40,7 @@ status pst_find_file(const char *folder, const char *asked, const char *usual, c
 {
     *found = 0;
     *path = asked ? strdup(asked) : file_join(folder, usual);
-    if (!*path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!*path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (asked || file_exists(*path)) return OK;
     free(*path);
     *path = NULL;

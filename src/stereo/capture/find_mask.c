@@ -184,7 +184,7 @@ status pst_capture_find_mask(pst_capture *c)
     s = img_new(&level, c->width, c->height, 1);
     float *sample = malloc(SAMPLE * sizeof *sample);
     uint32_t *piece = malloc(pixels * sizeof *piece);
-    if (s == OK && (!sample || !piece)) s = fail(ERROR_MEMORY, "no memory to find the object");
+    if (s == OK && (!sample || !piece)) s = fail(MERLIN_NO_MEMORY, "no memory to find the object");
     if (s == OK) {
         parallel_blocks(pixels, look, &(looking){c, &level});
         for (size_t p = 0; p < pixels; p++)

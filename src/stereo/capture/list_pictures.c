@@ -73,11 +73,12 @@ static status refuse_empty(const char *folder, bool numbered, const skipped_file
         slash = strchr(below, '/');
     }
     if (slash && !numbered)
-        s = fail(ERROR_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
+        s = fail(MERLIN_BAD_INPUT, "no pictures in %s itself; name one of the folders in it, such as %.*s", folder,
                  (int)(slash - below), below);
     else
-        s = fail(ERROR_INPUT, "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files%s%s",
-                 folder, numbered ? "01.png, 02.png and on, " : "", *left ? "; " : "", left);
+        s = fail(MERLIN_BAD_INPUT,
+                 "no pictures in %s: expected %sPNG, JPEG, TIFF, EXR, WebP, HEIC, HDR or raw files%s%s", folder,
+                 numbered ? "01.png, 02.png and on, " : "", *left ? "; " : "", left);
     file_list_free(names, count);
     return s;
 }
@@ -151,7 +152,7 @@ status pst_find_ambient(const char *folder, const char *picture, char **path)
         if (img_folder_is_photo(&f.at[i]) && has_stem(f.at[i].name, "ambient") &&
             (!found || ends_as(f.at[i].name, picture)))
             found = &f.at[i];
-    if (found && !(*path = strdup(found->path))) s = fail(ERROR_MEMORY, "no memory for a file name");
+    if (found && !(*path = strdup(found->path))) s = fail(MERLIN_NO_MEMORY, "no memory for a file name");
     img_folder_free(&f);
     return s;
 }
@@ -163,8 +164,8 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
     status s = list_pictures(folder, numbered, &f, &count);
     if (s != OK) return s;
     if (lights && count != wanted)
-        s = fail(ERROR_INPUT, "%s has %zu %spicture%s, but %s has %zu light%s; each picture needs one", folder, count,
-                 numbered ? "numbered " : "", count == 1 ? "" : "s", lights, wanted, wanted == 1 ? "" : "s");
+        s = fail(MERLIN_BAD_INPUT, "%s has %zu %spicture%s, but %s has %zu light%s; each picture needs one", folder,
+                 count, numbered ? "numbered " : "", count == 1 ? "" : "s", lights, wanted, wanted == 1 ? "" : "s");
     if (s == OK) s = pst_capture_reserve(c, count);
     for (size_t i = 0; i < count && s == OK; i++)
         s = pst_capture_set_name(c, i, f.at[i].name);

@@ -97,7 +97,7 @@ status pst_match_name(const char *folder, const char *name, char **found)
     *found = NULL;
     status s = list_all(folder, &in);
     const char *file = s == OK ? find_listed(&in, name) : NULL;
-    if (file && !(*found = strdup(file))) s = fail(ERROR_MEMORY, "no memory for a file name");
+    if (file && !(*found = strdup(file))) s = fail(MERLIN_NO_MEMORY, "no memory for a file name");
     free_listing(&in);
     return s;
 }
@@ -171,7 +171,7 @@ static size_t count_missing(const listing *in, const light_list *list, char text
 
 static status refuse_missing(const listing *in, const char *lights, size_t count, const char *names)
 {
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s names %s, but %s has no such picture%s, or several; correct the names, or leave all of them out to "
                 "take the lights in the order of the pictures' names",
                 lights, names, in->folder, count > 1 ? "s" : "");
@@ -182,7 +182,7 @@ static status check_twice(const char *lights, const light_list *list, const pst_
     for (size_t i = 0; i < list->count; i++)
         for (size_t k = 0; k < i; k++)
             if (strcmp(c->name[i], c->name[k]) == 0)
-                return fail(ERROR_INPUT, "%s:%d: %.80s has a light in line %d already", lights, list->line[i],
+                return fail(MERLIN_BAD_INPUT, "%s:%d: %.80s has a light in line %d already", lights, list->line[i],
                             c->name[i], list->line[k]);
     return OK;
 }
@@ -217,7 +217,7 @@ static status take_names(const listing *in, const char *lights, const light_list
 
 static status refuse_count(const listing *in, const char *lights, const light_list *list)
 {
-    return fail(ERROR_INPUT, "%s has %d picture%s, but %s has %zu light%s; each picture needs one", in->folder,
+    return fail(MERLIN_BAD_INPUT, "%s has %d picture%s, but %s has %zu light%s; each picture needs one", in->folder,
                 in->pictures.count, in->pictures.count == 1 ? "" : "s", lights, list->count,
                 list->count == 1 ? "" : "s");
 }
@@ -246,7 +246,7 @@ static status match(const listing *in, const char *lights, const light_list *lis
     if (missing == 0) return take_names(in, lights, list, c);
     size_t *place = calloc(list->count, sizeof *place);
     bool *taken = calloc(list->count, sizeof *taken);
-    status s = place && taken ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", list->count);
+    status s = place && taken ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", list->count);
     if (s == OK && are_numbers(list, place, taken))
         s = take_numbers(in, lights, list, place, c);
     else if (s == OK && missing == list->count && are_files_in_order(list))

@@ -21,7 +21,7 @@ bool pst_is_of_data_set(const char *folder)
 static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
 {
     if (kind == LAYOUT_DILIGENT && options->near && !options->unknown_lights)
-        return fail(ERROR_USAGE, "the lights of %s/light_directions.txt are no positions; give a list of these",
+        return fail(MERLIN_WRONG_USE, "the lights of %s/light_directions.txt are no positions; give a list of these",
                     folder);
     if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
     if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
@@ -39,7 +39,7 @@ static status settle_camera(const pst_read_options *options, pst_capture *c)
 {
     pst_capture_see(c, options->field_of_view, options->distance);
     if (!(options->distance > 0) || c->camera.perspective) return OK;
-    return fail(ERROR_USAGE, "the object's distance is for near lights or a camera whose field of view is known");
+    return fail(MERLIN_WRONG_USE, "the object's distance is for near lights or a camera whose field of view is known");
 }
 
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
@@ -47,7 +47,7 @@ status pst_capture_read(const char *folder, const pst_read_options *options, pst
     static const pst_read_options defaults = {0};
     if (!options) options = &defaults;
     *out = (pst_capture){0};
-    if (!file_is_folder(folder)) return fail(ERROR_INPUT, "there is no folder %s with pictures in it", folder);
+    if (!file_is_folder(folder)) return fail(MERLIN_BAD_INPUT, "there is no folder %s with pictures in it", folder);
     layout kind = options->lights ? LAYOUT_PLAIN : layout_of(folder);
     status s = read_layout(kind, folder, options, out);
     if (s == OK) s = pst_read_pictures(folder, options, out);

@@ -28,9 +28,10 @@ static status set_name(const char *path, const char *folder, const char *name, i
 {
     char *found = NULL;
     status s = pst_match_name(folder, name, &found);
-    if (s == OK && !found) s = fail(ERROR_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
+    if (s == OK && !found)
+        s = fail(MERLIN_BAD_INPUT, "%s names %.80s, but there is no such file in %s", path, name, folder);
     for (int k = 0; k < i && s == OK; k++)
-        if (strcmp(c->name[k], found) == 0) s = fail(ERROR_INPUT, "%s names %.80s twice", path, found);
+        if (strcmp(c->name[k], found) == 0) s = fail(MERLIN_BAD_INPUT, "%s names %.80s twice", path, found);
     if (s == OK) s = pst_capture_set_name(c, (size_t)i, found);
     free(found);
     return s;
@@ -43,13 +44,13 @@ static status take_names(char *text, const char *path, const char *folder, pst_c
     for (char *rest = text; *rest;) {
         const char *name = take_line(&rest);
         if (!*name) continue;
-        if (strchr(name, '/')) return fail(ERROR_INPUT, "%s: \"%.80s\" is not a plain file name", path, name);
+        if (strchr(name, '/')) return fail(MERLIN_BAD_INPUT, "%s: \"%.80s\" is not a plain file name", path, name);
         status s = count < c->count ? set_name(path, folder, name, count, c) : OK;
         if (s != OK) return s;
         count++;
     }
     if (count == c->count) return OK;
-    return fail(ERROR_INPUT, "%s names %d picture%s, but light_directions.txt has %d light%s", path, count,
+    return fail(MERLIN_BAD_INPUT, "%s names %d picture%s, but light_directions.txt has %d light%s", path, count,
                 count == 1 ? "" : "s", c->count, c->count == 1 ? "" : "s");
 }
 
@@ -88,7 +89,7 @@ static status read_named(const char *directions, const char *names, const char *
 status pst_read_diligent(const char *folder, pst_capture *c)
 {
     char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
-    status s = directions && names ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = directions && names ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && file_exists(names))
         s = read_named(directions, names, folder, c);
     else if (s == OK)
@@ -101,8 +102,8 @@ status pst_read_diligent(const char *folder, pst_capture *c)
 static status take_normals(const number_array *a, const char *path, pst_capture *c)
 {
     if (a->size[0] != (size_t)c->height || a->size[1] != (size_t)c->width || a->size[2] != 3)
-        return fail(ERROR_INPUT, "%s holds %zu x %zu x %zu numbers; expected %d x %d x 3", path, a->size[0], a->size[1],
-                    a->size[2], c->height, c->width);
+        return fail(MERLIN_BAD_INPUT, "%s holds %zu x %zu x %zu numbers; expected %d x %d x 3", path, a->size[0],
+                    a->size[1], a->size[2], c->height, c->width);
     status s = img_new(&c->normal_true, c->width, c->height, 3);
     for (int y = 0; y < c->height && s == OK; y++)
         for (int x = 0; x < c->width; x++) {
@@ -118,7 +119,7 @@ static status take_normals(const number_array *a, const char *path, pst_capture 
 status pst_read_diligent_truth(const char *folder, pst_capture *c)
 {
     char *path = file_join(folder, "Normal_gt.mat");
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = OK;
     if (file_exists(path)) {
         number_array a;

@@ -29,10 +29,10 @@ static size_t count_numbers(const text_row *r)
 static status take_value(const char *path, int line, const text_word *w, float *out)
 {
     if (w->kind != TEXT_NUMBER)
-        return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", path, line,
+        return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number", path, line,
                     (int)(w->length < 40 ? w->length : 40), w->at);
     if (!(w->value > 0 && w->value < 1e12))
-        return fail(ERROR_INPUT, "%s:%d: an intensity must be above zero, not %g", path, line, w->value);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: an intensity must be above zero, not %g", path, line, w->value);
     *out = (float)w->value;
     return OK;
 }
@@ -55,12 +55,12 @@ static status find_light(const char *path, const text_row *r, size_t words, cons
 {
     char *found = NULL,
          *name = strndup(r->word[0].at, (size_t)(r->word[words - 1].at + r->word[words - 1].length - r->word[0].at));
-    status s = name ? pst_match_name(folder, name, &found) : fail(ERROR_MEMORY, "no memory for a name");
+    status s = name ? pst_match_name(folder, name, &found) : fail(MERLIN_NO_MEMORY, "no memory for a name");
     *light = -1;
     for (int i = 0; i < c->count && found; i++)
         if (strcmp(c->name[i], found) == 0) *light = i;
     if (s == OK && *light < 0)
-        s = fail(ERROR_INPUT, "%s:%d: no picture of %s has the name %.80s", path, r->line, folder, name);
+        s = fail(MERLIN_BAD_INPUT, "%s:%d: no picture of %s has the name %.80s", path, r->line, folder, name);
     free(found);
     free(name);
     return s;
@@ -76,7 +76,7 @@ static status take_row(const char *path, const text_row *r, const char *folder, 
         count = 1;
     }
     if (count != 1 && count != 3)
-        return fail(ERROR_INPUT, "%s:%d: expected one or three intensities, found %zu", path, r->line, count);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: expected one or three intensities, found %zu", path, r->line, count);
     status s = words ? find_light(path, r, words, folder, c, &next) : OK;
     if (s != OK || next >= c->count) return s;
     for (size_t k = 0; k < 3 && s == OK; k++)
@@ -114,7 +114,7 @@ static status list_rows(const text_rows *rows, const text_row ***out, size_t *co
 {
     *count = 0;
     *out = calloc(rows->count + 1, sizeof **out);
-    if (!*out) return fail(ERROR_MEMORY, "no memory for %zu lines", rows->count);
+    if (!*out) return fail(MERLIN_NO_MEMORY, "no memory for %zu lines", rows->count);
     for (size_t i = 0; i < rows->count; i++) {
         const text_row *r = &rows->row[i];
         if (r->comment || (*count == 0 && count_numbers(r) == 0)) continue;
@@ -134,7 +134,7 @@ static status take_rows(const char *path, const text_rows *rows, const char *fol
         for (size_t i = 0; i < count && s == OK; i++)
             s = take_row(path, row[i], folder, i < (size_t)c->count ? (int)i : c->count, c);
         if (s == OK && count != (size_t)c->count)
-            s = fail(ERROR_INPUT, "%s has %zu intensit%s for %d light%s", path, count, count == 1 ? "y" : "ies",
+            s = fail(MERLIN_BAD_INPUT, "%s has %zu intensit%s for %d light%s", path, count, count == 1 ? "y" : "ies",
                      c->count, c->count == 1 ? "" : "s");
     }
     free(row);
@@ -172,7 +172,7 @@ static status find_in(const char *folder, char **path)
             s = pst_find_named(folder, (const char *const[]){name, NULL}, &found);
             if (s != OK || !found) continue;
             if (*path)
-                s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", *path, found);
+                s = fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", *path, found);
             else
                 *path = found;
             if (s != OK) free(found);
@@ -183,7 +183,7 @@ static status find_in(const char *folder, char **path)
 status pst_find_intensities(const char *folder, const char *lights, char **path)
 {
     char *beside = lights ? file_folder_of(lights) : NULL;
-    status s = lights && !beside ? fail(ERROR_MEMORY, "no memory for a file name") : OK;
+    status s = lights && !beside ? fail(MERLIN_NO_MEMORY, "no memory for a file name") : OK;
     *path = NULL;
     if (s == OK) s = find_in(folder, path);
     if (s == OK && beside && !file_is_same(folder, beside)) s = find_in(beside, path);

@@ -21,7 +21,7 @@ static status find_lights(const char *folder, const char *asked, char **path)
     if (s != OK || found < 2) return s;
     free(*path);
     *path = NULL;
-    return fail(ERROR_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
+    return fail(MERLIN_BAD_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
 }
 
 /* Returns whether lights listed for --near are directions: as places all are as far from the camera, and some behind
@@ -56,7 +56,7 @@ static status find_frame(const char *path, const light_list *list, bool *about)
 {
     *about = has_some(list, 1);
     if (!*about || !has_some(list, -1) || !are_places(list)) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "%s has lights before and behind z = 0, so that its positions may be about the object or from the "
                 "camera; list them from the camera, as x y z a line in a .txt file",
                 path);
@@ -65,7 +65,7 @@ static status find_frame(const char *path, const light_list *list, bool *about)
 static status set_positions(const char *path, const light_list *list, pst_capture *c)
 {
     if (list->angles || (!list->about_object && are_directions(list)))
-        return fail(ERROR_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
+        return fail(MERLIN_BAD_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
     for (size_t i = 0; i < list->count; i++)
         c->light[i].position = list->at[i];
     return list->about_object ? find_frame(path, list, &c->about_object) : OK;
@@ -90,7 +90,7 @@ static status set_directions(const char *path, const light_list *list, pst_captu
     for (size_t i = 0; i < list->count; i++) {
         c->light[i].direction = light_list_direction(list, i);
         if (!(vec3_length(c->light[i].direction) > 0.5f))
-            return fail(ERROR_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
+            return fail(MERLIN_BAD_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
     }
     if (!are_places(list)) return OK;
     c->about_object = list->about_object && has_some(list, 1) && !has_some(list, -1);
@@ -116,7 +116,7 @@ status pst_read_strengths(const char *folder, const char *lights, bool listed, p
     if (!listed) return pst_read_intensities(folder, lights, c);
     status s = pst_find_intensities(folder, lights, &path);
     if (s == OK && path)
-        s = fail(ERROR_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
+        s = fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
     free(path);
     return s;
 }
@@ -143,7 +143,7 @@ status pst_read_plain(const char *folder, const pst_read_options *options, pst_c
     status s = find_lights(folder, options->lights, &lights);
     if (s == OK && !lights) s = pst_check_pictures(folder);
     if (s == OK && !lights)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
                     "holds them, or give --method uncalibrated, which finds them",
                     folder);

@@ -37,10 +37,10 @@ static status numbers_of(const text_row *r, const char *where, numbers *out)
     for (size_t i = 0; i < r->count; i++) {
         const text_word *w = &r->word[i];
         if (w->kind != TEXT_NUMBER)
-            return fail(ERROR_INPUT, "%s:%d: \"%.*s\" is not a finite number", where, r->line,
+            return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number", where, r->line,
                         (int)(w->length < 40 ? w->length : 40), w->at);
         if (i == NUMBERS_MOST)
-            return fail(ERROR_INPUT, "%s:%d: more than %d numbers on a line", where, r->line, NUMBERS_MOST);
+            return fail(MERLIN_BAD_INPUT, "%s:%d: more than %d numbers on a line", where, r->line, NUMBERS_MOST);
         out->value[out->count++] = w->value;
     }
     return OK;
@@ -50,7 +50,7 @@ static status check_range(const numbers *t)
 {
     for (int i = 0; i < t->count; i++)
         if (!(t->value[i] >= -LARGEST && t->value[i] <= LARGEST))
-            return fail(ERROR_INPUT, "%s:%d: %g is out of range", t->where, t->line, t->value[i]);
+            return fail(MERLIN_BAD_INPUT, "%s:%d: %g is out of range", t->where, t->line, t->value[i]);
     return OK;
 }
 
@@ -63,11 +63,11 @@ static status parse_camera(const numbers *t, luces_params *p)
 {
     const double *v = t->value;
     if (t->count != CAMERA_NUMBERS)
-        return fail(ERROR_INPUT, "%s:%d: expected N_img nrows ncols f x0 y0 mean_distance, found %d numbers", t->where,
-                    t->line, t->count);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: expected N_img nrows ncols f x0 y0 mean_distance, found %d numbers",
+                    t->where, t->line, t->count);
     if (!is_whole(v[0], 1, PST_MOST_PICTURES) || !is_whole(v[1], 1, IMAGE_MAX_SIDE) ||
         !is_whole(v[2], 1, IMAGE_MAX_SIDE) || !(v[3] > 1e-3) || !(v[6] > 1e-3))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "%s:%d: not a camera: %g images of %g rows and %g columns, focal length %g, distance %g", t->where,
                     t->line, v[0], v[1], v[2], v[3], v[6]);
     p->count = (int)v[0];
@@ -85,7 +85,7 @@ static status parse_light(const numbers *t, pst_light *out)
     const double *v = t->value;
     if (t->count < 8 || t->count > 11)
         return fail(
-            ERROR_INPUT,
+            MERLIN_BAD_INPUT,
             "%s:%d: expected a light's position, direction, intensity and attenuation (8 or 10 numbers), found %d",
             t->where, t->line, t->count);
     int colours = t->count < 10 ? 1 : 3;
@@ -93,11 +93,12 @@ static status parse_light(const numbers *t, pst_light *out)
     for (int k = 0; k < 3; k++) {
         out->intensity[k] = (float)v[6 + (colours == 3 ? k : 0)];
         if (!(out->intensity[k] > 0))
-            return fail(ERROR_INPUT, "%s:%d: the light's intensity must be above zero", t->where, t->line);
+            return fail(MERLIN_BAD_INPUT, "%s:%d: the light's intensity must be above zero", t->where, t->line);
     }
-    if (!(out->lobe >= 0)) return fail(ERROR_INPUT, "%s:%d: the attenuation must not be negative", t->where, t->line);
+    if (!(out->lobe >= 0))
+        return fail(MERLIN_BAD_INPUT, "%s:%d: the attenuation must not be negative", t->where, t->line);
     if (out->lobe > 0 && !(vec3_length(out->direction) > 0.5f))
-        return fail(ERROR_INPUT, "%s:%d: the light's direction has no length", t->where, t->line);
+        return fail(MERLIN_BAD_INPUT, "%s:%d: the light's direction has no length", t->where, t->line);
     return OK;
 }
 
@@ -106,7 +107,7 @@ static status take_camera(const numbers *t, luces_params *p)
     status s = parse_camera(t, p);
     if (s != OK) return s;
     p->light = calloc((size_t)p->count, sizeof *p->light);
-    return p->light ? OK : fail(ERROR_MEMORY, "no memory for %d lights", p->count);
+    return p->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d lights", p->count);
 }
 
 static status take_rows(const text_rows *rows, const char *where, luces_params *p)
@@ -124,9 +125,10 @@ static status take_rows(const text_rows *rows, const char *where, luces_params *
             s = parse_light(&t, &p->light[lights - 1]);
         if (s != OK) return s;
     }
-    if (!p->light) return fail(ERROR_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", where);
+    if (!p->light)
+        return fail(MERLIN_BAD_INPUT, "%s: no camera in it (N_img nrows ncols f x0 y0 mean_distance)", where);
     if (lights != p->count)
-        return fail(ERROR_INPUT, "%s: %d light%s for %d image%s", where, lights, lights == 1 ? "" : "s", p->count,
+        return fail(MERLIN_BAD_INPUT, "%s: %d light%s for %d image%s", where, lights, lights == 1 ? "" : "s", p->count,
                     p->count == 1 ? "" : "s");
     return OK;
 }
@@ -147,7 +149,7 @@ static status read_params(const char *folder, luces_params *out)
 {
     char *path = file_join(folder, "led_params.txt"), *text;
     size_t size;
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = file_read(path, TEXT_MOST, &text, &size);
     if (s == OK) {
         s = luces_parse(text, size, path, out);
@@ -164,7 +166,8 @@ static status refuse_mosaics(const char *folder)
     bool raw = whole && strcmp(strrchr(whole, '/'), "/RAW") == 0;
     free(whole);
     if (!raw) return OK;
-    return fail(ERROR_INPUT, "%s holds the sensor's mosaics, which are not read; give the folder above it", folder);
+    return fail(MERLIN_BAD_INPUT, "%s holds the sensor's mosaics, which are not read; give the folder above it",
+                folder);
 }
 
 status pst_read_luces(const char *folder, pst_capture *c)
@@ -210,8 +213,8 @@ static status read_normals(const char *path, pst_capture *c)
     if (s != OK) return s;
     const img *n = &c->normal_true;
     if (n->width != c->width || n->height != c->height || n->channels != 3)
-        return fail(ERROR_INPUT, "%s is %d x %d with %d channels; expected %d x %d with 3", path, n->width, n->height,
-                    n->channels, c->width, c->height);
+        return fail(MERLIN_BAD_INPUT, "%s is %d x %d with %d channels; expected %d x %d with 3", path, n->width,
+                    n->height, n->channels, c->width, c->height);
     decode_normals(c);
     return OK;
 }
@@ -222,7 +225,7 @@ static status read_depth(const char *path, pst_capture *c)
     status s = npz_read(path, "zgt", &a);
     if (s != OK) return s;
     if (a.size[0] != (size_t)c->height || a.size[1] != (size_t)c->width || a.size[2] != 1)
-        s = fail(ERROR_INPUT, "%s holds %zu x %zu depths; expected %d x %d", path, a.size[0], a.size[1], c->height,
+        s = fail(MERLIN_BAD_INPUT, "%s holds %zu x %zu depths; expected %d x %d", path, a.size[0], a.size[1], c->height,
                  c->width);
     if (s == OK) s = img_new(&c->depth_true, c->width, c->height, 1);
     for (int y = 0; y < c->height && s == OK; y++)
@@ -237,7 +240,7 @@ static status read_depth(const char *path, pst_capture *c)
 status pst_read_luces_truth(const char *folder, pst_capture *c)
 {
     char *normals = file_join(folder, "normals.png"), *depth = file_join(folder, "zgt.npz");
-    status s = normals && depth ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    status s = normals && depth ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && file_exists(normals)) s = read_normals(normals, c);
     if (s == OK && file_exists(depth)) s = read_depth(depth, c);
     free(normals);

@@ -18,7 +18,7 @@ status pst_find_mask(const char *folder, const char *asked, char **path)
     }
     if (asked) *path = strdup(asked);
     img_folder_free(&f);
-    return !asked || *path ? OK : fail(ERROR_MEMORY, "no memory for a file name");
+    return !asked || *path ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
 /* A surface's smallest piece is a triangle of three of a square's four pixels. */
@@ -45,19 +45,19 @@ static bool is_ever_lit(const pst_capture *c)
 static status check_mask(const char *path, pst_capture *c)
 {
     if (c->mask.width != c->width || c->mask.height != c->height)
-        return fail(ERROR_INPUT, "the mask %s is %d x %d pixels, but the pictures are %d x %d", path, c->mask.width,
-                    c->mask.height, c->width, c->height);
+        return fail(MERLIN_BAD_INPUT, "the mask %s is %d x %d pixels, but the pictures are %d x %d", path,
+                    c->mask.width, c->mask.height, c->width, c->height);
     size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0;
     for (size_t p = 0; p < pixels; p++)
         inside += (c->mask.data[p] = c->mask.data[p] >= 0.5f) > 0;
-    if (!inside) return fail(ERROR_INPUT, "the mask %s is black or transparent everywhere", path);
+    if (!inside) return fail(MERLIN_BAD_INPUT, "the mask %s is black or transparent everywhere", path);
     if (!holds_a_triangle(&c->mask))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "the mask %s shows %zu pixel%s, too few or too far apart for a surface: it must be white wherever "
                     "the object is",
                     path, inside, inside == 1 ? "" : "s");
     if (!is_ever_lit(c))
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "the pictures are black where the mask %s is white: is it theirs, and the object white in it?",
                     path);
     return OK;
@@ -72,10 +72,10 @@ static status find_mask(const char *folder, pst_capture *c)
         inside += c->mask.data[p] > 0;
     if (s != OK) return s;
     if (!inside)
-        return fail(ERROR_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask",
+        return fail(MERLIN_BAD_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask",
                     folder, (double)(100 * PST_BLACK));
     if (holds_a_triangle(&c->mask)) return OK;
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "no object is to be found in %s: %zu pixel%s stand%s out, too few for a surface; give a mask", folder,
                 inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
 }

@@ -64,13 +64,13 @@ static status read_values(span body, const element *sizes, const wanted *w)
 {
     uint64_t size[8];
     size_t rank = sizes->data.left / 4;
-    if (rank < 1 || rank > 8) return fail(ERROR_INPUT, "%s: %s has %zu dimensions", w->where, w->variable, rank);
+    if (rank < 1 || rank > 8) return fail(MERLIN_BAD_INPUT, "%s: %s has %zu dimensions", w->where, w->variable, rank);
     for (size_t i = 0; i < rank; i++)
         size[i] = little32(sizes->data.at + 4 * i);
     element real;
     number_type type;
     if (!take_element(&body, &real) || !number_type_of(real.type, &type))
-        return fail(ERROR_INPUT, "%s: the numbers of %s are damaged", w->where, w->variable);
+        return fail(MERLIN_BAD_INPUT, "%s: the numbers of %s are damaged", w->where, w->variable);
     w->out->column_major = true;
     status s = array_shape(w->out, size, rank, w->where);
     return s == OK ? array_fill(w->out, real.data.at, real.data.left, type, w->where) : s;
@@ -81,12 +81,12 @@ static status read_matrix(span body, wanted *w)
     element flags, sizes, name;
     if (!take_element(&body, &flags) || flags.type != MI_UINT32 || flags.data.left < 8 ||
         !take_element(&body, &sizes) || sizes.type != MI_INT32 || !take_element(&body, &name))
-        return fail(ERROR_INPUT, "%s: a variable's head is damaged", w->where);
+        return fail(MERLIN_BAD_INPUT, "%s: a variable's head is damaged", w->where);
     size_t length = strlen(w->variable);
     if (name.data.left != length || memcmp(name.data.at, w->variable, length) != 0) return OK;
     uint32_t class = flags.data.at[0];
     if (class < MX_DOUBLE || class > MX_UINT64)
-        return fail(ERROR_INPUT, "%s: %s is not an array of numbers", w->where, w->variable);
+        return fail(MERLIN_BAD_INPUT, "%s: %s is not an array of numbers", w->where, w->variable);
     w->found = true;
     return read_values(body, &sizes, w);
 }
@@ -101,17 +101,17 @@ static status read_compressed(span packed, wanted *w)
 {
     unsigned char tag[8];
     if (!array_inflate(packed.at, packed.left, 15, tag, sizeof tag))
-        return fail(ERROR_INPUT, "%s: a compressed variable is damaged", w->where);
+        return fail(MERLIN_BAD_INPUT, "%s: a compressed variable is damaged", w->where);
     size_t size = little32(tag + 4);
     if (little32(tag) != MI_MATRIX) return OK;
     if (!possible_size(size, packed.left))
-        return fail(ERROR_INPUT, "%s: a compressed variable says it has %zu bytes; the file is damaged", w->where,
+        return fail(MERLIN_BAD_INPUT, "%s: a compressed variable says it has %zu bytes; the file is damaged", w->where,
                     size);
     unsigned char *bytes = malloc(size + 8);
-    if (!bytes) return fail(ERROR_MEMORY, "no memory for %zu bytes of %s", size, w->where);
+    if (!bytes) return fail(MERLIN_NO_MEMORY, "no memory for %zu bytes of %s", size, w->where);
     status s = array_inflate(packed.at, packed.left, 15, bytes, size + 8)
                    ? read_matrix((span){bytes + 8, size}, w)
-                   : fail(ERROR_INPUT, "%s: a compressed variable is damaged", w->where);
+                   : fail(MERLIN_BAD_INPUT, "%s: a compressed variable is damaged", w->where);
     free(bytes);
     return s;
 }
@@ -121,13 +121,13 @@ static status read_elements(span rest, wanted *w)
     element e;
     while (!w->found && rest.left >= 8) {
         if (!take_element(&rest, &e))
-            return fail(ERROR_INPUT, "%s: the file ends inside a variable; it is damaged", w->where);
+            return fail(MERLIN_BAD_INPUT, "%s: the file ends inside a variable; it is damaged", w->where);
         status s = OK;
         if (e.type == MI_COMPRESSED) s = read_compressed(e.data, w);
         if (e.type == MI_MATRIX) s = read_matrix(e.data, w);
         if (s != OK) return s;
     }
-    return w->found ? OK : fail(ERROR_INPUT, "%s has no variable %s", w->where, w->variable);
+    return w->found ? OK : fail(MERLIN_BAD_INPUT, "%s has no variable %s", w->where, w->variable);
 }
 
 status mat_parse(const char *bytes, size_t size, const char *where, const char *variable, number_array *out)
@@ -135,9 +135,9 @@ status mat_parse(const char *bytes, size_t size, const char *where, const char *
     *out = (number_array){0};
     const unsigned char *at = (const unsigned char *)bytes;
     if (size < HEADER_SIZE || memcmp(bytes, "MATLAB 5.0", 10) != 0)
-        return fail(ERROR_INPUT, "%s is not a MATLAB 5 file; in MATLAB: save(..., '-v6') or '-v7'", where);
+        return fail(MERLIN_BAD_INPUT, "%s is not a MATLAB 5 file; in MATLAB: save(..., '-v6') or '-v7'", where);
     if (memcmp(bytes + 126, "IM", 2) != 0)
-        return fail(ERROR_INPUT, "%s was written on a big-endian machine, which is not read here", where);
+        return fail(MERLIN_BAD_INPUT, "%s was written on a big-endian machine, which is not read here", where);
     wanted w = {where, variable, out, false};
     status s = read_elements((span){at + HEADER_SIZE, size - HEADER_SIZE}, &w);
     if (s != OK) array_free(out);

@@ -22,7 +22,7 @@ typedef struct member {
 
 static status damaged(const zip *z, const char *what)
 {
-    return fail(ERROR_INPUT, "%s: %s is damaged", z->where, what);
+    return fail(MERLIN_BAD_INPUT, "%s: %s is damaged", z->where, what);
 }
 
 /* The end record, which a comment may follow; NULL if there is none. */
@@ -45,7 +45,7 @@ static bool is_named(const unsigned char *name, size_t length, const char *wante
 static status find_member(const zip *z, const char *name, member *out)
 {
     const unsigned char *end = find_end(z);
-    if (!end) return fail(ERROR_INPUT, "%s is not an .npz file, or it is cut off", z->where);
+    if (!end) return fail(MERLIN_BAD_INPUT, "%s is not an .npz file, or it is cut off", z->where);
     uint32_t count = little16(end + 10);
     size_t at = little32(end + 16);
     for (uint32_t i = 0; i < count; i++) {
@@ -59,7 +59,7 @@ static status find_member(const zip *z, const char *name, member *out)
         }
         at += whole;
     }
-    return fail(ERROR_INPUT, "%s has no array %s", z->where, name);
+    return fail(MERLIN_BAD_INPUT, "%s has no array %s", z->where, name);
 }
 
 static status unpack(const zip *z, const member *m, unsigned char **out)
@@ -71,12 +71,12 @@ static status unpack(const zip *z, const member *m, unsigned char **out)
     if (m->whole > ARRAY_MOST_BYTES || m->whole / 1032 > m->packed) return damaged(z, "an entry's size");
     if (m->method == STORED && m->packed != m->whole) return damaged(z, "an entry's size");
     unsigned char *bytes = malloc((size_t)m->whole + 1);
-    if (!bytes) return fail(ERROR_MEMORY, "no memory for %u bytes of %s", m->whole, z->where);
+    if (!bytes) return fail(MERLIN_NO_MEMORY, "no memory for %u bytes of %s", m->whole, z->where);
     status s = OK;
     if (m->method == STORED)
         memcpy(bytes, local + head, m->whole);
     else if (m->method != DEFLATED)
-        s = fail(ERROR_INPUT, "%s: packed by method %u; only deflate is read", z->where, m->method);
+        s = fail(MERLIN_BAD_INPUT, "%s: packed by method %u; only deflate is read", z->where, m->method);
     else if (!array_inflate(local + head, m->packed, -15, bytes, m->whole))
         s = damaged(z, "packed data");
     if (s == OK)
@@ -128,7 +128,8 @@ static status parse_header(const zip *z, const char *header, number_array *out, 
     const char *order = value_of(header, "'fortran_order'");
     if (!parse_type(value_of(header, "'descr'"), type) || !order ||
         !parse_shape(value_of(header, "'shape'"), size, &rank))
-        return fail(ERROR_INPUT, "%s: the array is not of little-endian numbers, or its header is damaged", z->where);
+        return fail(MERLIN_BAD_INPUT, "%s: the array is not of little-endian numbers, or its header is damaged",
+                    z->where);
     out->column_major = strncmp(order, "True", 4) == 0;
     return array_shape(out, size, rank, z->where);
 }
@@ -139,7 +140,7 @@ static status parse_npy(const zip *z, const unsigned char *bytes, size_t size, n
     size_t start = bytes[6] >= 2 ? 12 : 10, length = bytes[6] >= 2 ? little32(bytes + 8) : little16(bytes + 8);
     if (length > size - start) return damaged(z, "the array's head");
     char *header = strndup((const char *)bytes + start, length);
-    if (!header) return fail(ERROR_MEMORY, "no memory for a header of %zu bytes", length);
+    if (!header) return fail(MERLIN_NO_MEMORY, "no memory for a header of %zu bytes", length);
     number_type type;
     status s = parse_header(z, header, out, &type);
     free(header);

@@ -50,7 +50,7 @@ static void look_at_first(const reading *r, pst_capture *c)
 static status read_one(const reading *r, const char *name, img *out, int *bits)
 {
     char *path = file_join(r->folder, name);
-    if (!path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = img_read_samples(path, r->decode, out, bits);
     free(path);
     return s;
@@ -65,13 +65,13 @@ static const char *kind_of(int bits)
 static status check_shape(const reading *r, const pst_capture *c, const char *name, const img *picture, int bits)
 {
     if ((bits == 32) != (r->bits == 32))
-        return fail(ERROR_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
+        return fail(MERLIN_BAD_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
                     kind_of(bits), c->name[0], kind_of(r->bits));
     if (picture->width != c->width || picture->height != c->height)
-        return fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
+        return fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
                     r->folder, name, picture->width, picture->height, c->name[0], c->width, c->height);
     if (picture->channels != c->channels)
-        return fail(ERROR_INPUT, "%s/%s is %s, but %s is %s; all pictures must be of one kind", r->folder, name,
+        return fail(MERLIN_BAD_INPUT, "%s/%s is %s, but %s is %s; all pictures must be of one kind", r->folder, name,
                     picture->channels == 1 ? "grey" : "in colour", c->name[0], c->channels == 1 ? "grey" : "in colour");
     return OK;
 }
@@ -94,7 +94,8 @@ static status store(const reading *r, const img *picture, uint16_t **out)
 {
     size_t count = img_value_count(picture);
     uint16_t *codes = malloc(count * sizeof *codes);
-    if (!codes) return fail(ERROR_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
+    if (!codes)
+        return fail(MERLIN_NO_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
     memory_prefer_large_pages(codes, count * sizeof *codes);
     const float *ambient = r->ambient.data;
     for (size_t i = 0; i < count; i++) {
@@ -125,7 +126,7 @@ static status for_pictures(const reading *r, status (*work)(const reading *r, in
     for (int i = 0; i < r->into->count && s == OK; i += READERS) {
         watch_tell(r->watch, "reading", (double)i / r->into->count);
         int left = r->into->count - i;
-        if (watch_stops(r->watch)) return fail(ERROR_STOPPED, "stopped");
+        if (watch_stops(r->watch)) return fail(MERLIN_STOPPED, "stopped");
         s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
     }
     return s;
@@ -148,7 +149,7 @@ static status measure_scale(reading *r)
 {
     float most = 0;
     r->brightest = calloc((size_t)r->into->count, sizeof *r->brightest);
-    if (!r->brightest) return fail(ERROR_MEMORY, "no memory for %d pictures", r->into->count);
+    if (!r->brightest) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", r->into->count);
     status s = for_pictures(r, find_brightest);
     for (int i = 0; i < r->into->count; i++)
         most = fmaxf(most, r->brightest[i]);
@@ -163,7 +164,7 @@ static status read_first_shape(reading *r, pst_capture *c)
     status s = read_one(r, c->name[0], r->first, &r->bits);
     if (s != OK) return s;
     if (c->width && (c->width != first->width || c->height != first->height))
-        s = fail(ERROR_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
+        s = fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
                  first->width, first->height, c->width, c->height);
     look_at_first(r, c);
     c->width = first->width;
@@ -175,26 +176,27 @@ static status read_first_shape(reading *r, pst_capture *c)
 static status read_ambient(reading *r, const char *asked, const pst_capture *c)
 {
     char *path = asked ? strdup(asked) : NULL;
-    if (asked && !path) return fail(ERROR_MEMORY, "no memory for a file name");
+    if (asked && !path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = asked ? OK : pst_find_ambient(r->folder, c->name[0], &path);
     int bits;
     if (path) {
         s = img_read_samples(path, r->decode, &r->ambient, &bits);
         if (s == OK &&
             (r->ambient.width != c->width || r->ambient.height != c->height || r->ambient.channels != c->channels))
-            s = fail(ERROR_INPUT,
+            s = fail(MERLIN_BAD_INPUT,
                      "the ambient picture %s is %d x %d with %d channels, but the pictures are %d x %d with %d", path,
                      r->ambient.width, r->ambient.height, r->ambient.channels, c->width, c->height, c->channels);
         if (s == OK && (bits == 32) != (r->bits == 32))
-            s = fail(ERROR_INPUT, "the ambient picture %s has %s, but the pictures have %s; give one of their kind",
-                     path, kind_of(bits), kind_of(r->bits));
+            s = fail(MERLIN_BAD_INPUT,
+                     "the ambient picture %s has %s, but the pictures have %s; give one of their kind", path,
+                     kind_of(bits), kind_of(r->bits));
         for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
             r->ambient.data[i] *= r->scale;
     }
     r->ambient_path = path;
     if (s != OK || !path) return s;
     r->beside = calloc((size_t)c->count, sizeof *r->beside);
-    return r->beside ? OK : fail(ERROR_MEMORY, "no memory for %d sums", c->count);
+    return r->beside ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d sums", c->count);
 }
 
 /* Returns the first picture that has the ambient picture's values, NULL if none has; dark ones, which are all alike, do
@@ -218,7 +220,7 @@ static status check_ambient(const reading *r, pst_capture *c)
     }
     if (below > all * lit)
         return fail(
-            ERROR_INPUT,
+            MERLIN_BAD_INPUT,
             "the ambient picture %s is brighter than all pictures: it must show the object in the light that is "
             "there when no lamp is on",
             r->ambient_path);

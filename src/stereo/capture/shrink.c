@@ -96,11 +96,11 @@ static status allocate(const pst_capture *c, const pst_blocks *b, pst_capture *o
     out->camera.center_y = (c->camera.center_y - (float)b->y) / (float)b->factor;
     out->light = malloc(count * sizeof *out->light);
     out->picture = calloc(count, sizeof *out->picture);
-    if (!out->light || !out->picture) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+    if (!out->light || !out->picture) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
     memcpy(out->light, c->light, count * sizeof *out->light);
     for (; (size_t)out->count < count; out->count++) {
         out->picture[out->count] = calloc(samples, sizeof **out->picture);
-        if (!out->picture[out->count]) return fail(ERROR_MEMORY, "no memory for %zu small pictures", count);
+        if (!out->picture[out->count]) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
     }
     return img_new(&out->mask, out->width, out->height, 1);
 }
@@ -148,7 +148,7 @@ status pst_shrink_to(const pst_capture *c, int pixels, int most_pictures, int pi
     for (int k = 0; k < some.count; k++)
         picture[k] = (int)((long)k * c->count / some.count);
     status s = some.picture && some.light ? shrink_some(c, pixels, picture, &some, out)
-                                          : fail(ERROR_MEMORY, "no memory for %d pictures", some.count);
+                                          : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", some.count);
     free(some.picture);
     free(some.light);
     return s;

@@ -105,7 +105,7 @@ status pst_doubt_copies(const pst_capture *c, warnings *out)
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
     int copies = 0, first = 0, second = 0;
     uint64_t *hash = malloc((size_t)c->count * sizeof *hash);
-    if (!hash) return fail(ERROR_MEMORY, "no memory for %d pictures' sums", c->count);
+    if (!hash) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures' sums", c->count);
     for (int k = 0; k < c->count; k++) {
         hash[k] = hash_of(c->picture[k], values);
         int j = 0;

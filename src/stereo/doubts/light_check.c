@@ -64,7 +64,7 @@ static status alphabetical(const pst_capture *c, int *place, bool *differs)
 {
     *differs = false;
     char ***sorted = malloc((size_t)c->count * sizeof *sorted);
-    if (!sorted) return fail(ERROR_MEMORY, "no memory for %d names", c->count);
+    if (!sorted) return fail(MERLIN_NO_MEMORY, "no memory for %d names", c->count);
     bool named = c->name != NULL;
     for (int k = 0; k < c->count; k++) {
         named = named && c->name[k];
@@ -83,7 +83,8 @@ static status try_alphabet(check *c)
 {
     int count = c->fit.total, *place = malloc((size_t)count * sizeof *place);
     bool differs = false;
-    status s = place ? alphabetical(c->capture, place, &differs) : fail(ERROR_MEMORY, "no memory for %d names", count);
+    status s =
+        place ? alphabetical(c->capture, place, &differs) : fail(MERLIN_NO_MEMORY, "no memory for %d names", count);
     if (s == OK && differs) {
         for (int k = 0; k < count; k++)
             c->trial[k] = c->fit.light[place[k]];
@@ -180,7 +181,7 @@ static status check_axes(check *c, bool *doubt)
     pst_light_turn turn;
     char words[WORDS];
     vec3 *b = malloc((size_t)c->fit.small.width * (size_t)c->fit.small.height * sizeof *b);
-    if (!b) return fail(ERROR_MEMORY, "no memory for normals");
+    if (!b) return fail(MERLIN_NO_MEMORY, "no memory for normals");
     pst_light_fit_surface(&c->fit, c->light, b);
     status s = pst_light_turn_find(&c->fit, b, &turn);
     free(b);
@@ -225,7 +226,7 @@ static status check_all(check *c, warnings *out)
     size_t bytes = (size_t)c->fit.total * sizeof *c->light;
     c->light = malloc(bytes);
     c->trial = malloc(bytes);
-    if (!c->light || !c->trial) return fail(ERROR_MEMORY, "no memory for %d lights", c->fit.total);
+    if (!c->light || !c->trial) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->fit.total);
     status s = check_arrangement(c);
     bool doubt = c->remedy[0] != 0;
     bool near = c->capture->lighting == PST_NEAR;

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "stereo/algebra/dense.h"
-#include "stereo/fit/pixel_fit.h"
 #include "stereo/capture/shrink.h"
+#include "stereo/fit/pixel_fit.h"
 
 /* Pixels that tell of the lights, up to four times as many. */
 enum { SMALL = 3000 };
@@ -68,7 +68,7 @@ static status list_lights(const pst_capture *c, const pst_surface *s, pst_light_
     f->total = c->count;
     f->light = malloc((size_t)c->count * sizeof *f->light);
     f->strength = malloc((size_t)c->count * sizeof *f->strength);
-    if (!f->light || !f->strength) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    if (!f->light || !f->strength) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     float most = 0;
     for (int k = 0; k < c->count; k++) {
         vec3 toward = c->lighting == PST_NEAR ? near_light(&light[k], middle) : light[k].direction;
@@ -115,7 +115,7 @@ static status sum_products(pst_light_fit *f)
     size_t n = (size_t)f->count, pixels = (size_t)f->small.width * (size_t)f->small.height;
     float value[PST_CHECKED_PICTURES];
     f->gram = calloc(n * n, sizeof *f->gram);
-    if (!f->gram) return fail(ERROR_MEMORY, "no memory for %zu pictures' products", n);
+    if (!f->gram) return fail(MERLIN_NO_MEMORY, "no memory for %zu pictures' products", n);
     for (size_t i = 0; i < pixels; i++) {
         double length = values_at(f, i, value);
         if (!(length > 0)) continue;
@@ -128,7 +128,7 @@ static status sum_products(pst_light_fit *f)
         for (size_t k = 0; k < j; k++)
             f->gram[k * n + j] = f->gram[j * n + k];
     }
-    return f->energy > 0 ? OK : fail(ERROR_INPUT, "the pictures are black where the object is");
+    return f->energy > 0 ? OK : fail(MERLIN_BAD_INPUT, "the pictures are black where the object is");
 }
 
 status pst_light_fit_new(const pst_capture *c, const pst_surface *s, pst_light_fit *out)

@@ -84,7 +84,7 @@ static status list_places(const pst_light_fit *f, const vec3 *b, places *out)
 {
     img balloon, height;
     *out = (places){malloc((size_t)f->small.width * (size_t)f->small.height * sizeof *out->at), 0, 0, 0};
-    if (!out->at) return fail(ERROR_MEMORY, "no memory for %d x %d normals", f->small.width, f->small.height);
+    if (!out->at) return fail(MERLIN_NO_MEMORY, "no memory for %d x %d normals", f->small.width, f->small.height);
     status s = pst_inflate(&f->small.mask, &balloon, &height);
     if (s != OK) return s;
     for (int y = 0; y < f->small.height; y++)

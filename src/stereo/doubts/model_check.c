@@ -35,7 +35,7 @@ static status typical_residual(const pst_capture *c, const pst_surface *s, doubl
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
     float *all = malloc((pixels + 1) * sizeof *all);
-    if (!all) return fail(ERROR_MEMORY, "no memory for %zu residuals", pixels);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu residuals", pixels);
     for (size_t i = 0; i < pixels; i++)
         if (c->mask.data[i] > 0.5f) all[count++] = s->residual.data[i];
     qsort(all, count, sizeof *all, by_value);
@@ -50,7 +50,7 @@ static status residual_of(const pst_capture *c, pst_method method, double *left)
     pst_surface found;
     status s = pst_solve(c, &(pst_options){.method = method}, &found);
     *left = HUGE_VAL;
-    if (s != OK) return s == ERROR_INPUT ? OK : s;
+    if (s != OK) return s == MERLIN_BAD_INPUT ? OK : s;
     if (found.residual.data) s = typical_residual(c, &found, left);
     pst_surface_free(&found);
     return s;

@@ -27,7 +27,7 @@ status pst_scale_albedo(img *albedo, const img *mask, float *scale)
 {
     *scale = 1;
     float *sample = malloc((size_t)albedo->channels * MOST_PIXELS * sizeof *sample);
-    if (!sample) return fail(ERROR_MEMORY, "no memory for the scale of an albedo");
+    if (!sample) return fail(MERLIN_NO_MEMORY, "no memory for the scale of an albedo");
     size_t count = sample_values(albedo, mask, sample);
     qsort(sample, count, sizeof *sample, pst_ascending);
     float bright = count ? sample[count * 99 / 100] : 0;

@@ -11,7 +11,7 @@
 
 /* Multiplies the albedo so that the 99th percentile of the object's values, all channels together, is 0.9, and clips it
  * to [0, 1]; what is not finite becomes 0. mask: 1 channel, above 0.5 on the object. *scale: the factor, 1 for an
- * albedo that is black. ERROR_MEMORY. */
+ * albedo that is black. MERLIN_NO_MEMORY. */
 status pst_scale_albedo(img *albedo, const img *mask, float *scale);
 
 #endif

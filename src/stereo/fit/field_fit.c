@@ -7,8 +7,8 @@
 
 #include "base/inline.h"
 #include "base/parallel.h"
-#include "stereo/fit/field_neighbours.h"
 #include "stereo/algebra/matrix3.h"
+#include "stereo/fit/field_neighbours.h"
 #include "stereo/fit/near_lights.h"
 #include "stereo/fit/pixel_fit.h"
 
@@ -301,7 +301,7 @@ static status run(fit_job *job)
     int count = f->problem->capture->count;
     size_t padded = (size_t)pst_padded(count);
     float *memory = calloc(3 * padded + f->count, sizeof *memory);
-    if (!memory) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    if (!memory) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
     job->x = memory;
     job->y = job->x + padded;
     job->z = job->y + padded;
@@ -316,7 +316,7 @@ static status run(fit_job *job)
     for (size_t i = 0; i < f->count; i++)
         job->total += (double)job->cost[i];
     free(memory);
-    return stopped(f) ? fail(ERROR_STOPPED, "stopped") : OK;
+    return stopped(f) ? fail(MERLIN_STOPPED, "stopped") : OK;
 }
 
 status pst_field_fit(const pst_field *f, double *cost)
@@ -397,7 +397,7 @@ status pst_field_spread(const pst_field *f, int sweeps)
     pst_shading *next = malloc(f->count * sizeof *next);
     int32_t *slot = pst_field_slots(f);
     bool *news = malloc(f->count * sizeof *news);
-    status s = next && slot && news ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    status s = next && slot && news ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
     for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
         s = run(&(fit_job){.field = f, .task = SPREAD, .around = {f, slot, k > 0 ? news : NULL}, .next = next});
@@ -421,7 +421,7 @@ status pst_field_mend(const pst_field *f, int sweeps)
 {
     pst_shading *next = malloc(f->count * sizeof *next);
     int32_t *slot = pst_field_slots(f);
-    status s = next && slot ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f->count);
+    status s = next && slot ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
     for (int k = 0; s == OK && k < sweeps; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
         s = run(&(fit_job){.field = f,
@@ -441,7 +441,7 @@ status pst_field_sample(const pst_problem *p, size_t count, uint32_t **pixel, si
     size_t n = count < p->pixel_count ? count : p->pixel_count;
     *found = 0;
     *pixel = malloc(n * sizeof **pixel);
-    if (!*pixel) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", n);
+    if (!*pixel) return fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", n);
     for (size_t i = 0; i < n; i++)
         (*pixel)[i] = p->pixel[(2 * i + 1) * p->pixel_count / (2 * n)];
     *found = n;

@@ -184,7 +184,7 @@ status pst_lobe_choose(const pst_field *sample, pst_lobe *lobe)
     choice c = {.field = *sample, .best = *lobe, .cost = HUGE_VAL};
     c.field.lobe = &c.trial;
     c.kept = calloc(2 * sample->count, sizeof *c.kept);
-    if (!c.kept) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", sample->count);
+    if (!c.kept) return fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", sample->count);
     c.field.shading = c.kept + sample->count;
     choose(&c);
     free(c.kept);
@@ -232,7 +232,7 @@ status pst_lobe_choose_second(const pst_field *sample, const pst_lobe *lobe, pst
     *worth = false;
     if (sample->problem->capture->count < PST_MANY_LIGHTS || lobe->tail == 0) return OK;
     pst_shading *shading = calloc(2 * sample->count, sizeof *shading);
-    if (!shading) return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", sample->count);
+    if (!shading) return fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", sample->count);
     status s = save_most(sample, lobe, shading, second, worth);
     free(shading);
     return s;

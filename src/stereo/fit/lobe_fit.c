@@ -6,9 +6,9 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "stereo/algebra/matrix3.h"
 #include "stereo/fit/lobe_descent.h"
 #include "stereo/fit/lobe_model.h"
-#include "stereo/algebra/matrix3.h"
 
 /* Parts that the observations are held out in. */
 enum { PARTS = 4 };

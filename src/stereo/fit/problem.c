@@ -18,13 +18,15 @@ static void add_square(vec3 v, const double about[3], double m[9])
 
 status pst_check_directions(const pst_light *light, int count)
 {
-    if (count < 3) return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
+    if (count < 3)
+        return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
     double m[9] = {0}, eigenvalue[6];
     for (int i = 0; i < count; i++)
         add_square(light[i].direction, (const double[3]){0}, m);
-    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light directions are not numbers");
+    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(MERLIN_BAD_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
-        return fail(ERROR_INPUT, "the %d light directions lie in one plane; light the object from a third side", count);
+        return fail(MERLIN_BAD_INPUT, "the %d light directions lie in one plane; light the object from a third side",
+                    count);
     return OK;
 }
 
@@ -39,9 +41,10 @@ status pst_check_positions(const pst_light *light, int count)
     }
     for (int i = 0; i < count; i++)
         add_square(light[i].position, mean, m);
-    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(ERROR_INPUT, "the light positions are not numbers");
+    if (!dense_eigen(m, 3, false, eigenvalue)) return fail(MERLIN_BAD_INPUT, "the light positions are not numbers");
     if (!(eigenvalue[1] > flattest_lights * flattest_lights * eigenvalue[2]))
-        return fail(ERROR_INPUT, "the %d light positions lie on one line; light the object from a third side", count);
+        return fail(MERLIN_BAD_INPUT, "the %d light positions lie on one line; light the object from a third side",
+                    count);
     return OK;
 }
 
@@ -49,7 +52,7 @@ status pst_list_pixels(const pst_capture *c, pst_problem *p)
 {
     size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     p->pixel = malloc(size * sizeof *p->pixel);
-    if (!p->pixel) return fail(ERROR_MEMORY, "no memory for a list of %zu pixels", size);
+    if (!p->pixel) return fail(MERLIN_NO_MEMORY, "no memory for a list of %zu pixels", size);
     for (size_t i = 0; i < size; i++)
         if (c->mask.data[i] > 0.5f) p->pixel[n++] = (uint32_t)i;
     p->pixel_count = n;

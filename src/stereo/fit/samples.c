@@ -30,7 +30,7 @@ status pst_samples_new(const pst_problem *p, size_t count, pst_samples *out)
     out->b = calloc(out->count, sizeof *out->b);
     if (!out->value || !out->b) {
         pst_samples_free(out);
-        return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", count);
+        return fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", count);
     }
     out->usable = out->value + floats;
     out->weight = out->usable + floats;
@@ -88,7 +88,7 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
 {
     size_t n = (size_t)m->lights;
     double *gram = calloc(n * n + 2 * n, sizeof *gram);
-    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    if (!gram) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", n);
     fill_gram(m, gram, lit);
     double *eigenvalue = gram + n * n;
     bool solved = dense_eigen(gram, m->lights, true, eigenvalue);
@@ -98,7 +98,7 @@ status pst_samples_basis(const pst_samples *m, double *basis, size_t *lit)
             basis[3 * j + k] = gram[j * n + n - 1 - k] * sqrt(eigenvalue[n - 1 - k] > 0 ? eigenvalue[n - 1 - k] : 0);
     free(gram);
     if (!solved || !(smallest > above_rounding * largest))
-        return fail(ERROR_INPUT, "the pictures do not differ enough to tell the lights from the surface");
+        return fail(MERLIN_BAD_INPUT, "the pictures do not differ enough to tell the lights from the surface");
     return OK;
 }
 
@@ -106,7 +106,7 @@ status pst_samples_differ(const pst_samples *m, bool *differ)
 {
     size_t n = (size_t)m->lights, lit;
     double *gram = calloc(n * n + 2 * n, sizeof *gram);
-    if (!gram) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    if (!gram) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", n);
     fill_gram(m, gram, &lit);
     double *eigenvalue = gram + n * n;
     bool solved = dense_eigen(gram, m->lights, false, eigenvalue);

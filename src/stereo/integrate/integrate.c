@@ -127,7 +127,7 @@ static status center(const poisson_grid *g, const int *held, double *x)
     bool complete = sum && count;
     free(sum);
     free(count);
-    return complete ? OK : fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    return complete ? OK : fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
 }
 
 /* ---- the whole ---- */
@@ -150,7 +150,7 @@ static void write_depth(const integration_steps *s, const int *held, const doubl
 static status solve(integration_steps *s, const pst_integration *o, double *x, img *depth)
 {
     int *held = calloc((size_t)s->grid.pieces, sizeof *held);
-    if (!held) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", s->grid.count);
+    if (!held) return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", s->grid.count);
     anchor(s, o, held);
     weigh_by_facing(s);
     poisson_solver *solver;
@@ -169,18 +169,18 @@ static status solve(integration_steps *s, const pst_integration *o, double *x, i
 
 static status check(const img *normal, const img *mask, const pinhole *camera, const pst_integration *o)
 {
-    if (normal->channels != 3) return fail(ERROR_USAGE, "normals have 3 channels, not %d", normal->channels);
+    if (normal->channels != 3) return fail(MERLIN_WRONG_USE, "normals have 3 channels, not %d", normal->channels);
     if (mask->width != normal->width || mask->height != normal->height)
-        return fail(ERROR_USAGE, "the mask is %d × %d, the normals are %d × %d", mask->width, mask->height,
+        return fail(MERLIN_WRONG_USE, "the mask is %d × %d, the normals are %d × %d", mask->width, mask->height,
                     normal->width, normal->height);
     if (has_prior(o) && (o->prior->width != normal->width || o->prior->height != normal->height))
-        return fail(ERROR_USAGE, "the depth to start from is %d × %d, the normals are %d × %d", o->prior->width,
+        return fail(MERLIN_WRONG_USE, "the depth to start from is %d × %d, the normals are %d × %d", o->prior->width,
                     o->prior->height, normal->width, normal->height);
     if (has_prior(o) && o->trust && (o->trust->width != normal->width || o->trust->height != normal->height))
-        return fail(ERROR_USAGE, "the trust in depths is %d × %d, the normals are %d × %d", o->trust->width,
+        return fail(MERLIN_WRONG_USE, "the trust in depths is %d × %d, the normals are %d × %d", o->trust->width,
                     o->trust->height, normal->width, normal->height);
     if (camera->perspective && !(camera->focal > 0))
-        return fail(ERROR_USAGE, "perspective integration needs a focal length in pixels");
+        return fail(MERLIN_WRONG_USE, "perspective integration needs a focal length in pixels");
     return OK;
 }
 
@@ -194,7 +194,8 @@ status pst_integrate(const img *normal, const img *mask, const pinhole *camera, 
     result = poisson_grid_new(mask, &s.grid);
     if (result != OK) return result;
     double *x = memory_new((size_t)s.grid.count * sizeof *x);
-    result = x ? solve(&s, options, x, depth) : fail(ERROR_MEMORY, "no memory to integrate %d pixels", s.grid.count);
+    result =
+        x ? solve(&s, options, x, depth) : fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", s.grid.count);
     memory_free(x);
     poisson_grid_free(&s.grid);
     return result;

@@ -19,7 +19,7 @@ typedef struct pst_integration {
     const img *trust; /* 1 channel, a pixel's factor on the prior's weight; NULL: 1 everywhere */
     bool from_prior;  /* preserve_edges starts from the prior's steps instead of from least squares, which spreads them:
                        * a few solutions instead of fifty. Needs a prior at every pixel of the mask */
-    const watch *watch; /* told of the solutions, "integrating"; ERROR_STOPPED where it says so; may be NULL */
+    const watch *watch; /* told of the solutions, "integrating"; MERLIN_STOPPED where it says so; may be NULL */
 } pst_integration;
 
 /* depth: 1 channel, distance along -z, zero outside the mask. Orthographic: in pixels, mean 0 shifted to be positive;

@@ -43,7 +43,7 @@ static status pairs_new(const poisson_grid *g, pairs *p)
         complete &= p->base[k] && p->misfit[k] && p->along[k];
         if (complete) memcpy(p->base[k], g->weight[k], bytes);
     }
-    return complete ? OK : fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    return complete ? OK : fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
 }
 
 static void find_misfits(const integration_steps *s, const double *x, int k, pairs *p)
@@ -97,7 +97,7 @@ status integrate_edges(integration_steps *s, poisson_solver *solver, bool steppe
     double rounds = ceil(log(LAST_SHARPNESS / first) / log(growth)), round = 0;
     for (double sharpness = first; result == OK && sharpness < LAST_SHARPNESS; sharpness *= growth) {
         watch_tell(s->watch, "integrating", fmin(round++ / rounds, 1));
-        if (watch_stops(s->watch)) result = fail(ERROR_STOPPED, "stopped");
+        if (watch_stops(s->watch)) result = fail(MERLIN_STOPPED, "stopped");
         for (int k = 0; k < 2; k++) {
             find_misfits(s, x, k, &p);
             reweigh(&s->grid, &p, k, sharpness);

@@ -182,7 +182,7 @@ static int add_up(const int *count, int n, int *before)
 
 static status no_memory(const coarsening *c)
 {
-    return fail(ERROR_MEMORY, "no memory to integrate %d pixels", c->fine->count);
+    return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", c->fine->count);
 }
 
 static status join_nodes(coarsening *c)

@@ -46,8 +46,8 @@ struct poisson_factor {
 static status refuse(const poisson_factor *f)
 {
     if (f->common.status == CHOLMOD_OUT_OF_MEMORY || f->common.status == CHOLMOD_TOO_LARGE)
-        return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", f->count);
-    return fail(ERROR_DEVICE, "the factorization of %d unknowns failed (CHOLMOD status %d)", f->count,
+        return fail(MERLIN_NO_MEMORY, "no memory to factorize %d unknowns", f->count);
+    return fail(MERLIN_DEVICE_FAILED, "the factorization of %d unknowns failed (CHOLMOD status %d)", f->count,
                 f->common.status);
 }
 
@@ -93,7 +93,7 @@ status poisson_factor_new(const poisson_graph *g, poisson_factor **out)
     status s = library_need(&libcholmod);
     if (s != OK) return s;
     poisson_factor *f = calloc(1, sizeof *f);
-    if (!f) return fail(ERROR_MEMORY, "no memory to factorize %d unknowns", g->count);
+    if (!f) return fail(MERLIN_NO_MEMORY, "no memory to factorize %d unknowns", g->count);
     f->count = g->count;
     start(&f->common, f->count);
     size_t n = (size_t)g->count, links = (size_t)g->start[n] / 2;

@@ -5,7 +5,7 @@
 
 static status no_memory(const poisson_graph *g)
 {
-    return fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
 }
 
 status poisson_graph_allocate(poisson_graph *g)

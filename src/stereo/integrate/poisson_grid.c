@@ -19,7 +19,7 @@ static status allocate(poisson_grid *g)
         g->target[k] = memory_new(n * sizeof **g->target);
         complete = complete && g->next[k] && g->previous[k] && g->weight[k] && g->target[k];
     }
-    return complete ? OK : fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    return complete ? OK : fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
 }
 
 static void link_neighbours(poisson_grid *g)
@@ -74,13 +74,14 @@ status poisson_grid_new(const img *mask, poisson_grid *g)
     *g = (poisson_grid){.width = mask->width, .height = mask->height};
     size_t pixels = (size_t)mask->width * (size_t)mask->height;
     g->node = memory_new(pixels * sizeof *g->node);
-    if (!g->node) return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", pixels);
+    if (!g->node) return fail(MERLIN_NO_MEMORY, "no memory to integrate %zu pixels", pixels);
     for (size_t p = 0; p < pixels; p++) {
         bool inside = mask->data[p * (size_t)mask->channels] > 0.5f;
         g->node[p] = inside ? 0 : -1;
         g->count += inside;
     }
-    status s = g->count ? number_and_link(g) : fail(ERROR_INPUT, "the mask is empty: there is nothing to integrate");
+    status s =
+        g->count ? number_and_link(g) : fail(MERLIN_BAD_INPUT, "the mask is empty: there is nothing to integrate");
     if (s != OK) poisson_grid_free(g);
     return s;
 }

@@ -21,7 +21,7 @@ status poisson_level_prepare(poisson_level *l)
 {
     int width = poisson_width(l);
     l->odd = memory_new((size_t)l->count * sizeof *l->odd);
-    if (!l->odd) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", l->count);
+    if (!l->odd) return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", l->count);
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < l->count; i++)
         l->odd[i] = (poisson_place(l, i) % width + poisson_place(l, i) / width) & 1;

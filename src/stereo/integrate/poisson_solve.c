@@ -26,7 +26,7 @@ status poisson_solver_new(const poisson_grid *g, poisson_solver **out)
 {
     poisson_solver *s = calloc(1, sizeof *s);
     *out = s;
-    if (!s) return fail(ERROR_MEMORY, "no memory to integrate %d pixels", g->count);
+    if (!s) return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
     s->grid = g;
     double **arrays[] = {&s->b, &s->r, &s->z, &s->p, &s->product};
     size_t wanted = g->count <= POISSON_DIRECT ? 1 : 5, n = (size_t)g->count;
@@ -34,7 +34,7 @@ status poisson_solver_new(const poisson_grid *g, poisson_solver **out)
         if (!(*arrays[i] = memory_new(n * sizeof(double)))) {
             poisson_solver_free(s);
             *out = NULL;
-            return fail(ERROR_MEMORY, "no memory to integrate %zu pixels", n);
+            return fail(MERLIN_NO_MEMORY, "no memory to integrate %zu pixels", n);
         }
     return OK;
 }
@@ -202,7 +202,7 @@ static status iterate(poisson_solver *s, double tolerance)
     if (s->steps_at_first) result = conjugate_gradients(s, tolerance, most, &steps, &left);
     if (result != OK || left <= 1) return result;
     result = build(s);
-    if (result == ERROR_DEVICE) return factorize(s);
+    if (result == MERLIN_DEVICE_FAILED) return factorize(s);
     if (result == OK) result = conjugate_gradients(s, tolerance, MOST_STEPS, &s->steps_at_first, &left);
     return result == OK && left > MOST_ASTRAY * MOST_ASTRAY ? factorize(s) : result;
 }

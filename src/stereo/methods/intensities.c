@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "stereo/algebra/dense.h"
-#include "stereo/fit/lobe_fit.h"
 #include "stereo/algebra/matrix3.h"
+#include "stereo/fit/lobe_fit.h"
 #include "stereo/fit/pixel_fit.h"
 #include "stereo/fit/samples.h"
 
@@ -153,7 +153,7 @@ static status solve_form(intensities_job *job)
     int n = job->sample.lights;
     scale_form(job);
     if (!dense_eigen(job->form, n, true, job->eigenvalue))
-        return fail(ERROR_INPUT, "the lights' intensities cannot be told from these pictures");
+        return fail(MERLIN_BAD_INPUT, "the lights' intensities cannot be told from these pictures");
     double least = fmax(job->eigenvalue[0], 1e-12);
     memset(job->next, 0, (size_t)n * sizeof *job->next);
     for (int j = 0; j < n; j++) {
@@ -215,7 +215,7 @@ static status job_new(const pst_problem *p, size_t sample, intensities_job *job)
     job->problem = p;
     job->level = calloc(2 * job->sample.count, sizeof *job->level);
     job->form = malloc(n * (n + 4) * sizeof *job->form);
-    if (!job->level || !job->form) return fail(ERROR_MEMORY, "no memory for %zu lights", n);
+    if (!job->level || !job->form) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", n);
     job->ratio = job->level + job->sample.count;
     job->own = job->form + n * n;
     job->eigenvalue = job->own + n;

@@ -10,9 +10,9 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "stereo/algebra/matrix3.h"
 #include "stereo/methods/ls_lanes.h"
 #include "stereo/methods/ls_sums.h"
-#include "stereo/algebra/matrix3.h"
 #include "stereo/methods/solve_parts.h"
 
 /* Pixels looked at to choose what counts as dark. */
@@ -208,7 +208,7 @@ static status lights_in_unit(const pst_problem *p, ls_limits limits, double unit
 {
     size_t count = (size_t)p->capture->count;
     pst_light *light = malloc(count * sizeof *light);
-    if (!light) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     memcpy(light, p->light, count * sizeof *light);
     for (size_t k = 0; k < count; k++)
         for (int ch = 0; ch < 3; ch++)

@@ -43,7 +43,7 @@ status ls_lights_new(const pst_problem *p, ls_limits limits, ls_lights **out)
     int filled = (c->count + TOGETHER - 1) / TOGETHER * TOGETHER;
     ls_lights *l = malloc(sizeof *l + (size_t)filled * sizeof l->at[0]);
     *out = l;
-    if (!l) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    if (!l) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     *l = (ls_lights){.count = filled, .channels = c->channels, .limits = limits};
     for (int i = 0; i < c->count; i++)
         l->at[i] = make_light(&p->light[i], c->picture[i], i);

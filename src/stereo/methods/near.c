@@ -17,11 +17,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/fit/field_fit.h"
-#include "stereo/integrate/integrate.h"
-#include "stereo/fit/lobe_choice.h"
 #include "stereo/algebra/matrix3.h"
 #include "stereo/capture/shrink.h"
+#include "stereo/fit/field_fit.h"
+#include "stereo/fit/lobe_choice.h"
+#include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
 
 /* SMALL: pixels that the depth is searched on, up to four times as many; ANEW: rounds whose fits start from nothing,
@@ -189,7 +189,7 @@ static status place_pixels(near_job *job, float slope, img *place, img *trust)
 {
     pst_field f = whole_field(job);
     pst_fall_off *found = malloc(f.count * sizeof *found);
-    status s = found ? OK : fail(ERROR_MEMORY, "no memory to place %zu pixels", f.count);
+    status s = found ? OK : fail(MERLIN_NO_MEMORY, "no memory to place %zu pixels", f.count);
     if (s == OK) s = img_copy(place, f.depth);
     if (s == OK) s = img_copy(trust, f.depth);
     if (s == OK) s = pst_field_fall_off(&f, found);
@@ -288,7 +288,8 @@ static status job_new(const pst_problem *p, pst_surface *out, near_job *job)
     job->sample.lobe = &job->lobe;
     job->sample.shading = calloc(job->sample.count, sizeof *job->shading);
     job->shading = calloc(p->pixel_count, sizeof *job->shading);
-    return job->shading && job->sample.shading ? OK : fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
+    return job->shading && job->sample.shading ? OK
+                                               : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
 }
 
 /* The depth map, the distance and the lobe from the small pictures. */

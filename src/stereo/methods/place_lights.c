@@ -49,7 +49,7 @@ static status cost_at(search *s, float extent, bool held, double *cost)
     pst_surface found;
     put_lights(s->about, extent * s->unit, held, &s->small);
     watch_tell(s->watch, "finding the distance", (double)s->tried++ / (2 + COARSE + VALLEYS * FINE));
-    if (watch_stops(s->watch)) return fail(ERROR_STOPPED, "stopped");
+    if (watch_stops(s->watch)) return fail(MERLIN_STOPPED, "stopped");
     status result = pst_solve(&s->small, &(pst_options){.method = PST_NEAR_LIGHTS, .iterations = ROUNDS}, &found);
     if (result != OK) return result;
     double sum = 0, count = 0;
@@ -181,7 +181,7 @@ static void tell(const placing *p, const vec3 *about, pst_capture *c)
 
 static status refuse(const pst_capture *c)
 {
-    return fail(ERROR_INPUT,
+    return fail(MERLIN_BAD_INPUT,
                 "the lights of %s and the others are listed by their places about the object, and the pictures do not "
                 "tell how far the camera is from it: say so by --distance and --fov, or list them from the camera in a "
                 ".txt file, or take them for distant lights without --near",
@@ -213,14 +213,14 @@ status pst_place_lights(pst_capture *c, const watch *shown)
     placing p = {.distance = c->camera.mean_distance, .near = asked};
     pinhole camera = c->camera;
     vec3 *about = malloc((size_t)c->count * sizeof *about);
-    if (!about) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    if (!about) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     for (int k = 0; k < c->count; k++)
         about[k] = c->light[k].position;
     if (!(camera.focal > 0)) c->camera = pinhole_of(c->width, c->height, usual_view);
     search s;
     status result = search_new(c, about, shown, &s);
     if (result == OK) result = choose(c, &s, &p);
-    if (result == ERROR_INPUT && !asked) { /* near lights have needs of their own */
+    if (result == MERLIN_BAD_INPUT && !asked) { /* near lights have needs of their own */
         p.near = false;
         result = OK;
     }

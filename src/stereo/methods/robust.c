@@ -43,7 +43,7 @@ status pst_solve_robust(const pst_problem *p, pst_surface *out)
     pst_field f = {.problem = p, .pixel = p->pixel, .count = p->pixel_count, .lobe = &lobe};
     if (two) f.second = &second;
     f.shading = calloc(f.count, sizeof *f.shading);
-    s = f.shading ? fit_all(&f, out) : fail(ERROR_MEMORY, "no memory to fit %zu pixels", f.count);
+    s = f.shading ? fit_all(&f, out) : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f.count);
     free(f.shading);
     return s;
 }

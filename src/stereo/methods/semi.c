@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/methods/intensities.h"
 #include "stereo/fit/lobe_choice.h"
+#include "stereo/methods/intensities.h"
 #include "stereo/methods/solve_parts.h"
 
 enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
@@ -201,7 +201,7 @@ static status job_new(const pst_problem *p, pst_light *light, semi_job *job)
     job->weight = malloc((4 * job->padded + 2) * n * sizeof *job->weight);
     job->best = calloc(2 * (size_t)p->capture->count, sizeof *job->best);
     if (!job->field.shading || !job->weight || !job->best)
-        return fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", n);
+        return fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", n);
     job->model = job->weight + n * job->padded;
     job->value = job->model + n * job->padded;
     job->usable = job->value + n * job->padded;
@@ -224,7 +224,7 @@ static status find_strengths(const pst_problem *p, pst_surface *out)
     int count = p->capture->count;
     semi_job job = {0};
     double told = 0, *e = calloc(3 * (size_t)count, sizeof *e);
-    status s = e ? job_new(p, out->light, &job) : fail(ERROR_MEMORY, "no memory for %d lights", count);
+    status s = e ? job_new(p, out->light, &job) : fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     if (s == OK) s = pst_intensities_find(p, SAMPLE, e, &told);
     if (s == OK) s = settle(&job, p->iterations > 0 ? p->iterations : ITERATIONS, e);
     if (s == OK && !job.equal && p->capture->channels == 3) find_colours(&job, e);
@@ -238,7 +238,7 @@ status pst_solve_semi(const pst_problem *p, pst_surface *out)
 {
     size_t count = (size_t)p->capture->count;
     out->light = malloc(count * sizeof *out->light);
-    if (!out->light) return fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     memcpy(out->light, p->light, count * sizeof *out->light);
     out->strengths_unsure = count < FEWEST_LIGHTS;
     status s = out->strengths_unsure ? OK : find_strengths(p, out);

@@ -17,7 +17,7 @@ static status check_known_directions(const pst_light *light, int count)
     for (int i = 0; i < count; i++)
         behind += light[i].direction.z <= 0;
     if (behind == count)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "all %d lights stand behind or beside the object (z is nowhere above 0); z of a direction to a "
                     "light points "
                     "toward the camera",
@@ -36,19 +36,19 @@ static status check_method(const pst_capture *c, pst_method m)
 {
     bool distant = m == PST_LS || m == PST_ROBUST || m == PST_SEMI;
     if (distant && c->lighting != PST_DISTANT)
-        return fail(ERROR_USAGE, "method %s needs light directions, which this capture does not have; use %s",
+        return fail(MERLIN_WRONG_USE, "method %s needs light directions, which this capture does not have; use %s",
                     pst_method_name(m), c->lighting == PST_NEAR ? "near" : "--method uncalibrated");
     if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
-        return fail(ERROR_USAGE, "method near needs light positions, which this capture does not have; use %s",
+        return fail(MERLIN_WRONG_USE, "method near needs light positions, which this capture does not have; use %s",
                     c->lighting == PST_DISTANT ? "robust, or say that its lights are near if its list holds positions"
                                                : "--method uncalibrated");
     if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
-        return fail(ERROR_USAGE, "method near needs the camera's focal length");
+        return fail(MERLIN_WRONG_USE, "method near needs the camera's focal length");
     if (c->count < 3)
-        return fail(ERROR_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
+        return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
     if (c->count > PST_MAX_LIGHTS && m != PST_LS)
-        return fail(ERROR_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count, PST_MAX_LIGHTS,
-                    pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
+        return fail(MERLIN_BAD_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count,
+                    PST_MAX_LIGHTS, pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
     if (m == PST_NEAR_LIGHTS) return pst_check_positions(c->light, c->count);
     return distant ? check_known_directions(c->light, c->count) : OK;
 }
@@ -56,12 +56,12 @@ static status check_method(const pst_capture *c, pst_method m)
 static status check_mask(const pst_capture *c)
 {
     if (c->mask.width != c->width || c->mask.height != c->height)
-        return fail(ERROR_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width, c->mask.height,
-                    c->width, c->height);
+        return fail(MERLIN_BAD_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width,
+                    c->mask.height, c->width, c->height);
     size_t size = (size_t)c->width * (size_t)c->height;
     for (size_t i = 0; i < size; i++)
         if (c->mask.data[i] > 0.5f) return OK;
-    return fail(ERROR_INPUT, "the mask is empty: no pixel of the object is left to solve");
+    return fail(MERLIN_BAD_INPUT, "the mask is empty: no pixel of the object is left to solve");
 }
 
 /* Some of the object's pixels, evenly: least squares look at none of a large picture twice. */
@@ -96,7 +96,7 @@ static status check_lit(const pst_problem *p)
     const pst_capture *c = p->capture;
     if (c->count >= FEW) return OK;
     uint32_t *some = malloc(ENOUGH * sizeof *some);
-    if (!some) return fail(ERROR_MEMORY, "no memory for a list of pixels");
+    if (!some) return fail(MERLIN_NO_MEMORY, "no memory for a list of pixels");
     size_t count = some_pixels(c, some);
     double mean[FEW], most = 0;
     for (int k = 0; k < c->count; k++)
@@ -104,8 +104,8 @@ static status check_lit(const pst_problem *p)
     free(some);
     for (int k = 0; k < c->count; k++)
         if (mean[k] < BLACK * most)
-            return fail(ERROR_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out", k + 1,
-                        c->name ? ", " : "", c->name ? c->name[k] : "");
+            return fail(MERLIN_BAD_INPUT, "picture %d%s%s is black: did its light fail? leave it and its light out",
+                        k + 1, c->name ? ", " : "", c->name ? c->name[k] : "");
     return OK;
 }
 
@@ -124,10 +124,11 @@ static status list_lights(const pst_capture *c, pst_method method, pst_light *li
         for (int k = 0; k < 3; k++) {
             if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
             if (!(e[k] > 0))
-                return fail(ERROR_INPUT, "light %d has the intensity %g; it must be above 0", i + 1, (double)e[k]);
+                return fail(MERLIN_BAD_INPUT, "light %d has the intensity %g; it must be above 0", i + 1, (double)e[k]);
             if (!(e[k] >= least_intensity && e[k] <= largest_intensity))
-                return fail(ERROR_INPUT, "light %d has the intensity %g; give all lights' in another unit, %g to %g",
-                            i + 1, (double)e[k], (double)least_intensity, (double)largest_intensity);
+                return fail(MERLIN_BAD_INPUT,
+                            "light %d has the intensity %g; give all lights' in another unit, %g to %g", i + 1,
+                            (double)e[k], (double)least_intensity, (double)largest_intensity);
         }
     }
     return OK;
@@ -163,7 +164,7 @@ static status run(const pst_problem *p, pst_surface *out)
     case PST_UNCALIBRATED:
         return pst_solve_uncalibrated(p, out);
     default:
-        return fail(ERROR_USAGE, "there is no such method of photometric stereo");
+        return fail(MERLIN_WRONG_USE, "there is no such method of photometric stereo");
     }
 }
 
@@ -183,7 +184,7 @@ status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *
     status s = check_method(c, out->method);
     if (s != OK) return s;
     pst_light *light = calloc((size_t)c->count, sizeof *light);
-    if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", c->count);
+    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     pst_problem p = {.capture = c,
                      .light = light,
                      .shadow = options->shadow,

@@ -14,7 +14,7 @@ typedef struct pst_options {
     float shadow;       /* values at or below this share of full scale are left out; 0: chosen */
     float saturation;   /* values at or above; 0: PST_SATURATED */
     int iterations;     /* of iterative methods; 0: chosen */
-    const watch *watch; /* ERROR_STOPPED where it says so; may be NULL */
+    const watch *watch; /* MERLIN_STOPPED where it says so; may be NULL */
 } pst_options;
 
 status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out);

@@ -189,7 +189,7 @@ static status fill(const img *unlit, const img *around, img *normal)
     if (s != OK) return s;
     poisson_solver *solver = NULL;
     double *x = malloc((size_t)g.count * sizeof *x);
-    s = x ? poisson_solver_new(&g, &solver) : fail(ERROR_MEMORY, "no memory for %d pixels in shadow", g.count);
+    s = x ? poisson_solver_new(&g, &solver) : fail(MERLIN_NO_MEMORY, "no memory for %d pixels in shadow", g.count);
     for (int k = 0; k < 3 && s == OK; k++)
         s = smooth(solver, &g, unlit, k, x, normal);
     if (s == OK) normalize(&g, normal);

@@ -128,7 +128,7 @@ static status read_cells(bundle *b)
     readings r = {.stride = (size_t)pst_padded(b->lights)};
     size_t most = MOST_PIXELS * MOST_PIXELS * r.stride;
     r.value = malloc((2 * most + 2 * r.stride) * sizeof *r.value);
-    if (!r.value) return fail(ERROR_MEMORY, "no memory for the pixels of a cell");
+    if (!r.value) return fail(MERLIN_NO_MEMORY, "no memory for the pixels of a cell");
     r.usable = r.value + most;
     r.mean = r.usable + most;
     r.known = r.mean + r.stride;
@@ -147,7 +147,7 @@ static status allocate_values(bundle *b)
     b->log_depth = calloc((size_t)b->corners, sizeof *b->log_depth);
     b->position = calloc((size_t)b->lights, sizeof *b->position);
     if (!b->value || !b->log_depth || !b->position)
-        return fail(ERROR_MEMORY, "no memory for %d cells under %d lights", b->cells, b->lights);
+        return fail(MERLIN_NO_MEMORY, "no memory for %d cells under %d lights", b->cells, b->lights);
     b->precision = b->value + values;
     return OK;
 }
@@ -160,11 +160,12 @@ status bundle_new(const pst_problem *p, const pinhole *camera, int across, bundl
     size_t corners = (size_t)(out->columns + 1) * (size_t)(out->rows + 1);
     out->cell = calloc(cells, sizeof *out->cell);
     out->corner_at = malloc(corners * sizeof *out->corner_at);
-    status s = out->cell && out->corner_at ? OK : fail(ERROR_MEMORY, "no memory for %zu cells", cells);
+    status s = out->cell && out->corner_at ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu cells", cells);
     if (s == OK) {
         memset(out->corner_at, 0xff, corners * sizeof *out->corner_at);
         list_cells(out);
-        if (out->cells < FEWEST) s = fail(ERROR_INPUT, "the mask is too small or thin to solve without known lights");
+        if (out->cells < FEWEST)
+            s = fail(MERLIN_BAD_INPUT, "the mask is too small or thin to solve without known lights");
     }
     if (s == OK) s = allocate_values(out);
     if (s == OK) s = read_cells(out);

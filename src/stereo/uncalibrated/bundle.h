@@ -43,8 +43,8 @@ typedef struct bundle {
     double cost;      /* of the last refinement, a share of an outlier for each value, priors included */
 } bundle;
 
-/* across: cells along the longer side of the object. The camera has a perspective. ERROR_INPUT where the mask holds
- * too few cells. */
+/* across: cells along the longer side of the object. The camera has a perspective. MERLIN_BAD_INPUT where the mask
+ * holds too few cells. */
 status bundle_new(const pst_problem *p, const pinhole *camera, int across, bundle *out);
 void bundle_free(bundle *b);
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/uncalibrated/bundle.h"
 #include "stereo/algebra/dense.h"
+#include "stereo/uncalibrated/bundle.h"
 
 /* Priors in outliers: of a light's logarithm of distance off the lights' mean; of a bend and a twist of slope 1 between
  * neighbouring cells, each times the number of lights; of the mean depth. */
@@ -397,7 +397,7 @@ static status system_new(const bundle *b, equations *y)
         .size = (int)n, .corners = (size_t)b->corners, .matrix = malloc((2 * n * n + 3 * n + 4) * sizeof *y->matrix)};
     y->turn = malloc(4 * lights * sizeof *y->turn);
     y->old_depth = malloc((size_t)(b->corners + b->cells) * sizeof *y->old_depth);
-    if (!y->matrix || !y->turn || !y->old_depth) return fail(ERROR_MEMORY, "no memory for %zu unknowns", n);
+    if (!y->matrix || !y->turn || !y->old_depth) return fail(MERLIN_NO_MEMORY, "no memory for %zu unknowns", n);
     y->damped = y->matrix + n * n;
     y->right = y->damped + n * n;
     y->step = y->right + n;

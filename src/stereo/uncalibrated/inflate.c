@@ -37,7 +37,7 @@ static status field_new(const img *mask, field *f)
     *f = (field){mask->width, mask->height, calloc(count, sizeof *f->u), calloc(count, 1)};
     if (!f->u || !f->inside) {
         field_free(f);
-        return fail(ERROR_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
+        return fail(MERLIN_NO_MEMORY, "no memory to inflate a mask of %dx%d", mask->width, mask->height);
     }
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++)

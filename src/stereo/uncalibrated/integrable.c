@@ -56,7 +56,7 @@ static double row_length(const double row[6])
 
 status pst_too_thin(void)
 {
-    return fail(ERROR_INPUT, "the mask is too thin to solve without known lights");
+    return fail(MERLIN_BAD_INPUT, "the mask is too thin to solve without known lights");
 }
 
 /* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
@@ -232,7 +232,7 @@ static status search(const rotation_cost *c, vec3 mean, double a[9])
         best = value;
         memcpy(a, found, sizeof trial);
     }
-    return best < HUGE_VAL ? OK : fail(ERROR_INPUT, "the pictures do not tell where the lights are");
+    return best < HUGE_VAL ? OK : fail(MERLIN_BAD_INPUT, "the pictures do not tell where the lights are");
 }
 
 static double trace(const double form[36])

@@ -38,10 +38,10 @@ static inline vec3 pst_transform(const double m[9], vec3 v)
 }
 
 /* f->b, up to a rotation or reflection, becomes its mean over a neighbourhood. mean_light: of the lights in b's space.
- * ERROR_INPUT if the mask is too thin, or no rotation leaves the lights before the object. */
+ * MERLIN_BAD_INPUT if the mask is too thin, or no rotation leaves the lights before the object. */
 status pst_find_rotation(const pst_pseudo *f, vec3 mean_light, pst_rotation *out);
 
-/* ERROR_INPUT, in words. */
+/* MERLIN_BAD_INPUT, in words. */
 status pst_too_thin(void);
 
 #endif

@@ -9,11 +9,11 @@
 #include <stdlib.h>
 
 #include "stereo/fit/field_fit.h"
-#include "stereo/uncalibrated/inflate.h"
-#include "stereo/integrate/integrate.h"
 #include "stereo/fit/lobe_choice.h"
 #include "stereo/fit/samples.h"
+#include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
+#include "stereo/uncalibrated/inflate.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
@@ -53,8 +53,8 @@ static pinhole perspective_of(const pst_capture *c)
     pinhole camera = c->camera;
     if (!camera.perspective || !(camera.focal > 0))
         camera = (pinhole){.focal = far_away * (float)(c->width > c->height ? c->width : c->height),
-                              .center_x = 0.5f * (float)c->width,
-                              .center_y = 0.5f * (float)c->height};
+                           .center_x = 0.5f * (float)c->width,
+                           .center_y = 0.5f * (float)c->height};
     camera.perspective = true;
     if (!(camera.mean_distance > 0)) camera.mean_distance = 1;
     return camera;
@@ -90,7 +90,7 @@ static status judge(const pst_problem *p, const img *balloon, hypothesis *h)
     f.pixel = pixel;
     f.b = calloc(f.count, sizeof *f.b);
     size_t values = f.count * (size_t)p->capture->count;
-    s = f.b ? pst_field_fit(&f, &h->cost) : fail(ERROR_MEMORY, "no memory for a sample of %zu pixels", f.count);
+    s = f.b ? pst_field_fit(&f, &h->cost) : fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", f.count);
     h->cost_of_value = h->cost / fmax((double)values, 1);
     if (s == OK && share_away(&f) > PST_MOST_AWAY) h->cost *= absurd;
     if (s == OK) h->likeness = likeness(&f, balloon);
@@ -122,7 +122,7 @@ static status solve_near(const pst_problem *p, const img *depth, pst_surface *ou
     pst_field f = {.problem = p, .depth = depth, .scale = 1, .lobe = &lobe};
     double cost;
     f.shading = calloc(p->pixel_count, sizeof *f.shading);
-    if (!f.shading) return fail(ERROR_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
+    if (!f.shading) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
     status s = admit_lobe(&f, &lobe);
     if (s == OK) s = pst_field_fit(&f, &cost);
     if (s == OK) s = pst_field_store(&f, out);
@@ -147,7 +147,7 @@ static status find_near(const pst_problem *p, const img *balloon, hypothesis *h,
     status s = pst_find_near_lights(p, &p->capture->camera, h->light, &h->depth);
     if (s != OK) return s;
     *distance = mean_distance(p, h);
-    if (*distance >= farthest) return fail(ERROR_INPUT, "the lights are not near");
+    if (*distance >= farthest) return fail(MERLIN_BAD_INPUT, "the lights are not near");
     return judge(p, balloon, h);
 }
 
@@ -166,10 +166,10 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
     if (s != OK) return s;
     img_free(&height);
     status found = find_near(p, &balloon, near, &distance);
-    if (found == OK || found == ERROR_INPUT) s = find_distant(p, &balloon, distant);
+    if (found == OK || found == MERLIN_BAD_INPUT) s = find_distant(p, &balloon, distant);
     img_free(&balloon);
-    if (found != OK && found != ERROR_INPUT) return found;
-    if (s != OK && (s != ERROR_INPUT || found != OK)) return s;
+    if (found != OK && found != MERLIN_BAD_INPUT) return found;
+    if (s != OK && (s != MERLIN_BAD_INPUT || found != OK)) return s;
     if (s != OK) distant->cost = HUGE_VAL;
     bool astray = s == OK && distance > doubtful && near->likeness < distant->likeness - less_like;
     if (found != OK || astray) near->cost = HUGE_VAL;
@@ -204,7 +204,7 @@ static status check_not_flat(const pst_problem *p)
     s = pst_samples_differ(&m, &differ);
     pst_samples_free(&m);
     if (s == OK && !differ)
-        s = fail(ERROR_INPUT,
+        s = fail(MERLIN_BAD_INPUT,
                  "the pictures differ in nothing but their brightness, as those of a plane do: they do not "
                  "tell where the lights are");
     return s;
@@ -214,14 +214,15 @@ status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
 {
     const pst_capture *c = p->capture;
     size_t count = (size_t)c->count;
-    if (count < FEWEST) return fail(ERROR_INPUT, "unknown lights need %d or more pictures, not %d", FEWEST, c->count);
+    if (count < FEWEST)
+        return fail(MERLIN_BAD_INPUT, "unknown lights need %d or more pictures, not %d", FEWEST, c->count);
     pst_capture seen = *c;
     pst_problem q = *p;
     seen.camera = perspective_of(c);
     q.capture = &seen;
     hypothesis near = {.light = calloc(count, sizeof *near.light)};
     hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
-    status s = near.light && distant.light ? OK : fail(ERROR_MEMORY, "no memory for %zu lights", count);
+    status s = near.light && distant.light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     if (s == OK) s = check_not_flat(&q);
     if (s == OK) s = find_both(&q, &near, &distant);
     if (s == OK) {

@@ -11,13 +11,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "stereo/fit/field_fit.h"
-#include "stereo/uncalibrated/integrable.h"
 #include "stereo/algebra/matrix3.h"
+#include "stereo/algebra/unit_quadric.h"
+#include "stereo/fit/field_fit.h"
 #include "stereo/fit/pixel_fit.h"
 #include "stereo/fit/samples.h"
+#include "stereo/uncalibrated/integrable.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
-#include "stereo/algebra/unit_quadric.h"
 
 enum { SAMPLE = 1500, REFITS = 30 };
 
@@ -58,7 +58,7 @@ static status factor(const pst_problem *p, lights3 *l)
     if (s != OK) return s;
     double *basis = calloc((size_t)l->count * 3, sizeof *basis), mean[3] = {0};
     size_t lit = 0;
-    s = basis ? pst_samples_basis(&m, basis, &lit) : fail(ERROR_MEMORY, "no memory for %d lights", l->count);
+    s = basis ? pst_samples_basis(&m, basis, &lit) : fail(MERLIN_NO_MEMORY, "no memory for %d lights", l->count);
     for (int k = 0; s == OK && k < 3 * l->count; k++)
         mean[k % 3] += basis[k] * basis[k] / l->count;
     for (int k = 0; s == OK && k < l->count; k++) {
@@ -101,7 +101,7 @@ static status straighten(pst_pseudo *f, lights3 *l)
     unit_quadric strength, albedo;
     size_t n = f->problem->pixel_count;
     vec3 *light = malloc((size_t)l->count * sizeof *light);
-    if (!light) return fail(ERROR_MEMORY, "no memory for %d lights", l->count);
+    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", l->count);
     for (int k = 0; k < l->count; k++)
         light[k] = vec3_make(l->x[k], l->y[k], l->z[k]);
     status s = unit_quadric_fit(light, (size_t)l->count, &strength);
@@ -110,7 +110,7 @@ static status straighten(pst_pseudo *f, lights3 *l)
     double albedos = unit_quadric_fit(f->b, n, &albedo) == OK ? albedo.spread : HUGE_VAL;
     bool by_albedo = strength.spread > fmin(uneven, plainly * albedos);
     if (by_albedo && albedos > strength.spread)
-        return fail(ERROR_INPUT,
+        return fail(MERLIN_BAD_INPUT,
                     "the lights are not equally strong, nor is the surface of one albedo: where the lights "
                     "are cannot be told; state their intensities in light_intensities.txt");
     transform_lights(by_albedo ? albedo.dual : strength.make, l);
@@ -136,7 +136,7 @@ static status pseudo_surface(const pst_problem *p, const lights3 *l, pst_pseudo 
     f->b = field.b = malloc(p->pixel_count * sizeof *f->b);
     f->slot = pst_field_slots(&field);
     pst_light *light = malloc((size_t)l->count * sizeof *light);
-    status s = f->b && f->slot && light ? OK : fail(ERROR_MEMORY, "no memory for %zu pixels", p->pixel_count);
+    status s = f->b && f->slot && light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu pixels", p->pixel_count);
     if (s == OK) {
         for (int k = 0; k < l->count; k++) {
             light[k] = p->light[k];
@@ -174,7 +174,7 @@ status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_lig
     size_t padded = (size_t)pst_padded(count);
     pst_pseudo f = {.balloon = balloon};
     lights3 l = {.count = count, .x = calloc(3 * padded, sizeof(float))};
-    if (!l.x) return fail(ERROR_MEMORY, "no memory for %d lights", count);
+    if (!l.x) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     l.y = l.x + padded;
     l.z = l.y + padded;
     status s = factor(p, &l);

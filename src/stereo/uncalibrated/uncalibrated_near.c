@@ -82,7 +82,7 @@ static void scan_lights(bundle *b, float distance, const float *seen)
 static status find_lights(bundle *b, float distance)
 {
     float *seen = malloc((size_t)b->cells * DIRECTIONS * sizeof *seen);
-    if (!seen) return fail(ERROR_MEMORY, "no memory for %d directions", DIRECTIONS);
+    if (!seen) return fail(MERLIN_NO_MEMORY, "no memory for %d directions", DIRECTIONS);
     for (int i = 0; i < b->cells; i++) {
         float sum = 1e-6f;
         for (int j = 0; j < DIRECTIONS; j++) {

@@ -3,8 +3,8 @@
 #ifndef MERLIN_STEREO_UNCALIBRATED_UNCALIBRATED_PARTS_H
 #define MERLIN_STEREO_UNCALIBRATED_UNCALIBRATED_PARTS_H
 
-#include "stereo/uncalibrated/integrable.h"
 #include "stereo/fit/problem.h"
+#include "stereo/uncalibrated/integrable.h"
 
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's.
  * balloon: unit normals of one of the object's outline (inflate.h). rotation: the last step to them, and its doubts. */

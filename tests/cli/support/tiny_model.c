@@ -21,7 +21,7 @@ int main(int argc, char **argv)
     nn_graph *g = NULL;
     nn_params *params = NULL;
     char *json = model_config_write(&config);
-    status s = json ? model_build(&config, MODEL_WHOLE, &g) : fail(ERROR_MEMORY, "no memory");
+    status s = json ? model_build(&config, MODEL_WHOLE, &g) : fail(MERLIN_NO_MEMORY, "no memory");
     if (s == OK) s = nn_params_new(g, 1, &params);
     const char *const metadata[][2] = {{"config", json}, {"training", "{}"}, {"presentations", "4"}, {"note", "tiny"}};
     if (s == OK) s = model_export(argv[1], params, metadata, sizeof metadata / sizeof *metadata);

@@ -66,7 +66,7 @@ static inline status sphere_sample(const sphere *of, int target_count, sample *o
             sphere_pixel(of, out, &view, x, y);
     if (!target_count) return OK;
     out->targets = calloc((size_t)target_count, sizeof *out->targets);
-    if (!out->targets) return fail(ERROR_MEMORY, "no memory");
+    if (!out->targets) return fail(MERLIN_NO_MEMORY, "no memory");
     out->target_count = target_count;
     for (int i = 0; s == OK && i < target_count; i++) {
         s = img_copy(&out->targets[i].direct, &out->direct);

@@ -307,14 +307,14 @@ static void samples_of_another_size_are_refused(void **state)
     assert_int_equal(file_make_folder(folder), OK);
     eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
     eval_report r;
-    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no samples"));
     write_sphere(folder, 0, 50, 0);
-    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "multiple of 32"));
     write_sphere(folder, 0, 64, 0);
     write_sphere(folder, 1, 96, 0);
-    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
     free(folder);
 }
@@ -325,7 +325,7 @@ static void a_figure_that_cannot_be_written_is_refused_before_the_work(void **st
     char *figure = file_join(f->folder, "no/such/folder.png");
     eval_options options = {.data = "/no/data", .weights = f->weights, .figure = figure, .quiet = true};
     eval_report r;
-    assert_int_equal(eval_run(&options, &r), ERROR_OUTPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), figure));
     free(figure);
 }
@@ -430,7 +430,7 @@ static void models_of_both_lights_are_shown_the_environment_too(void **state)
     double one = 0.316 * 0.28209479;
     assert_float_equal(eval_score(&r.all, EVAL_SURROUNDINGS, EVAL_MEAN), 2 * one * one / 3, 1e-7);
     remove_environments(f->data);
-    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--no-env"));
 }
 
@@ -471,7 +471,7 @@ static void objects_that_cannot_be_rendered_again_are_not_relit(void **state)
     const fixture *f = *state;
     eval_options options = {.data = f->data, .weights = f->weights, .environments = 1, .quiet = true};
     eval_report r;
-    assert_int_equal(eval_run(&options, &r), ERROR_INPUT);
+    assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "cannot be relit by environments"));
 }
 

@@ -42,7 +42,7 @@ static void overlaps_are_those_with_the_known_mask(void **state)
     const mask_truth wrong = {"wrong", MASK_PHOTO, &photo, &other, NULL};
     assert_int_equal(mask_table_add(&t, &whole), OK);
     assert_int_equal(mask_table_add(&t, &upper), OK);
-    assert_int_equal(mask_table_add(&t, &wrong), ERROR_INPUT);
+    assert_int_equal(mask_table_add(&t, &wrong), MERLIN_BAD_INPUT);
     assert_int_equal(t.count, 2);
     assert_true(t.row[0].iou > 0.98);
     assert_true(fabs(t.row[1].iou - 0.5) < 0.02);

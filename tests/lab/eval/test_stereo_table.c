@@ -191,7 +191,7 @@ static void an_object_that_shrinking_takes_apart_is_refused(void **state)
     stereo_options options = {
         .data = folder, .weights = MERLIN_SOURCE_DIR "/models/merlin-point.safetensors", .quiet = true};
     stereo_table table;
-    assert_int_equal(stereo_table_run(&options, &table), ERROR_INPUT);
+    assert_int_equal(stereo_table_run(&options, &table), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "too thin"));
     free(path);
     scratch_remove(folder);
@@ -208,7 +208,7 @@ static void a_sample_without_targets_is_refused(void **state)
     close(file);
     assert_int_equal(sample_write(path, &s), OK);
     stereo_object o;
-    assert_int_equal(stereo_object_read(path, &o), ERROR_INPUT);
+    assert_int_equal(stereo_object_read(path, &o), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--targets"));
     unlink(path);
     sample_free(&s);

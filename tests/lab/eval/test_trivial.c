@@ -122,7 +122,7 @@ static void samples_of_two_sizes_have_no_mean(void **state)
     write_sphere(folder, &ball, 0);
     write_sphere(folder, &small, 1);
     eval_means means;
-    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), ERROR_INPUT);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, NULL, &means), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "000001.exr"));
     scratch_remove(folder);
 }
@@ -141,7 +141,7 @@ static void means_can_be_stopped(void **state)
     write_sphere(folder, &ball, 1);
     eval_means means;
     polled = 0;
-    assert_int_equal(eval_means_of_folder(folder, 0, true, stop_at_the_second, &means), ERROR_STOPPED);
+    assert_int_equal(eval_means_of_folder(folder, 0, true, stop_at_the_second, &means), MERLIN_STOPPED);
     assert_non_null(strstr(status_message(), "1 of 2 samples"));
     assert_null(means.maps.albedo.data);
     scratch_remove(folder);
@@ -154,7 +154,7 @@ static void a_sample_is_no_file_of_means(void **state)
     write_sphere(folder, &ball, 0);
     char *path = sample_path(folder, 0);
     eval_means means;
-    assert_int_equal(eval_means_read(path, 96, 96, &means), ERROR_INPUT);
+    assert_int_equal(eval_means_read(path, 96, 96, &means), MERLIN_BAD_INPUT);
     free(path);
     scratch_remove(folder);
 }
@@ -172,7 +172,7 @@ static void means_without_samples_or_depth_are_refused(void **state)
         if (i == 0) wrong.samples = 0;
         if (i == 1) wrong.depth = -1;
         assert_int_equal(eval_means_write(&wrong, path), OK);
-        assert_int_equal(eval_means_read(path, 96, 96, &back), ERROR_INPUT);
+        assert_int_equal(eval_means_read(path, 96, 96, &back), MERLIN_BAD_INPUT);
     }
     eval_means_free(&means);
     free(path);

@@ -13,8 +13,8 @@
 #include "lab/eval/rendered_capture.h"
 #include "lab/scene/material/material.h"
 #include "relief.h"
-#include "stereo/uncalibrated/inflate.h"
 #include "stereo/integrate/surface_error.h"
+#include "stereo/uncalibrated/inflate.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 static void an_inflated_disc_is_a_hemisphere(void **state)
@@ -388,7 +388,7 @@ static void a_plane_under_unknown_lights_is_refused(void **state)
                 (uint16_t)(50000 * (albedo * vec3_dot(n, relief_light(k, 10)) + rng_range(&r, -0.005f, 0.005f)));
     }
     c.lighting = PST_UNKNOWN_LIGHT;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "nothing but their brightness"));
     capture_drop(&c);
 }
@@ -404,7 +404,7 @@ static void a_speck_under_unknown_lights_is_refused(void **state)
     c.lighting = PST_UNKNOWN_LIGHT;
     for (int i = 0; i < 4; i++)
         c.mask.data[7 * 16 + 6 + i] = 1;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), ERROR_INPUT);
+    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "known lights"));
     pst_capture_free(&c);
 }

@@ -37,7 +37,7 @@ static void a_map_that_is_no_latitude_longitude_picture_is_refused_by_name(void 
     write_map("a.png", 64, 32, 1);
     write_map("ball.png", 64, 64, 1);
     environment_folder folder;
-    assert_int_equal(environment_folder_read(scratch, &folder), ERROR_INPUT);
+    assert_int_equal(environment_folder_read(scratch, &folder), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "ball.png is 64×64 pixels"));
     assert_null(folder.maps);
 }
@@ -91,7 +91,7 @@ static void a_folder_without_maps_is_refused(void **state)
 {
     (void)state;
     environment_folder folder;
-    assert_int_equal(environment_folder_read(scratch, &folder), ERROR_INPUT);
+    assert_int_equal(environment_folder_read(scratch, &folder), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no environment maps"));
 }
 

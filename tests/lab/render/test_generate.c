@@ -92,7 +92,7 @@ static void interrupted_set_is_continued_to_the_same_files(void **state)
     o = small(parts);
     o.interrupted = stop_after_two;
     polls = 0;
-    assert_int_equal(render_samples(&o, &stats), ERROR_STOPPED);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_STOPPED);
     assert_true(stats.rendered <= 2);
     size_t before = stats.rendered;
     o.interrupted = NULL;
@@ -113,7 +113,7 @@ static void samples_of_other_options_are_not_mixed_in(void **state)
     o.count = 1;
     assert_int_equal(render_samples(&o, &stats), OK);
     o.seed++;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "other options"));
     scratch_remove(folder);
 }
@@ -157,7 +157,7 @@ static void samples_of_a_changed_mesh_are_not_mixed_in(void **state)
         assert_int_equal(stats.kept, 1);
         render_stats_free(&stats);
         write_mesh(mesh, "0 0 2");
-        assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+        assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
         assert_non_null(strstr(status_message(), "made of other files than are there now"));
         render_stats_free(&stats);
         forget_contents(folder);
@@ -183,11 +183,11 @@ static void samples_are_not_rendered_among_what_they_are_made_of(void **state)
     sample_free(&s);
     o = small(inside);
     o.material_folder = materials;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "taken for pictures of"));
     assert_false(file_exists(inside));
     o.folder = materials;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     free(tile);
     free(inside);
     scratch_remove(materials);
@@ -199,19 +199,19 @@ static void impossible_options_are_refused(void **state)
     render_stats stats;
     render_options o = small(NULL);
     o.image.strata = 3;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     o = small(NULL);
     o.image.targets = SAMPLE_MAX_TARGETS + 1;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     o = small(NULL);
     o.image.lamps = SAMPLE_MAX_LAMPS + 1;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     o = small(NULL);
     o.widest_fov = o.image.fov - 1;
-    assert_int_equal(render_samples(&o, &stats), ERROR_USAGE);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_WRONG_USE);
     o = small(NULL);
     o.mesh = "/nonexistent/mesh.obj";
-    assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_BAD_INPUT);
 }
 
 static void an_unreadable_mesh_claims_no_folder(void **state)
@@ -221,7 +221,7 @@ static void an_unreadable_mesh_claims_no_folder(void **state)
     char *above = scratch_new(), *folder = file_join(above, "samples");
     render_options o = small(folder);
     o.mesh = "/nonexistent/mesh.obj";
-    assert_int_equal(render_samples(&o, &stats), ERROR_INPUT);
+    assert_int_equal(render_samples(&o, &stats), MERLIN_BAD_INPUT);
     assert_false(file_exists(folder));
     free(folder);
     scratch_remove(above);

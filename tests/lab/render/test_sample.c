@@ -137,9 +137,9 @@ static void training_reads_the_environment_where_it_is_asked_to(void **state)
     sample_free(&r);
     img_free(&s.env);
     assert_int_equal(sample_write(path, &s), OK);
-    assert_int_equal(sample_read_training_environment(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read_training_environment(path, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--no-env"));
-    assert_int_equal(sample_read_sh(path, sh), ERROR_INPUT);
+    assert_int_equal(sample_read_sh(path, sh), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--no-env"));
     sample_free(&s);
 }
@@ -150,9 +150,9 @@ static void sample_without_a_layer_is_refused_by_name(void **state)
     sample s = make_sample(), r;
     img_free(&s.roughness);
     assert_int_equal(sample_write(path, &s), OK);
-    assert_int_equal(sample_read(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read(path, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "roughness.Y"));
-    assert_int_equal(sample_read_training(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read_training(path, &r), MERLIN_BAD_INPUT);
     sample_free(&s);
 }
 
@@ -163,7 +163,7 @@ static void sample_with_nan_is_refused(void **state)
     sample s = make_sample(), r;
     s.depth.data[WIDTH * 3 + 5] = NAN;
     assert_int_equal(sample_write(path, &s), OK);
-    assert_int_equal(sample_read(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read(path, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "depth.Z holds NaN or infinity at pixel 5,3"));
     s.depth.data[WIDTH * 3 + 5] = INFINITY;
     assert_int_equal(sample_write(path, &s), OK);
@@ -180,11 +180,11 @@ static void sample_whose_light_or_environment_is_not_finite_is_refused(void **st
     float sh[9][3];
     s.sh[4][1] = NAN;
     assert_int_equal(sample_write(path, &s), OK);
-    assert_int_equal(sample_read_training_environment(path, &r), ERROR_INPUT);
-    assert_int_equal(sample_read_sh(path, sh), ERROR_INPUT);
+    assert_int_equal(sample_read_training_environment(path, &r), MERLIN_BAD_INPUT);
+    assert_int_equal(sample_read_sh(path, sh), MERLIN_BAD_INPUT);
     s.light.x = INFINITY;
     assert_int_equal(sample_write(path, &s), OK);
-    assert_int_equal(sample_read_training(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read_training(path, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "light"));
     sample_free(&s);
 }
@@ -195,9 +195,9 @@ static void image_that_is_no_sample_is_refused(void **state)
     sample s = make_sample(), r;
     exr_channel red = {"R", s.albedo.data, 3, false};
     assert_int_equal(exr_write(path, WIDTH, HEIGHT, &red, 1, NULL, 0), OK);
-    assert_int_equal(sample_read(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read(path, &r), MERLIN_BAD_INPUT);
     assert_int_equal(file_write(path, "no EXR at all", 13), OK);
-    assert_int_equal(sample_read(path, &r), ERROR_INPUT);
+    assert_int_equal(sample_read(path, &r), MERLIN_BAD_INPUT);
     assert_null(r.albedo.data);
     sample_free(&s);
 }

@@ -247,7 +247,7 @@ static void binary_ply_is_read(void **state)
     assert_true(signed_volume(&o) > 0);
     scn_object_free(&o);
     for (size_t left = 0; left < size; left += 7)
-        assert_int_equal(load("cut.ply", data, left, &o), ERROR_INPUT);
+        assert_int_equal(load("cut.ply", data, left, &o), MERLIN_BAD_INPUT);
 }
 
 static void gltf_is_read(void **state)
@@ -274,7 +274,7 @@ static void gltf_is_read(void **state)
 static void assert_refused(const char *name, const char *text)
 {
     scn_object o;
-    assert_int_equal(load(name, text, strlen(text), &o), ERROR_INPUT);
+    assert_int_equal(load(name, text, strlen(text), &o), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), name));
     assert_null(strchr(status_message(), '\n'));
 }
@@ -295,7 +295,7 @@ static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **sta
     assert_refused("junk.glb", "glTFnot really");
     assert_refused("photo.jpg", "anything");
     scn_object o;
-    assert_int_equal(object_of("/nowhere/cow.obj", 1, 1, &o), ERROR_INPUT);
+    assert_int_equal(object_of("/nowhere/cow.obj", 1, 1, &o), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
 }
 
@@ -308,7 +308,7 @@ static void folders_and_pipes_are_refused_without_waiting(void **state)
     assert_int_equal(mkfifo(scratch_path(NAMES[1]), 0600), 0);
     alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(object_of(scratch_path(NAMES[i]), 1, 1, &o), ERROR_INPUT);
+        assert_int_equal(object_of(scratch_path(NAMES[i]), 1, 1, &o), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "not a plain file"));
     }
     alarm(0);

@@ -112,7 +112,7 @@ static void must_refuse(const document *d, const char *why)
 {
     scn_mesh mesh;
     int parts;
-    assert_int_equal(read_document(d, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(read_document(d, &mesh, &parts), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), why)) fail_msg("\"%s\" does not say \"%s\"", status_message(), why);
     mesh_free(&mesh);
 }
@@ -181,11 +181,11 @@ static void a_buffer_may_be_text_a_file_or_a_glbs_own(void **state)
     assert_triangle(&mesh);
     mesh_free(&mesh);
     for (size_t left = 0; left < 28 + padded + d.size; left++) {
-        assert_int_equal(mesh_parse_gltf(glb, left, NULL, &mesh, &parts), ERROR_INPUT);
+        assert_int_equal(mesh_parse_gltf(glb, left, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
         mesh_free(&mesh);
     }
     glb[4] = 1;
-    assert_int_equal(mesh_parse_gltf(glb, 28 + padded + d.size, NULL, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_gltf(glb, 28 + padded + d.size, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "version 1"));
 }
 
@@ -204,7 +204,7 @@ static void buffers_that_are_no_plain_files_beside_it_are_refused(void **state)
         char *text = json_of(&d, URIS[i][0]);
         scn_mesh mesh = {0};
         int parts;
-        assert_int_equal(mesh_parse_gltf(text, strlen(text), scratch, &mesh, &parts), ERROR_INPUT);
+        assert_int_equal(mesh_parse_gltf(text, strlen(text), scratch, &mesh, &parts), MERLIN_BAD_INPUT);
         if (!strstr(status_message(), URIS[i][1])) fail_msg("%s: %s", URIS[i][0], status_message());
         mesh_free(&mesh);
         free(text);
@@ -552,7 +552,7 @@ static void what_is_compressed_or_of_another_version_is_refused_by_name(void **s
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         scn_mesh mesh = {0};
         int parts;
-        assert_int_equal(mesh_parse_gltf(OTHERS[i][0], strlen(OTHERS[i][0]), NULL, &mesh, &parts), ERROR_INPUT);
+        assert_int_equal(mesh_parse_gltf(OTHERS[i][0], strlen(OTHERS[i][0]), NULL, &mesh, &parts), MERLIN_BAD_INPUT);
         if (!strstr(status_message(), OTHERS[i][1])) fail_msg("%s: %s", OTHERS[i][0], status_message());
         mesh_free(&mesh);
     }
@@ -567,11 +567,11 @@ static void json_too_deep_or_of_too_many_values_is_refused_before_it_is_taken_ap
     scn_mesh mesh = {0};
     int parts;
     memset(text, '[', SIZE);
-    assert_int_equal(mesh_parse_gltf(text, SIZE, NULL, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_gltf(text, SIZE, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "levels deep"));
     for (size_t i = 1; i + 1 < SIZE; i += 2)
         memcpy(text + i, "0,", 2);
-    assert_int_equal(mesh_parse_gltf(text, SIZE, NULL, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_gltf(text, SIZE, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "values"));
     free(text);
 }
@@ -597,7 +597,7 @@ static void a_small_file_has_no_more_triangles_than_a_million(void **state)
     end += (size_t)sprintf(text + end, "]}]}");
     scn_mesh mesh = {0};
     int parts;
-    assert_int_equal(mesh_parse_gltf(text, end, NULL, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_gltf(text, end, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "triangles"));
     assert_int_equal(mesh.triangle_count, 0);
     free(text);

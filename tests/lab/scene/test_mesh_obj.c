@@ -31,7 +31,7 @@ static void assert_refused(const char *text, const char *why)
 {
     scn_mesh mesh;
     int parts;
-    assert_int_equal(parse(text, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(parse(text, &mesh, &parts), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), why)) fail_msg("\"%s\" does not say \"%s\"", status_message(), why);
     mesh_free(&mesh);
 }
@@ -233,7 +233,7 @@ static void a_polygon_of_more_than_1024_corners_is_refused(void **state)
     assert_int_equal(mesh.triangle_count, 1022);
     mesh_free(&mesh);
     sprintf(text + end, " %d", CORNERS);
-    assert_int_equal(mesh_parse_obj(text, strlen(text), 5000, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_obj(text, strlen(text), 5000, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "1024 corners"));
     mesh_free(&mesh);
     free(text);
@@ -245,7 +245,7 @@ static void more_triangles_than_allowed_are_refused(void **state)
     scn_mesh mesh = {0};
     int parts;
     const char text[] = SQUARE "f 1 2 3 4\nf 1 2 3 4\n";
-    assert_int_equal(mesh_parse_obj(text, sizeof text - 1, 3, &mesh, &parts), ERROR_INPUT);
+    assert_int_equal(mesh_parse_obj(text, sizeof text - 1, 3, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "more than 3 triangles"));
     mesh_free(&mesh);
 }

@@ -64,7 +64,7 @@ static void a_folder_without_meshes_is_refused(void **state)
     char *folder = scratch_new();
     scn_models models;
     write_text(folder, "notes.txt", "no mesh");
-    assert_int_equal(scn_models_read(folder, &models), ERROR_INPUT);
+    assert_int_equal(scn_models_read(folder, &models), MERLIN_BAD_INPUT);
     scratch_remove(folder);
 }
 

@@ -250,8 +250,8 @@ static void a_senseless_field_of_view_is_refused(void **state)
 {
     (void)state;
     scn_object o;
-    assert_int_equal(scn_object_generate(1, 1, 0, &o), ERROR_USAGE);
-    assert_int_equal(scn_object_generate(1, 1, NAN, &o), ERROR_USAGE);
+    assert_int_equal(scn_object_generate(1, 1, 0, &o), MERLIN_WRONG_USE);
+    assert_int_equal(scn_object_generate(1, 1, NAN, &o), MERLIN_WRONG_USE);
     scn_object_free(&o);
 }
 

@@ -156,9 +156,9 @@ static void folder_without_materials_is_refused(void **state)
     (void)state;
     put("brick_roughness.png", 1, 1, 1);
     scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), ERROR_INPUT);
+    assert_int_equal(scn_textures_read(scratch, &t), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "brick_albedo.png"));
-    assert_int_equal(scn_textures_read("/nowhere", &t), ERROR_INPUT);
+    assert_int_equal(scn_textures_read("/nowhere", &t), MERLIN_BAD_INPUT);
 }
 
 static void objects_wear_the_folder(void **state)

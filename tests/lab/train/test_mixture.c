@@ -297,7 +297,7 @@ static void samples_without_lamps_are_refused(void **state)
     render_stats_free(&stats);
     const trn_dataset_options options = {.size = SIZE, .memory_gib = 1, .lamps = true};
     assert_int_equal(trn_dataset_open(folder, &options, &d), OK);
-    assert_int_equal(trn_dataset_get(d, 0, 0, &v), ERROR_INPUT);
+    assert_int_equal(trn_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--lamps"));
     trn_dataset_close(d);
     scratch_remove(folder);

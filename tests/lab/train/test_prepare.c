@@ -81,7 +81,7 @@ static void sample_of_another_size_is_refused(void **state)
     trn_view v = f->view;
     v.size = 32;
     assert_int_equal(trn_dataset_open(f->folder, &(trn_dataset_options){.size = 32, .memory_gib = 1}, &d), OK);
-    assert_int_equal(trn_dataset_get(d, 0, 0, &v), ERROR_INPUT);
+    assert_int_equal(trn_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "64"));
     trn_dataset_close(d);
 }
@@ -108,7 +108,7 @@ static void sample_of_another_camera_or_flash_is_refused(void **state)
     char *path = sample_path(f->folder, 0);
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         rewrite(path, wrong[i].fov, wrong[i].power, wrong[i].light);
-        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), ERROR_INPUT);
+        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), wrong[i].word));
     }
     rewrite(path, 60, LIGHT_POWER, vec3_make(0, 0, 0));
@@ -142,7 +142,7 @@ static void empty_folder_is_refused(void **state)
     (void)state;
     char *folder = scratch_new();
     trn_dataset *d;
-    assert_int_equal(trn_dataset_open(folder, &usual, &d), ERROR_INPUT);
+    assert_int_equal(trn_dataset_open(folder, &usual, &d), MERLIN_BAD_INPUT);
     scratch_remove(folder);
 }
 

@@ -165,7 +165,7 @@ static void resume_and_compare(const fixture *f, const char *lighting, const cha
 {
     write_experiment(f, &(experiment){12, 2, 2, lighting, more, 100});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
-    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    assert_int_equal(train(f, "b", false, 3), MERLIN_STOPPED);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
     same_run(f, "a", "b");
 }
@@ -193,7 +193,7 @@ static void resumed_training_with_a_mean_of_the_weights_is_bit_identical(void **
     const fixture *f = *state;
     write_config(f, 34, 2, 2, "\"exposure_jitter\": 0.2, \"colour_jitter\": 0.05, \"average_decay\": 0.9");
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
-    assert_int_equal(train(f, "b", false, 9), ERROR_STOPPED);
+    assert_int_equal(train(f, "b", false, 9), MERLIN_STOPPED);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
     same_run(f, "a", "b");
 }
@@ -204,7 +204,7 @@ static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
     const fixture *f = *state;
     write_config(f, 12, 2, 2, jitter);
     assert_int_equal(train(f, "a", false, 0), OK);
-    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    assert_int_equal(train(f, "b", false, 3), MERLIN_STOPPED);
     char path[600];
     snprintf(path, sizeof path, "%s/b/validation.csv", f->root);
     FILE *file = fopen(path, "a");
@@ -234,7 +234,7 @@ static void fail_at_the_end_and_resume(const fixture *f, int validation, const c
     snprintf(blocked, sizeof blocked, "%s/b/%s", f->root, file);
     snprintf(aside, sizeof aside, "%s.aside", blocked);
     steps_left = 2;
-    assert_int_equal(train_asked(f, "b", false, block_after_two_steps), ERROR_OUTPUT);
+    assert_int_equal(train_asked(f, "b", false, block_after_two_steps), MERLIN_CANNOT_WRITE);
     assert_int_equal(rmdir(blocked), 0);
     assert_int_equal(rename(aside, blocked), 0);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
@@ -388,18 +388,18 @@ static void run_is_not_overwritten_without_resume(void **state)
     const fixture *f = *state;
     write_config(f, 4, 2, 2, jitter);
     assert_int_equal(train(f, "a", false, 0), OK);
-    assert_int_equal(train(f, "a", false, 0), ERROR_USAGE);
+    assert_int_equal(train(f, "a", false, 0), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "--resume"));
-    assert_int_equal(train(f, "c", true, 0), ERROR_INPUT);
+    assert_int_equal(train(f, "c", true, 0), MERLIN_BAD_INPUT);
 }
 
 static void checkpoint_of_another_configuration_is_refused(void **state)
 {
     const fixture *f = *state;
     write_config(f, 12, 2, 2, jitter);
-    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    assert_int_equal(train(f, "a", false, 1), MERLIN_STOPPED);
     write_config(f, 14, 2, 2, jitter);
-    assert_int_equal(train(f, "a", true, 0), ERROR_INPUT);
+    assert_int_equal(train(f, "a", true, 0), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "another \"presentations\""));
 }
 
@@ -436,14 +436,14 @@ static void checkpoint_of_impossible_counts_is_refused(void **state)
     char path[600];
     snprintf(path, sizeof path, "%s/a/checkpoint.safetensors", f->root);
     write_config(f, 12, 2, 2, jitter);
-    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    assert_int_equal(train(f, "a", false, 1), MERLIN_STOPPED);
     size_t size;
     char *good;
     assert_int_equal(file_read(path, 1 << 28, &good, &size), OK);
     for (size_t i = 0; i < sizeof LIES / sizeof *LIES; i++) {
         assert_int_equal(file_write(path, good, size), OK);
         falsify_checkpoint(path, LIES[i][0], LIES[i][1]);
-        assert_int_equal(train(f, "a", true, 0), ERROR_INPUT);
+        assert_int_equal(train(f, "a", true, 0), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), path));
     }
     free(good);
@@ -454,7 +454,7 @@ static void a_run_goes_on_with_less_memory(void **state)
 {
     const fixture *f = *state;
     write_config(f, 12, 2, 2, jitter);
-    assert_int_equal(train(f, "a", false, 1), ERROR_STOPPED);
+    assert_int_equal(train(f, "a", false, 1), MERLIN_STOPPED);
     size_t size;
     char *text;
     assert_int_equal(file_read(f->config, 1 << 20, &text, &size), OK);
@@ -491,7 +491,7 @@ static void a_run_goes_on_by_a_configuration_in_parts(void **state)
     const fixture *f = *state;
     write_config(f, 12, 2, 2, jitter);
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());
-    assert_int_equal(train(f, "b", false, 3), ERROR_STOPPED);
+    assert_int_equal(train(f, "b", false, 3), MERLIN_STOPPED);
     write_in_parts(f);
     if (train(f, "b", true, 0) != OK) fail_msg("%s", status_message());
     same_run(f, "a", "b");
@@ -508,7 +508,7 @@ static void weights_without_a_checkpoint_are_kept(void **state)
     snprintf(path, sizeof path, "%s/a/validation.csv", f->root);
     struct stat before, after;
     assert_int_equal(stat(path, &before), 0);
-    assert_int_equal(train(f, "a", false, 0), ERROR_USAGE);
+    assert_int_equal(train(f, "a", false, 0), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "checkpoint is gone"));
     assert_int_equal(stat(path, &after), 0);
     assert_true(before.st_size > 0 && after.st_size == before.st_size);
@@ -518,7 +518,7 @@ static void more_held_back_than_there_are_is_refused(void **state)
 {
     const fixture *f = *state;
     write_config(f, 4, 2, SAMPLES, jitter);
-    assert_int_equal(train(f, "a", false, 0), ERROR_INPUT);
+    assert_int_equal(train(f, "a", false, 0), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "validation_count"));
     char *output = file_join(f->root, "a");
     assert_false(file_exists(output)); /* nor is a folder left behind */
@@ -549,7 +549,7 @@ static void weights_that_a_run_starts_from_are_not_replaced(void **state)
     snprintf(checkpoint, sizeof checkpoint, "%s/a/checkpoint.safetensors", f->root);
     snprintf(weights, sizeof weights, "%s/a/../a/weights.safetensors", f->root);
     assert_int_equal(remove(checkpoint), 0);
-    assert_int_equal(train_from(f, "a", weights), ERROR_USAGE);
+    assert_int_equal(train_from(f, "a", weights), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "name another folder"));
     assert_int_equal(train_from(f, "b", weights), OK);
 }
@@ -575,7 +575,7 @@ static void later_shared_weights_replace_earlier_ones(void **state)
     char checkpoint[600];
     snprintf(checkpoint, sizeof checkpoint, "%s/b/checkpoint.safetensors", f->root);
     assert_int_equal(remove(checkpoint), 0);
-    assert_int_equal(train_from_shared(f, "b", (const char *const[]){weights[0], weights[1], NULL}), ERROR_USAGE);
+    assert_int_equal(train_from_shared(f, "b", (const char *const[]){weights[0], weights[1], NULL}), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "name another folder"));
 }
 

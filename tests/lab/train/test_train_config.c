@@ -40,7 +40,7 @@ static void refuses(const char *from, const char *to, const char *word)
     char *text = malloc(size);
     assert_non_null(text);
     snprintf(text, size, "%.*s%s%s", (int)(at - good), good, to, at + strlen(from));
-    assert_int_equal(train_config_parse(text, strlen(text), "test.json", &m, &t), ERROR_INPUT);
+    assert_int_equal(train_config_parse(text, strlen(text), "test.json", &m, &t), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), word)) fail_msg("\"%s\" does not name %s", status_message(), word);
     free(text);
     free(good);
@@ -70,7 +70,8 @@ static void a_network_alone_is_no_run(void **unused)
     (void)unused;
     model_config m;
     train_config t;
-    assert_int_equal(train_config_read(MERLIN_SOURCE_DIR "/configs/models/merlin-point.json", &m, &t), ERROR_INPUT);
+    assert_int_equal(train_config_read(MERLIN_SOURCE_DIR "/configs/models/merlin-point.json", &m, &t),
+                     MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "describes a network"));
 }
 

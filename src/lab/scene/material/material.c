@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/scene/material/material.h"
 
-#include "lab/scene/shape/noise.h"
 #include "base/number.h"
+#include "lab/scene/shape/noise.h"
 
 static lane_set on_parts(const material_points *at, uint32_t parts)
 {

@@ -4,9 +4,9 @@
 #define MERLIN_LAB_SCENE_MATERIAL_MATERIAL_H
 
 #include "lab/scene/material/pattern.h"
+#include "lab/scene/material/texture.h"
 #include "lab/scene/scene.h"
 #include "lab/scene/shape/shape.h"
-#include "lab/scene/material/texture.h"
 
 /* One stuff: up to three colours mixed by a pattern, and a roughness that may follow it. */
 typedef struct paint {

@@ -2,8 +2,8 @@
 /* Which paints an object wears: plain, painted, grown or weathered, as objects are. */
 #include <stdlib.h>
 
-#include "lab/scene/material/material.h"
 #include "base/number.h"
+#include "lab/scene/material/material.h"
 #include "lab/scene/material/palette.h"
 
 static const uint32_t ALL_PARTS = 0xffffffffu;

@@ -3,8 +3,8 @@
 
 #include <stdbool.h>
 
-#include "image/color.h"
 #include "base/number.h"
+#include "image/color.h"
 
 static float channel(float hue, float saturation, float value, float offset)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/scene/material/pattern.h"
 
+#include "base/number.h"
 #include "lab/scene/shape/glyph.h"
 #include "lab/scene/shape/noise.h"
-#include "base/number.h"
 #include "lab/scene/shape/shape.h"
 
 static float wave(float x)

@@ -12,8 +12,8 @@
 
 #include "base/skipped.h"
 #include "image/image.h"
-#include "mesh/mesh.h"
 #include "lab/scene/scene.h"
+#include "mesh/mesh.h"
 
 /* Each image is one tile, repeated without end; u runs right and v up, both in the tile's widths. */
 typedef struct scn_texture {
@@ -41,8 +41,8 @@ typedef struct texture_place {
  * usual libraries name them: brick_albedo.png (basecolor, color, diffuse), brick_roughness.png (rough),
  * brick_normal.png (nor_gl, normalgl: green is up; nor_dx, normaldx: down). Files called by such a word alone, as in
  * brick/albedo.png, are one material a folder. A picture without such a word is an albedo alone; other maps (height,
- * metalness, ...) are passed over. Tiles are shrunk to at most 512 pixels a side. ERROR_INPUT if there is no albedo at
- * all. */
+ * metalness, ...) are passed over. Tiles are shrunk to at most 512 pixels a side. MERLIN_BAD_INPUT if there is no
+ * albedo at all. */
 status scn_textures_read(const char *folder, scn_textures *out);
 void scn_textures_free(scn_textures *textures);
 

@@ -6,10 +6,10 @@
 #include <strings.h>
 
 #include "base/file.h"
+#include "base/number.h"
 #include "image/formats/kind.h"
 #include "image/read/read.h"
 #include "image/resize.h"
-#include "base/number.h"
 #include "lab/scene/material/texture.h"
 
 enum { LARGEST_TILE = 512 };
@@ -122,7 +122,7 @@ static status read_tile(const source *s, img *out)
 static status slopes(const source *s, const img *normal, img *out)
 {
     static const float STEEPEST = 3;
-    if (normal->channels != 3) return fail(ERROR_INPUT, "%s is grey: a normal map has three channels", s->path);
+    if (normal->channels != 3) return fail(MERLIN_BAD_INPUT, "%s is grey: a normal map has three channels", s->path);
     status st = img_new(out, normal->width, normal->height, 2);
     if (st != OK) return st;
     float down = s->kind == MAP_NORMAL_DOWN ? -1.0f : 1.0f;
@@ -178,7 +178,7 @@ static status read_material(source *all, size_t count, const source *albedo, scn
 static status read_materials(source *all, size_t count, const char *folder, scn_textures *out)
 {
     out->texture = calloc(count + 1, sizeof *out->texture);
-    if (!out->texture) return fail(ERROR_MEMORY, "out of memory for the materials of %s", folder);
+    if (!out->texture) return fail(MERLIN_NO_MEMORY, "out of memory for the materials of %s", folder);
     status s = OK;
     for (size_t i = 0; s == OK && i < count; i++) {
         if (all[i].kind != MAP_ALBEDO || partner(all, i, &all[i], MAP_ALBEDO)) continue;
@@ -186,7 +186,7 @@ static status read_materials(source *all, size_t count, const char *folder, scn_
         out->count += s == OK;
     }
     if (s == OK && out->count == 0)
-        s = fail(ERROR_INPUT,
+        s = fail(MERLIN_BAD_INPUT,
                  "%s holds no materials: give pictures named like brick_albedo.png, brick_normal.png, "
                  "brick_roughness.png",
                  folder);
@@ -225,7 +225,7 @@ status scn_textures_read(const char *folder, scn_textures *out)
     if (s != OK) return s;
     s = keep_pictures(names, &count, folder, &out->skipped);
     source *all = calloc(count + 1, sizeof *all);
-    if (s == OK && !all) s = fail(ERROR_MEMORY, "out of memory for the names in %s", folder);
+    if (s == OK && !all) s = fail(MERLIN_NO_MEMORY, "out of memory for the names in %s", folder);
     for (size_t i = 0; s == OK && i < count; i++)
         all[i] = classify(names[i]);
     if (s == OK) s = read_materials(all, count, folder, out);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/scene/shape/glyph.h"
 
-#include "lab/scene/shape/noise.h"
 #include "base/number.h"
+#include "lab/scene/shape/noise.h"
 
 enum { ALPHABET = 24, STROKES = 4 };
 

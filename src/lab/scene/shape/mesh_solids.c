@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/mesh.h"
 #include "base/number.h"
+#include "mesh/mesh.h"
 
 typedef struct lattice {
     scn_mesh *mesh;

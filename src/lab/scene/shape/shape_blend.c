@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Smooth implicit bodies: heaps of melted solids, and figures with body, head, limbs, ears and eyes, alike on both
  * sides, as toys and figurines are. */
-#include "lab/scene/shape/implicit.h"
 #include "base/number.h"
+#include "lab/scene/shape/implicit.h"
 #include "lab/scene/shape/shape.h"
 
 /* Cells along the longest side: the longer and thinner the body, the fewer triangles a cell count makes. */

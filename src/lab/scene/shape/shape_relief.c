@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Nearly flat things with fine relief on their front: coins, plaques, tablets, tiles, cushions, folded sheets. */
+#include "base/number.h"
 #include "lab/scene/shape/glyph.h"
 #include "lab/scene/shape/noise.h"
-#include "base/number.h"
 #include "lab/scene/shape/shape.h"
 
 enum { GRID = 116 };

@@ -13,7 +13,7 @@ status dnn_open(void **out)
     *out = NULL;
     threads_begin();
     dnn_context *context = calloc(1, sizeof *context);
-    if (!context) return fail(ERROR_MEMORY, "no memory for a device");
+    if (!context) return fail(MERLIN_NO_MEMORY, "no memory for a device");
     status s = dnn_check(dnnl_engine_create(&context->engine, dnnl_cpu, 0), "engine");
     if (s == OK)
         s = dnn_check(dnnl_stream_create(&context->stream, context->engine, dnnl_stream_default_flags), "stream");

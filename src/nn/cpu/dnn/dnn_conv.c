@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "nn/cpu/kernels/conv_parts.h"
 #include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/kernels/conv_parts.h"
 #include "nn/cpu/kernels/kernels.h"
 #include "nn/cpu/kernels/steps.h"
 
@@ -290,7 +290,7 @@ status conv_create(nn_step *step)
 {
     static const step_functions functions = {conv_bind, conv_refresh, conv_forward, conv_backward, conv_release};
     conv *state = calloc(1, sizeof *state);
-    if (!state) return fail(ERROR_MEMORY, "no memory for a convolution");
+    if (!state) return fail(MERLIN_NO_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = state;
     step->reads_in = true;

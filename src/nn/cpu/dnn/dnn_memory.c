@@ -18,7 +18,8 @@ static const char *reason(dnnl_status_t code)
 status dnn_check(dnnl_status_t code, const char *what)
 {
     if (code == dnnl_success) return OK;
-    return fail(code == dnnl_out_of_memory ? ERROR_MEMORY : ERROR_DEVICE, "oneDNN: %s: %s", what, reason(code));
+    return fail(code == dnnl_out_of_memory ? MERLIN_NO_MEMORY : MERLIN_DEVICE_FAILED, "oneDNN: %s: %s", what,
+                reason(code));
 }
 
 dnnl_data_type_t dnn_type(nn_type type)

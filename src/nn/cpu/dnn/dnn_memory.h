@@ -8,7 +8,7 @@
 
 #include "nn/device.h"
 
-/* OK, or ERROR_DEVICE with "oneDNN: what: reason". */
+/* OK, or MERLIN_DEVICE_FAILED with "oneDNN: what: reason". */
 status dnn_check(dnnl_status_t code, const char *what);
 
 /* A tensor's sizes and type in memory; the tag says in which order, or dnnl_format_tag_any. */

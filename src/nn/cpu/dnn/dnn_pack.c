@@ -75,7 +75,7 @@ status dnn_packing_new(const dnn_shape *from, const float *source, dnn_layout to
     if (!read_blocking(to, &b) || !is_padded(&b, from)) return OK;
     size_t count = (size_t)(from->size[0] * from->size[1] * from->size[2] * from->size[3]);
     *out = malloc(sizeof **out + count * sizeof(uint32_t));
-    if (!*out) return fail(ERROR_MEMORY, "no memory for weights");
+    if (!*out) return fail(MERLIN_NO_MEMORY, "no memory for weights");
     (*out)->count = count;
     (*out)->source = source;
     (*out)->target = target;

@@ -11,7 +11,7 @@
 typedef struct dnn_packing dnn_packing;
 
 /* Plans the copy of float32 weights in PyTorch's order (out, in, height, width) into a layout of float32 or bfloat16,
- * whose padding must be zero already. *out is NULL where oneDNN's reorder is to do it. ERROR_MEMORY. */
+ * whose padding must be zero already. *out is NULL where oneDNN's reorder is to do it. MERLIN_NO_MEMORY. */
 status dnn_packing_new(const dnn_shape *from, const float *source, dnn_layout to, void *target, dnn_packing **out);
 void dnn_packing_free(dnn_packing *packing);
 void dnn_pack(const dnn_packing *packing);

@@ -40,7 +40,7 @@ static status allocate_tensors(nn_step *step, void *memory[6])
     memory[4] = step->forward_space = new_written(step->forward_scratch);
     memory[5] = step->backward_space = new_written(step->backward_scratch);
     for (int i = 0; i < 6; i++)
-        if (!memory[i]) return fail(ERROR_MEMORY, "no memory to measure the peak rate");
+        if (!memory[i]) return fail(MERLIN_NO_MEMORY, "no memory to measure the peak rate");
     return OK;
 }
 
@@ -85,7 +85,7 @@ status cpu_measure_peak(void *context, nn_type type, nn_peak *out)
                     .params = {.weight = &weight},
                     .context = context};
     status s = weight.value && weight.gradient ? measure(&step, out)
-                                               : fail(ERROR_MEMORY, "no memory to measure the peak rate");
+                                               : fail(MERLIN_NO_MEMORY, "no memory to measure the peak rate");
     memory_free(weight.value);
     memory_free(weight.gradient);
     return s;

@@ -21,7 +21,7 @@ status conv_own(nn_step *step, size_t bytes, void **memory)
 {
     *memory = memory_new(bytes);
     step->own_bytes += bytes;
-    return *memory ? OK : fail(ERROR_MEMORY, "no memory for weights");
+    return *memory ? OK : fail(MERLIN_NO_MEMORY, "no memory for weights");
 }
 
 size_t conv_weights_bytes(const nn_step *step)

@@ -196,7 +196,7 @@ static double total_mask(const cpu_tensor *mask)
 
 static status no_memory(const operands *o)
 {
-    return fail(ERROR_MEMORY, "no memory to compare pictures of %dx%d", o->prediction->w, o->prediction->h);
+    return fail(MERLIN_NO_MEMORY, "no memory to compare pictures of %dx%d", o->prediction->w, o->prediction->h);
 }
 
 /* What is done with a plane once its windows' means are known. */

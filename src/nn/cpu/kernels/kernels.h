@@ -101,7 +101,7 @@ float cpu_masked_gradient_l2(const cpu_tensor *prediction, const cpu_tensor *tar
 void cpu_masked_gradient_l2_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                                      double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
 
-/* ERROR_MEMORY. */
+/* MERLIN_NO_MEMORY. */
 status cpu_masked_dssim(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                         double *mask_sum, float *loss);
 status cpu_masked_dssim_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,

@@ -14,7 +14,8 @@
 /* Floats of workspace for a channel count. */
 size_t norm_partial_floats(int channels);
 
-/* Mean and biased variance per channel, of the rows of all ranks. sums: room for two doubles a channel. ERROR_MEMORY.
+/* Mean and biased variance per channel, of the rows of all ranks. sums: room for two doubles a channel.
+ * MERLIN_NO_MEMORY.
  */
 status norm_statistics(const nn_tensor *x, const ranks *together, float *partial, double *sums, float *mean,
                        float *variance);
@@ -27,7 +28,7 @@ typedef struct norm_channels {
     float *dgamma, *dbeta;
 } norm_channels;
 /* dx (added to if accumulate), dgamma and dbeta from dy; where ReLU cut is recomputed from x. dx NULL: none is wanted.
- * dgamma and dbeta are this rank's own share. sums as above. ERROR_MEMORY. */
+ * dgamma and dbeta are this rank's own share. sums as above. MERLIN_NO_MEMORY. */
 status norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const norm_channels *c, const ranks *together,
                      float *partial, double *sums, nn_tensor *dx, bool accumulate);
 

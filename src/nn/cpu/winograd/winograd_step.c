@@ -117,7 +117,7 @@ status winograd_create(nn_step *step)
 {
     static const step_functions functions = {NULL, refresh, forward, backward, release};
     state *own = calloc(1, sizeof *own);
-    if (!own) return fail(ERROR_MEMORY, "no memory for a convolution");
+    if (!own) return fail(MERLIN_NO_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = own;
     step->reads_in = true;
