@@ -1,9 +1,10 @@
 # One static library a folder of src/, and one program a folder of commands.
 
-# merlin_module(FOLDER LINK targets...): src/FOLDER/**.c becomes merlin_NAME, NAME the folder's own name; a folder of
-# headers alone becomes an interface library.
+# merlin_module(FOLDER [PARTS folders...] LINK targets...): src/FOLDER/**.c becomes merlin_NAME, NAME the folder's own
+# name; a folder of headers alone becomes an interface library. PARTS is for tools/check-includes: all sub-folders, in
+# the order in which they stand on one another.
 function(merlin_module folder)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PARTS;LINK" ${ARGN})
   get_filename_component(name ${folder} NAME)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
   if(sources)
@@ -30,9 +31,9 @@ function(merlin_loads name macro library)
   target_include_directories(merlin_${name} SYSTEM PRIVATE ${ARGN})
 endfunction()
 
-# merlin_program(NAME FOLDER LINK targets...): src/FOLDER/**.c becomes the program NAME.
+# merlin_program(NAME FOLDER [PARTS folders...] LINK targets...): src/FOLDER/**.c becomes the program NAME.
 function(merlin_program name folder)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PARTS;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LINK})

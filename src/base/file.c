@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "base/leftovers.h"
-#include "base/text/plain_locale.h"
+#include "base/plain_locale.h"
 
 bool file_exists(const char *path)
 {

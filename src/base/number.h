@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Minimum, maximum and a smooth step that compile to an instruction or two: fminf and fmaxf are calls into the library,
+/* Minimum, maximum, a smooth step that compile to an instruction or two: fminf and fmaxf are calls into the library,
  * because they promise more about NaN than anybody here needs. */
 #ifndef MERLIN_BASE_NUMBER_H
 #define MERLIN_BASE_NUMBER_H
@@ -24,6 +24,13 @@ static inline float smooth_step(float a, float b, float x)
 {
     float t = clamp_to(0, 1, (x - a) / (b - a));
     return t * t * (3 - 2 * t);
+}
+
+/* Compares two floats for qsort. */
+static inline int number_ascending(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
 }
 
 #endif

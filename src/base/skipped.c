@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/text/utf8.h"
+#include "base/utf8.h"
 
 /* Bytes kept free behind the names for ", ... and 1234567 more". */
 enum { ROOM_FOR_MORE = 32 };

@@ -18,7 +18,7 @@
 typedef merlin_status status;
 
 #define OK MERLIN_OK
-/* Another process of the same work has failed, and says why (base/ranks.h). No public function returns it. */
+/* Another process of the same work has failed, and says why (base/ranks/ranks.h). No public function returns it. */
 #define STATUS_ELSEWHERE ((status)(MERLIN_STOPPED + 1))
 
 /* Records the message and returns s. */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/messages.h"
-#include "base/text/utf8.h"
+#include "base/utf8.h"
 
 void warnings_add(warnings *list, const char *code, const char *format, ...)
 {

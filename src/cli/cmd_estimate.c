@@ -24,9 +24,11 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/api.h"
+#include "estimate/files/maps_files.h"
 #include "estimate/light/light_words.h"
 #include "estimate/photo/doubts.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/photo/photo_object.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"

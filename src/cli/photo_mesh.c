@@ -2,7 +2,7 @@
 #include "cli/photo_mesh.h"
 
 #include "base/file.h"
-#include "estimate/api.h"
+#include "estimate/relight/maps_surface.h"
 #include "estimate/surface/fill.h"
 #include "mesh/write/mesh_write.h"
 

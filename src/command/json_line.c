@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/text/utf8.h"
+#include "base/utf8.h"
 
 static cJSON *string_of(const char *text)
 {

@@ -14,7 +14,7 @@
 #include <stdbool.h>
 
 #include "command/photos.h"
-#include "estimate/api.h"
+#include "estimate/photo/photo_object.h"
 
 typedef struct photo_ahead {
     const photo_job *job; /* borrowed */

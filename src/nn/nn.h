@@ -24,7 +24,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 #include "base/status.h"
 
 typedef struct nn_graph nn_graph;

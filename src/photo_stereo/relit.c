@@ -2,7 +2,8 @@
 #include "photo_stereo/relit.h"
 
 #include "base/rng.h"
-#include "estimate/api.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/relight/stage.h"
 #include "optics/light.h"
 #include "photo_stereo/near_capture.h"
 

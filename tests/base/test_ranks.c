@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 
 enum { RANKS = 3, MOST = 1000003 };
 

@@ -2,8 +2,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "estimate/api.h"
 #include "estimate/light/env_map.h"
+#include "estimate/relight/stage.h"
+#include "image/exr/exr.h"
+#include "image/image.h"
+#include "merlin/merlin.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
 #include "scratch.h"

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "estimate/api.h"
+#include "base/vec.h"
+#include "estimate/files/maps_files.h"
+#include "estimate/surface/crop.h"
 #include "flat.h"
 
 enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT, RADIUS = 15 };

@@ -3,7 +3,7 @@
 #ifndef MERLIN_TESTS_FORKED_RANKS_H
 #define MERLIN_TESTS_FORKED_RANKS_H
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 
 /* Memory that all ranks see, zeroed. Ends the test where there is none. */
 void *forked_memory(size_t bytes);

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "base/text/plain_locale.h"
+#include "base/plain_locale.h"
 
 enum { LONGEST = 400 };
 

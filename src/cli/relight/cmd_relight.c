@@ -23,9 +23,10 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/api.h"
 #include "estimate/files/report.h"
 #include "estimate/photo/doubts.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/relight/stage.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/relight/relight_parts.h"
+#include "estimate/photo/model_pair.h"
 
 enum { USUAL_FRAME = 512 };
 

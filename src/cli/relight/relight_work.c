@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "estimate/photo/model_pair.h"
+#include "estimate/relight/maps_surface.h"
+
 status relight_check(const relight_work *w)
 {
     return w->job->stop && w->job->stop() ? fail(MERLIN_STOPPED, "stopped") : OK;

@@ -5,8 +5,8 @@
 
 #include "cli/relight/relight_job.h"
 #include "cli/relight/relight_sheet.h"
-#include "estimate/api.h"
 #include "estimate/light/found_light.h"
+#include "estimate/relight/stage.h"
 
 typedef struct relight_work {
     const relight_job *job;

@@ -6,7 +6,10 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "estimate/api.h"
+#include "estimate/files/maps_files.h"
+#include "estimate/surface/crop.h"
+#include "image/exr/exr.h"
+#include "image/image.h"
 #include "model/model.h"
 #include "optics/camera.h"
 #include "optics/light.h"

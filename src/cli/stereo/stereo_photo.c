@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "command/photo_ahead.h"
 #include "estimate/photo/doubts.h"
+#include "estimate/photo/model_pair.h"
 #include "photo_stereo/draws.h"
 #include "photo_stereo/relit.h"
 #include "stereo/integrate/integrate.h"

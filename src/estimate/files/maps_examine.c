@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "estimate/api.h"
+#include "estimate/relight/maps_surface.h"
 
 enum { MOST_LAYERS = 16 };
 /* Shares of the object: of a tenth a map is another than it says; of a hundredth it is worth a word. */

@@ -9,11 +9,16 @@
 
 #include "base/file.h"
 #include "base/half.h"
-#include "estimate/api.h"
+#include "base/public.h"
 #include "estimate/files/maps_examine.h"
+#include "estimate/files/maps_files.h"
+#include "estimate/photo/network.h"
+#include "estimate/surface/crop.h"
 #include "estimate/surface/exposure.h"
+#include "estimate/surface/surface.h"
 #include "image/exr/exr_place.h"
 #include "image/read/read.h"
+#include "model/model.h"
 
 enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
 /* Sizes beyond NETWORK_SIZE stand in files of versions that let the network see so much. */

@@ -8,9 +8,11 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "estimate/api.h"
+#include "base/public.h"
 #include "estimate/files/map_png.h"
+#include "estimate/files/maps_files.h"
 #include "estimate/files/overview.h"
+#include "estimate/photo/model_pair.h"
 #include "image/write/write.h"
 
 /* ---- one file each ---- */

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "estimate/relight/maps_surface.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
 #include "image/resize.h"

@@ -11,7 +11,7 @@
 #ifndef MERLIN_ESTIMATE_FILES_OVERVIEW_H
 #define MERLIN_ESTIMATE_FILES_OVERVIEW_H
 
-#include "estimate/api.h"
+#include "estimate/relight/stage.h"
 #include "image/write/figure.h"
 
 /* The photograph first. */

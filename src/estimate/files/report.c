@@ -3,7 +3,7 @@
 #include <cJSON.h>
 #include <math.h>
 
-#include "estimate/api.h"
+#include "estimate/files/maps_files.h"
 #include "estimate/files/report.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"

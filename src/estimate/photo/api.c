@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/api.h"
+#include "estimate/photo/model_pair.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/public.h"
 #include "base/threads.h"
 #include "estimate/object/mask.h"
 #include "image/read/read.h"

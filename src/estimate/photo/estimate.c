@@ -6,13 +6,14 @@
 #include <string.h>
 
 #include "base/progress.h"
-#include "estimate/api.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/relight_env.h"
 #include "estimate/photo/detail.h"
 #include "estimate/photo/doubts.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/light_choice.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/photo/photo_object.h"
 #include "estimate/surface/exposure.h"
 #include "image/read/read.h"
 

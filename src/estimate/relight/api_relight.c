@@ -3,8 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "estimate/api.h"
 #include "estimate/light/found_light.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/relight/maps_surface.h"
+#include "estimate/relight/stage.h"
 
 enum { LARGEST_SIDE = 8000 };
 

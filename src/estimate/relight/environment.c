@@ -4,8 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "estimate/api.h"
+#include "base/public.h"
+#include "estimate/relight/stage.h"
 #include "image/read/read.h"
+#include "merlin/merlin.h"
 
 /* The well lit of the training data (render/environment.c). */
 static const float MEAN_LUMINANCE = 1.0f;

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "estimate/api.h"
 #include "estimate/light/bounce.h"
 #include "estimate/light/relight_env.h"
+#include "estimate/relight/stage.h"
 
 /* Shadows are looked for at most at this many points a side. */
 enum { SHADOW_SIDE = 512 };

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "estimate/api.h"
 #include "estimate/light/relight_env.h"
+#include "estimate/relight/stage.h"
 
 /* Stops above and below 1 that are told apart, by 32 bins each. */
 enum { STOPS = 24, BINS_BY_STOP = 32, BINS = 2 * STOPS * BINS_BY_STOP };

@@ -11,6 +11,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photo_ahead.h"
+#include "estimate/photo/model_pair.h"
 #include "lab/cli/eval_commands.h"
 #include "lab/eval/doubt_table.h"
 #include "lab/render/sample.h"

@@ -11,6 +11,7 @@
 #include "command/options.h"
 #include "command/photo_ahead.h"
 #include "estimate/files/overview.h"
+#include "estimate/photo/model_pair.h"
 #include "image/resize.h"
 #include "lab/cli/eval_commands.h"
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "estimate/photo/network.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
 #include "lab/render/sample.h"

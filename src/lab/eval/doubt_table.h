@@ -12,7 +12,7 @@
 
 #include <stdio.h>
 
-#include "estimate/api.h"
+#include "estimate/photo/photo_object.h"
 
 typedef enum doubt_kind {
     DOUBT_RIGHT_PHOTO, /* taken by a flash at the lens */

@@ -3,7 +3,7 @@
 #include <cJSON.h>
 #include <stdlib.h>
 
-#include "base/text/utf8.h"
+#include "base/utf8.h"
 #include "estimate/files/report.h"
 #include "lab/eval/mask_table.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "estimate/api.h"
+#include "estimate/photo/model_pair.h"
 #include "lab/eval/normal_frame.h"
 #include "lab/eval/stereo_frame.h"
 #include "lab/eval/stereo_object.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_mpi.so: ranks that speak MPI (base/ranks.h). Loaded by those alone who ask for it. */
+/* merlin_mpi.so: ranks that speak MPI (base/ranks/ranks.h). Loaded by those alone who ask for it. */
 #include <limits.h>
 #include <mpi.h>
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 
 ranks *merlin_ranks_begin(void);
 

@@ -14,7 +14,7 @@
 #include "lab/render/contents.h"
 #include "lab/render/streams.h"
 #include "lab/scene/material/texture.h"
-#include "lab/scene/model_folder.h"
+#include "lab/scene/object/model_folder.h"
 
 /* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
 typedef struct run {

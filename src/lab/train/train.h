@@ -13,7 +13,7 @@
 
 #include <stdbool.h>
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 #include "base/status.h"
 
 typedef struct trn_options {

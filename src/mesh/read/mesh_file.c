@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
-#include "base/text/plain_locale.h"
+#include "base/plain_locale.h"
 #include "mesh/read/mesh_gltf.h"
 #include "mesh/read/mesh_limits.h"
 #include "mesh/read/mesh_obj.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "stereo/calibrate/calibrate.h"
+#include "base/number.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -157,7 +158,7 @@ static status find_room(const pst_capture *c, const ball_view *view, const pst_c
         if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
         img_free(&picture);
     }
-    qsort(level, count, sizeof *level, pst_ascending);
+    qsort(level, count, sizeof *level, number_ascending);
     for (size_t p = 0; p < pixels_of(c) && count > 0; p++)
         constant->data[p] = level[count / 2];
     free(level);

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "base/parallel.h"
 #include "stereo/capture/capture_parts.h"
-#include "stereo/fit/pixel_fit.h"
 
 enum { LEAST_EDGE = 2, SAMPLE = 65536 };
 /* Width of the edge, in the picture's shorter side. */
@@ -49,7 +49,7 @@ static size_t sorted_sample(const img *level, int wide, float *sample)
             if (seen++ % step == 0) sample[count++] = *img_at(level, x, y);
         }
     }
-    qsort(sample, count, sizeof *sample, pst_ascending);
+    qsort(sample, count, sizeof *sample, number_ascending);
     return count;
 }
 
@@ -63,7 +63,7 @@ static thresholds edge_thresholds(const img *level, float *sample)
     if (median >= limit) return (thresholds){-1, -1};
     for (size_t i = 0; i < count; i++)
         sample[i] = fabsf(sample[i] - median);
-    qsort(sample, count, sizeof *sample, pst_ascending);
+    qsort(sample, count, sizeof *sample, number_ascending);
     float deviation = fmaxf(deviation_of_median * sample[count / 2], least_deviation * median);
     return (thresholds){median + surely * deviation, median + possibly * deviation};
 }

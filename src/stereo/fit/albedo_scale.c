@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "stereo/fit/albedo_scale.h"
+#include "base/number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,7 +30,7 @@ status pst_scale_albedo(img *albedo, const img *mask, float *scale)
     float *sample = malloc((size_t)albedo->channels * MOST_PIXELS * sizeof *sample);
     if (!sample) return fail(MERLIN_NO_MEMORY, "no memory for the scale of an albedo");
     size_t count = sample_values(albedo, mask, sample);
-    qsort(sample, count, sizeof *sample, pst_ascending);
+    qsort(sample, count, sizeof *sample, number_ascending);
     float bright = count ? sample[count * 99 / 100] : 0;
     if (bright > 0) *scale = BRIGHT / bright;
     free(sample);

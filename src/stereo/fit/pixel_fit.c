@@ -5,6 +5,7 @@
  * the darkest), the best of several starts kept. Observations that the fit turns away from the light do not vote, but a
  * bright one among them costs. */
 #include "stereo/fit/pixel_fit.h"
+#include "base/number.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,12 +79,6 @@ static float loss(const pst_observations *o, vec3 b, float width)
     return cost;
 }
 
-int pst_ascending(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static pst_pixel fit_from(const pst_observations *o, float low, float high, float *w)
 {
     for (int i = 0; i < o->padded; i++)
@@ -106,7 +101,7 @@ pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
         if (o->usable[i] > 0) sorted[n++] = o->value[i];
     memset(weight, 0, (size_t)o->padded * sizeof *weight);
     if (n == 0) return (pst_pixel){{0, 0, 0}, 0};
-    qsort(sorted, n, sizeof *sorted, pst_ascending);
+    qsort(sorted, n, sizeof *sorted, number_ascending);
     pst_pixel best = {{0, 0, 0}, HUGE_VALF};
     for (int s = 0; s < STARTS; s++) {
         float last = (float)(n - 1);

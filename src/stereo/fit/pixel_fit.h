@@ -49,9 +49,6 @@ typedef struct pst_pixel {
     float cost; /* sum of the robust loss over the usable observations, each in [0, 1] */
 } pst_pixel;
 
-/* For qsort, of float. */
-int pst_ascending(const void *a, const void *b);
-
 /* weight gets each observation's share in the fit, in [0, 1]. */
 pst_pixel pst_pixel_fit(const pst_observations *o, float *weight);
 

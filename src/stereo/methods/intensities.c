@@ -5,6 +5,7 @@
  * shadows and highlights can be left out pixel by pixel; what remains of all pixels is a quadratic form in x, and x its
  * smallest eigenvector. Weights come from the robust fit under the intensities so far. */
 #include "stereo/methods/intensities.h"
+#include "base/number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,7 +64,7 @@ double pst_intensities_about(const float *ratio, size_t count, double middle)
 double pst_intensities_typical(float *ratio, size_t count)
 {
     if (count == 0) return 1;
-    qsort(ratio, count, sizeof *ratio, pst_ascending);
+    qsort(ratio, count, sizeof *ratio, number_ascending);
     return pst_intensities_about(ratio, count, fmax((double)ratio[count / 2], 1e-6));
 }
 

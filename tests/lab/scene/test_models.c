@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Meshes of a folder as objects: drawn and deformed from (seed, index) alone, whatever else lies in the folder. */
-#include "lab/scene/model_folder.h"
+#include "lab/scene/object/model_folder.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #ifndef MERLIN_NN_CPU_KERNELS_NORM_H
 #define MERLIN_NN_CPU_KERNELS_NORM_H
 
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 #include "nn/tensor.h"
 
 #define NORM_EPSILON 1e-5f

@@ -7,8 +7,8 @@
  *     fprintf(f, "%g\n", x);
  *     uselocale(before);
  */
-#ifndef MERLIN_BASE_TEXT_PLAIN_LOCALE_H
-#define MERLIN_BASE_TEXT_PLAIN_LOCALE_H
+#ifndef MERLIN_BASE_PLAIN_LOCALE_H
+#define MERLIN_BASE_PLAIN_LOCALE_H
 
 #include <locale.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/scene/pose.h"
+#include "lab/scene/object/pose.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,8 +7,8 @@
  *     if (scn_models_chosen(seed, index, 0.5f)) s = scn_object_from_models(&models, seed, index, 60, &object);
  *     scn_models_free(&models);
  */
-#ifndef MERLIN_LAB_SCENE_MODEL_FOLDER_H
-#define MERLIN_LAB_SCENE_MODEL_FOLDER_H
+#ifndef MERLIN_LAB_SCENE_OBJECT_MODEL_FOLDER_H
+#define MERLIN_LAB_SCENE_OBJECT_MODEL_FOLDER_H
 
 #include <stdbool.h>
 

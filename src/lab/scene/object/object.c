@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "lab/scene/material/material.h"
-#include "lab/scene/pose.h"
+#include "lab/scene/object/pose.h"
 #include "lab/scene/scene.h"
 #include "lab/scene/shape/mesh_deform.h"
 #include "mesh/read/mesh_file.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/text/utf8.h"
+#include "base/utf8.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/text/plain_locale.h"
+#include "base/plain_locale.h"
 
 #include <pthread.h>
 

@@ -9,8 +9,8 @@
  * All ranks call the same functions in the same order, as they wait for each other in all of them. Sums are taken in
  * the order of the ranks, whoever comes first, so that every rank has the same bits and every run, too
  * (docs/notes/ranks.md). */
-#ifndef MERLIN_BASE_RANKS_H
-#define MERLIN_BASE_RANKS_H
+#ifndef MERLIN_BASE_RANKS_RANKS_H
+#define MERLIN_BASE_RANKS_RANKS_H
 
 #include <stddef.h>
 

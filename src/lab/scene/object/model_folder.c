@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/scene/model_folder.h"
+#include "lab/scene/object/model_folder.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Where an object stands before the camera: turned, sized by its silhouette, kept in frame. */
-#ifndef MERLIN_LAB_SCENE_POSE_H
-#define MERLIN_LAB_SCENE_POSE_H
+#ifndef MERLIN_LAB_SCENE_OBJECT_POSE_H
+#define MERLIN_LAB_SCENE_OBJECT_POSE_H
 
 #include "lab/scene/shape/shape.h"
 

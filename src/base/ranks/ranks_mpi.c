@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 
 static void *find_plugin(void)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/ranks.h"
+#include "base/ranks/ranks.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
