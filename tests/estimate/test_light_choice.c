@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "estimate/light/found_light.h"
+#include "merlin/merlin.h"
 #include "scratch.h"
 #include "weights.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "estimate/photo/doubts.h"
+#include "merlin/merlin.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

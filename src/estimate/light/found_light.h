@@ -9,9 +9,9 @@
 #define MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "estimate/light/env_map.h"
 #include "estimate/surface/surface.h"
+#include "merlin/merlin.h"
 #include "model/model.h"
 
 /* Takes the light from the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */

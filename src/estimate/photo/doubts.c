@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "base/status.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"
@@ -15,6 +14,7 @@
 #include "image/color.h"
 #include "image/metadata/exif.h"
 #include "image/read/read.h"
+#include "merlin/merlin.h"
 
 /* merlin.h says what they mean; docs/notes/doubts.md how they were found. */
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;

@@ -9,8 +9,8 @@
 #define MERLIN_ESTIMATE_PHOTO_LIGHT_CHOICE_H
 
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "estimate/photo/network.h"
+#include "merlin/merlin.h"
 
 typedef struct light_question {
     const img *photo, *mask; /* as of network_estimate */

@@ -2,8 +2,8 @@
 #include "lab/bench/bench_relight.h"
 
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "lab/bench/bench_ball.h"
+#include "merlin/merlin.h"
 
 enum { SIDE = 256 };
 

@@ -7,13 +7,13 @@
 
 #include "base/file.h"
 #include "base/public.h"
-#include "merlin/merlin.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
 #include "lab/cli/eval_commands.h"
 #include "lab/eval/mask_table.h"
+#include "merlin/merlin.h"
 
 static const char help[] =
     "usage: merlin-lab eval masks [PHOTO|FOLDER...] [--data DIR] [options]\n\n"
