@@ -18,7 +18,7 @@ manual() { sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/$1.1"; } # PROGRAM
 in_source() { # PROGRAM COMMAND: the names in its table, and those of the table that all have
     local folder=cli
     [[ $1 == merlin ]] || folder=lab/cli
-    grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$MERLIN_SOURCE_DIR/src/$folder/cmd_${2// /_}.c" \
+    grep -ohE '\{"[a-z-]+"(, .[a-z].)?, \.[a-z]+ = ' "$(find "$MERLIN_SOURCE_DIR/src/$folder" -name "cmd_${2// /_}.c")" \
         "$MERLIN_SOURCE_DIR/src/command/options.c" | sed 's/{"\([a-z-]*\)".*/--\1/' | sort -u
 }
 in_help() { # WORD...
