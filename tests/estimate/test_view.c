@@ -154,7 +154,7 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
     network_look *look;
-    assert_int_equal(network_look_new(n, &photo, &mask, NULL, &look), OK);
+    assert_int_equal(network_look_new(n, &photo, &mask, NULL, NETWORK_VIEWS, &look), OK);
     assert_int_equal(network_relight(n, look, &light, &relit), OK);
     network_look_free(look);
     for (int o = 1; o < 4; o++) {
@@ -166,7 +166,7 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
         const illumination turned = {vec3_of(place), (const float(*)[3])turned_environment};
         turn(&photo, o, &turned_photo);
         turn(&mask, o, &turned_mask);
-        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, NULL, &look), OK);
+        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, NULL, NETWORK_VIEWS, &look), OK);
         assert_int_equal(network_relight(n, look, &light, &other), OK);
         assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
         view_add(&back, &other, o, 1);
@@ -183,6 +183,41 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
         img_free(&back);
     }
     img_free(&relit);
+    img_free(&photo);
+    img_free(&mask);
+    network_close(n);
+}
+
+/* Albedo is neither smoothed nor fused. */
+static void what_the_network_sees_becomes_the_estimate(void **state)
+{
+    (void)state;
+    network *n;
+    img photo, mask;
+    network_estimation seen, made, brief;
+    const sight how = {.lens = {35, {0.2f, -0.1f}}};
+    assert_int_equal(write_random_weights(scratch_path("w.safetensors")), OK);
+    assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
+    draw(&photo, &mask);
+    assert_int_equal(network_see(n, &photo, &mask, &how, 2, NULL, &seen), OK);
+    assert_int_equal(network_estimate(n, &photo, &mask, &how, 2, NULL, &made), OK);
+    assert_float_equal(seen.maps.lens.fov, 35, 0);
+    assert_memory_equal(seen.maps.mask.data, mask.data, img_value_count(&mask) * sizeof(float));
+    for (size_t i = 0; i < img_value_count(&photo); i++)
+        if (mask.data[i / 3] > 0) assert_float_equal(made.maps.albedo.data[i], seen.maps.albedo.data[i], 0);
+    assert_true(largest_difference(&seen.maps.normal, &made.maps.normal) > 0);
+    const nn_type usual = nn_fastest_type(), other = usual == NN_FLOAT32 ? NN_BFLOAT16 : NN_FLOAT32;
+    network_compute_in(n, other);
+    assert_int_equal(network_see(n, &photo, &mask, &how, 2, NULL, &brief), OK);
+    float apart = largest_difference(&seen.maps.albedo, &brief.maps.albedo);
+    assert_true(apart > 0 && apart < 0.05f); /* bfloat16 keeps eight bits */
+    network_estimation_free(&brief);
+    network_compute_in(n, usual);
+    assert_int_equal(network_see(n, &photo, &mask, &how, 2, NULL, &brief), OK);
+    assert_true(largest_difference(&seen.maps.albedo, &brief.maps.albedo) == 0);
+    network_estimation_free(&brief);
+    network_estimation_free(&seen);
+    network_estimation_free(&made);
     img_free(&photo);
     img_free(&mask);
     network_close(n);
@@ -229,6 +264,9 @@ static void a_wrong_number_of_views_is_refused(void **state)
     assert_int_equal(network_estimate(n, &photo, &mask, NULL, 0, NULL, &e), MERLIN_WRONG_USE);
     assert_int_equal(network_estimate(n, &photo, &mask, NULL, 9, NULL, &e), MERLIN_WRONG_USE);
     assert_int_equal(network_normals(n, &photo, &mask, NULL, 0, NULL, &normal), MERLIN_WRONG_USE);
+    network_look *look;
+    assert_int_equal(network_look_new(n, &photo, &mask, NULL, 9, &look), MERLIN_WRONG_USE);
+    assert_null(look);
     img_free(&photo);
     img_free(&mask);
     network_close(n);
@@ -241,6 +279,7 @@ int main(void)
         in_scratch(the_mean_over_all_views_turns_with_the_photograph),
         in_scratch(the_light_that_is_found_turns_with_the_photograph),
         in_scratch(a_relit_picture_is_flipped_with_photograph_and_light),
+        in_scratch(what_the_network_sees_becomes_the_estimate),
         in_scratch(normals_alone_are_those_of_all_maps),
         in_scratch(a_wrong_number_of_views_is_refused),
     };

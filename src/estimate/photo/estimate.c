@@ -12,6 +12,7 @@
 #include "estimate/photo/doubts.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/light_choice.h"
+#include "estimate/photo/mean_bounces.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/photo/photo_object.h"
 #include "estimate/surface/exposure.h"
@@ -190,23 +191,11 @@ static status make_input(work *w, merlin_maps *maps)
     return OK;
 }
 
-/* What the network adds makes up for the false highlights of its own maps, view by view; in the mean of several views
- * these are others. */
-static status follow_mean(network *n, work *w, bool in_environment)
+static status follow_mean(network *n, work *w)
 {
     if (w->params->views == 1 || network_config(n)->lighting == MODEL_LIGHT_ANY) return OK;
-    const surface *maps = &w->low.maps;
-    img direct = {0}, ambient = {0}, indirect = {0};
-    status s = surface_shade(maps, vec3_make(0, 0, 0), &direct);
-    if (s == OK && in_environment) s = img_new(&ambient, direct.width, direct.height, 3);
-    if (s == OK && in_environment) surface_add_ambient(maps, (const float(*)[3])w->low.environment, &ambient);
-    if (s == OK) s = network_indirect(n, maps, &direct, in_environment ? &ambient : NULL, &indirect);
-    img_free(&direct);
-    img_free(&ambient);
-    if (s != OK) return s;
     img_free(&w->low.indirect);
-    w->low.indirect = indirect;
-    return OK;
+    return mean_bounces(n, &w->low, &w->low.indirect);
 }
 
 /* From a picture so wide; 0: from none. */
@@ -359,7 +348,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
-    if (s == OK) s = follow_mean(n, w, maps->has_environment);
+    if (s == OK) s = follow_mean(n, w);
     if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_finer(model, n, w, finer, maps);

@@ -1,43 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/photo/network.h"
-
 #include <malloc.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/progress.h"
+#include "estimate/photo/network.h"
+#include "estimate/photo/network_parts.h"
 #include "estimate/photo/view.h"
 #include "estimate/surface/fuse.h"
 #include "estimate/surface/smooth.h"
 #include "optics/orientation.h"
-
-typedef struct compiled {
-    nn_graph *graph;
-    nn_program *program;
-    int size;
-    const char *const *outputs;
-} compiled;
-
-struct network {
-    model_config config;
-    nn_params *params;                                     /* NULL until they are asked for, */
-    char *weights;                                         /* their file */
-    pthread_mutex_t lock;                                  /* guards the programs, whose buffers a run uses */
-    compiled lights, maps, normals, look, relit, indirect; /* lights, normals: alone; these of larger pictures */
-    double compile_seconds;
-};
 
 /* What each program is made for; the rest of the whole network is left out of it. */
 static const char *const single_outputs[] = {"albedo",           "normal", "roughness",  "depth", "indirect",
                                              "environment_code", "lights", "visibility", NULL};
 static const char *const normal_outputs[] = {"normal", NULL};
 static const char *const light_outputs[] = {"lights", NULL};
-
-struct network_look {
-    img mask;
-    view_features views[NETWORK_VIEWS];
-};
 
 static bool is_same_config(const model_config *a, const model_config *b)
 {
@@ -68,6 +46,7 @@ status network_open_later(const char *weights, network **out)
         free(n);
         return fail(MERLIN_NO_MEMORY, "no memory for a lock");
     }
+    n->type = nn_fastest_type();
     n->weights = strdup(weights);
     status s = n->weights ? model_load_config(weights, &n->config) : fail(MERLIN_NO_MEMORY, "no memory for a model");
     if (s != OK)
@@ -125,6 +104,12 @@ void network_release_maps(network *n)
     malloc_trim(0);
 }
 
+void network_compute_in(network *n, nn_type type)
+{
+    network_release(n);
+    n->type = type;
+}
+
 void network_close(network *n)
 {
     if (!n) return;
@@ -155,14 +140,14 @@ static const nn_program *largest(const network *n)
     return found;
 }
 
-static status compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
+status network_compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
 {
     if (c->program && c->size == size && c->outputs == outputs) return OK;
     compiled_free(c);
     nn_options options = {.batch = 1,
                           .height = size,
                           .width = size,
-                          .type = nn_fastest_type(),
+                          .type = n->type,
                           .purpose = NN_INFER,
                           .outputs = outputs,
                           .beside = largest(n)};
@@ -181,7 +166,7 @@ static status compile(network *n, model_part part, const char *const *outputs, i
 status network_prepare(network *n, int size, int views)
 {
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
+    status s = network_compile(n, MODEL_MAPS, views == 1 ? single_outputs : view_outputs, size, &n->maps);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -190,7 +175,7 @@ status network_prepare_bounces(network *n, int size)
 {
     if (!n->config.global_illumination) return OK;
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
+    status s = network_compile(n, MODEL_INDIRECT, NULL, size, &n->indirect);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -198,7 +183,7 @@ status network_prepare_bounces(network *n, int size)
 status network_prepare_lights(network *n, int size)
 {
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_MAPS, light_outputs, size, &n->lights);
+    status s = network_compile(n, MODEL_MAPS, light_outputs, size, &n->lights);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -206,7 +191,7 @@ status network_prepare_lights(network *n, int size)
 status network_prepare_normals(network *n, int size)
 {
     pthread_mutex_lock(&n->lock);
-    status s = compile(n, MODEL_MAPS, normal_outputs, size, &n->normals);
+    status s = network_compile(n, MODEL_MAPS, normal_outputs, size, &n->normals);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -232,7 +217,7 @@ static void put(nn_program *p, const char *name, const img *from, float scale, f
         to[i] = scale * from->data[i] + shift;
 }
 
-static status take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out)
+status network_take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out)
 {
     const float *from = nn_output_data(p, name);
     if (!from) return fail(MERLIN_WRONG_USE, "this model has no output \"%s\"", name);
@@ -244,17 +229,10 @@ static status take(nn_program *p, const char *name, int size, int channels, floa
     return OK;
 }
 
-/* A photograph as all views show it. */
-typedef struct subject {
-    const img *photo, *mask;
-    const sight *how;
-} subject;
-
-/* The network on a photograph by its flash, in an orientation. */
-static status run_view(network *n, const subject *at, int view, const char *const *outputs, compiled *c)
+status network_run_view(network *n, const network_subject *at, int view, const char *const *outputs, compiled *c)
 {
     const img *photo = at->photo, *mask = at->mask;
-    status s = compile(n, MODEL_MAPS, outputs, photo->width, c);
+    status s = network_compile(n, MODEL_MAPS, outputs, photo->width, c);
     if (s != OK) return s;
     view_put(c->program, 0, view, photo, mask);
     view_put_light(c->program, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
@@ -265,10 +243,10 @@ static status run_view(network *n, const subject *at, int view, const char *cons
 /* Albedo and roughness leave the network in [-1, 1]. */
 static status take_maps(nn_program *p, int size, surface *maps)
 {
-    status s = take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
-    if (s == OK) s = take(p, "normal", size, 3, 1, 0, &maps->normal);
-    if (s == OK) s = take(p, "roughness", size, 1, 0.5f, 0.5f, &maps->roughness);
-    if (s == OK) s = take(p, "depth", size, 1, 1, 0, &maps->depth);
+    status s = network_take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
+    if (s == OK) s = network_take(p, "normal", size, 3, 1, 0, &maps->normal);
+    if (s == OK) s = network_take(p, "roughness", size, 1, 0.5f, 0.5f, &maps->roughness);
+    if (s == OK) s = network_take(p, "depth", size, 1, 1, 0, &maps->depth);
     return s;
 }
 
@@ -283,28 +261,29 @@ static void take_environment(nn_program *p, float sh[9][3])
 }
 
 /* What the network says of the photograph in an orientation, as it lies there. */
-static status estimate_view(network *n, const subject *at, int view, const char *const *outputs,
+static status estimate_view(network *n, const network_subject *at, int view, const char *const *outputs,
                             network_estimation *out)
 {
-    status s = run_view(n, at, view, outputs, &n->maps);
+    status s = network_run_view(n, at, view, outputs, &n->maps);
     if (s == OK) s = take_maps(n->maps.program, at->photo->width, &out->maps);
     if (s == OK) take_environment(n->maps.program, out->environment);
     const float *lights = nn_output_data(n->maps.program, "lights");
     if (s != OK || !lights) return s;
     memcpy(out->lights, lights, sizeof out->lights);
-    return take(n->maps.program, "visibility", at->photo->width, 1, 1, 0, &out->visibility);
+    return network_take(n->maps.program, "visibility", at->photo->width, 1, 1, 0, &out->visibility);
 }
 
-static status estimate_single(network *n, const subject *at, network_estimation *out)
+static status estimate_single(network *n, const network_subject *at, network_estimation *out)
 {
     int size = at->photo->width;
     status s = estimate_view(n, at, 0, single_outputs, out);
     if (s != OK) return s;
     if (!n->config.global_illumination) return img_new(&out->indirect, size, size, 3);
-    return take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
+    return network_take(n->maps.program, "indirect", size, 3, 1, 0, &out->indirect);
 }
 
-static status estimate_views(network *n, const subject *at, int views, int (*stop)(void), network_estimation *out)
+static status estimate_views(network *n, const network_subject *at, int views, int (*stop)(void),
+                             network_estimation *out)
 {
     if (views == 1) return estimate_single(n, at, out);
     status s = view_mean_new(&n->config, at->photo->width, out);
@@ -323,56 +302,64 @@ static camera_lens lens_of(const sight *how)
     return how ? how->lens : (camera_lens){.fov = 0};
 }
 
-static status finish(const network *n, const subject *at, surface *maps)
+static status finish(const network *n, surface *maps)
 {
-    maps->lens = lens_of(at->how);
-    img_free(&maps->mask);
-    status s = img_copy(&maps->mask, at->mask);
-    if (s == OK) sight_take_relief(maps->lens, at->mask, &maps->depth);
-    if (s == OK && n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(maps->lens, at->mask, &maps->normal);
-    if (s == OK) s = smooth_estimate(maps);
+    sight_take_relief(maps->lens, &maps->mask, &maps->depth);
+    if (n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(maps->lens, &maps->mask, &maps->normal);
+    status s = smooth_estimate(maps);
     if (s == OK) surface_tidy(maps);
     if (s == OK) s = fuse_depth(&maps->normal, &maps->mask, surface_lens(maps), &maps->depth);
     return s;
 }
 
-static status check_views(int views)
+status network_check_views(int views)
 {
     if (views >= 1 && views <= ORIENTATIONS) return OK;
     return fail(MERLIN_WRONG_USE, "a photograph has 1 to %d views, not %d", ORIENTATIONS, views);
 }
 
-status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
-                        network_estimation *out)
+status network_see(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
+                   network_estimation *out)
 {
-    const subject at = {photo, mask, how};
+    const network_subject at = {photo, mask, how};
     *out = (network_estimation){0};
-    status s = check_views(views);
+    status s = network_check_views(views);
     pthread_mutex_lock(&n->lock);
     if (s == OK) s = estimate_views(n, &at, views, stop, out);
     pthread_mutex_unlock(&n->lock);
-    if (s == OK) s = finish(n, &at, &out->maps);
+    out->maps.lens = lens_of(how);
+    img_free(&out->maps.mask);
+    if (s == OK) s = img_copy(&out->maps.mask, mask);
+    if (s != OK) network_estimation_free(out);
+    return s;
+}
+
+status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
+                        network_estimation *out)
+{
+    status s = network_see(n, photo, mask, how, views, stop, out);
+    if (s == OK) s = finish(n, &out->maps);
     if (s != OK) network_estimation_free(out);
     return s;
 }
 
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS])
 {
-    const subject at = {photo, mask, how};
+    const network_subject at = {photo, mask, how};
     if (n->config.lighting != MODEL_LIGHT_ANY)
         return fail(MERLIN_WRONG_USE, "model \"%s\" does not tell what lights a photograph", n->config.name);
     pthread_mutex_lock(&n->lock);
-    status s = run_view(n, &at, 0, light_outputs, &n->lights);
+    status s = network_run_view(n, &at, 0, light_outputs, &n->lights);
     if (s == OK) memcpy(lights, nn_output_data(n->lights.program, "lights"), MODEL_LIGHTS * sizeof *lights);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
 
-static status add_normals(network *n, const subject *at, int view, float weight, img *mean)
+static status add_normals(network *n, const network_subject *at, int view, float weight, img *mean)
 {
     img turned = {0};
-    status s = run_view(n, at, view, normal_outputs, &n->normals);
-    if (s == OK) s = take(n->normals.program, "normal", at->photo->width, 3, 1, 0, &turned);
+    status s = network_run_view(n, at, view, normal_outputs, &n->normals);
+    if (s == OK) s = network_take(n->normals.program, "normal", at->photo->width, 3, 1, 0, &turned);
     if (s == OK) view_add_normals(mean, &turned, view, weight);
     img_free(&turned);
     return s;
@@ -381,9 +368,9 @@ static status add_normals(network *n, const subject *at, int view, float weight,
 status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                        img *normal)
 {
-    const subject at = {photo, mask, how};
+    const network_subject at = {photo, mask, how};
     *normal = (img){0};
-    status s = check_views(views);
+    status s = network_check_views(views);
     if (s == OK) s = img_new(normal, photo->width, photo->height, 3);
     pthread_mutex_lock(&n->lock);
     for (int view = 0; view < views && s == OK; view++)
@@ -403,73 +390,6 @@ void network_estimation_free(network_estimation *e)
     surface_free(&e->maps);
     img_free(&e->indirect);
     img_free(&e->visibility);
-}
-
-static status look_from(network *n, const subject *at, int view, view_features *out)
-{
-    status s = run_view(n, at, view, model_features, &n->look);
-    return s == OK ? view_features_take(n->look.program, &n->config, at->photo->width, out) : s;
-}
-
-status network_look_new(network *n, const img *photo, const img *mask, const sight *how, network_look **out)
-{
-    const subject at = {photo, mask, how};
-    *out = NULL;
-    if (n->config.relight != MODEL_RELIGHT_NETWORK)
-        return fail(MERLIN_WRONG_USE, "model \"%s\" has no relighting decoder; relight by BRDF", n->config.name);
-    network_look *seen = calloc(1, sizeof *seen);
-    if (!seen) return fail(MERLIN_NO_MEMORY, "no memory for what the network sees");
-    status s = img_copy(&seen->mask, mask);
-    pthread_mutex_lock(&n->lock);
-    for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
-        s = look_from(n, &at, view, &seen->views[view]);
-    pthread_mutex_unlock(&n->lock);
-    if (s != OK)
-        network_look_free(seen);
-    else
-        *out = seen;
-    return s;
-}
-
-void network_look_free(network_look *look)
-{
-    if (!look) return;
-    for (int view = 0; view < NETWORK_VIEWS; view++)
-        view_features_free(&look->views[view]);
-    img_free(&look->mask);
-    free(look);
-}
-
-/* In one orientation, added to the mean. */
-static status relight_view(network *n, const network_look *look, const illumination *light, int view, img *mean)
-{
-    img relit = {0};
-    status s = compile(n, MODEL_RELIGHT, NULL, mean->width, &n->relit);
-    if (s != OK) return s;
-    nn_program *p = n->relit.program;
-    view_features_put(&look->views[view], p, 0);
-    view_put_mask(p, 0, view, &look->mask);
-    view_put_light(p, &n->config, 0, view, light);
-    s = nn_forward(p);
-    if (s == OK) s = take(p, "relit_direct", mean->width, 3, 1, 0, &relit);
-    if (s == OK) view_add(mean, &relit, view, 1.0f / NETWORK_VIEWS);
-    img_free(&relit);
-    return s;
-}
-
-status network_relight(network *n, const network_look *look, const illumination *light, img *direct)
-{
-    *direct = (img){0};
-    if (light->sh && n->config.lighting != MODEL_LIGHT_BOTH)
-        return fail(MERLIN_WRONG_USE,
-                    "model \"%s\" relights by point lights only, not by environments; relight by BRDF", n->config.name);
-    pthread_mutex_lock(&n->lock);
-    status s = img_new(direct, look->mask.width, look->mask.height, 3);
-    for (int view = 0; view < NETWORK_VIEWS && s == OK; view++)
-        s = relight_view(n, look, light, view, direct);
-    pthread_mutex_unlock(&n->lock);
-    if (s != OK) img_free(direct);
-    return s;
 }
 
 /* Without a call, so that loops become vectors. */
@@ -494,7 +414,7 @@ static void put_direct(nn_program *p, const img *direct, const img *environment)
 
 static status run_indirect(network *n, const surface *maps, const img *direct, const img *environment, img *indirect)
 {
-    status s = compile(n, MODEL_INDIRECT, NULL, direct->width, &n->indirect);
+    status s = network_compile(n, MODEL_INDIRECT, NULL, direct->width, &n->indirect);
     if (s != OK) return s;
     nn_program *p = n->indirect.program;
     put_direct(p, direct, environment);
@@ -504,7 +424,7 @@ static status run_indirect(network *n, const surface *maps, const img *direct, c
     put(p, "depth", &maps->depth, 1, 0);
     put(p, "mask", &maps->mask, 1, 0);
     s = nn_forward(p);
-    return s == OK ? take(p, "indirect", direct->width, 3, 1, 0, indirect) : s;
+    return s == OK ? network_take(p, "indirect", direct->width, 3, 1, 0, indirect) : s;
 }
 
 status network_indirect(network *n, const surface *maps, const img *direct, const img *environment, img *indirect)

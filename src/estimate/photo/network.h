@@ -30,10 +30,12 @@ static inline int network_side(int size)
 
 typedef struct network network;
 
-/* MERLIN_BAD_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type. */
+/* MERLIN_BAD_INPUT for a file that is no weights file of merlin. Computes in nn_fastest_type, */
 status network_open(const char *weights, network **out);
 /* The configuration alone; the parameters, most of the file, are read when a program is first made. */
 status network_open_later(const char *weights, network **out);
+/* or from now on in another number type, so that figures of both can be compared. */
+void network_compute_in(network *n, nn_type type);
 void network_close(network *n);
 const model_config *network_config(const network *n);
 
@@ -56,6 +58,10 @@ double network_take_compile_seconds(network *n);
  * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
+/* The same before anything is made of it: normals of several views are their sum, not unit, maps hold anything outside
+ * the mask, and depth is that of a lens of SURFACE_FOV, or relief for any lens (sight.h). */
+status network_see(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
+                   network_estimation *out);
 /* Tells what lit the photograph alone, as network_estimate's first view does: MERLIN_WRONG_USE unless it is a model of
  * any light. */
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
@@ -64,13 +70,13 @@ void network_estimation_free(network_estimation *e);
 status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                        img *normal);
 
-/* What the relighting decoder takes of a photograph, whatever the light; as photo and mask of network_estimate.
- * MERLIN_WRONG_USE if the model has no such decoder. */
+/* What the relighting decoder takes of a photograph in its first `views` orientations, whatever the light; photo and
+ * mask as of network_estimate. MERLIN_WRONG_USE if the model has no such decoder. */
 typedef struct network_look network_look;
-status network_look_new(network *n, const img *photo, const img *mask, const sight *how, network_look **out);
+status network_look_new(network *n, const img *photo, const img *mask, const sight *how, int views, network_look **out);
 void network_look_free(network_look *look);
 
-/* That photograph under other light, by the relighting decoder of the same network, the mean of NETWORK_VIEWS
+/* That photograph under other light, by the relighting decoder of the same network, the mean of the look's
  * orientations; without bounces. MERLIN_WRONG_USE if the model does not take environments. */
 status network_relight(network *n, const network_look *look, const illumination *light, img *direct);
 

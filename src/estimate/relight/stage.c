@@ -84,7 +84,8 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
     if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
     if (result == OK && s->how == MERLIN_BY_NETWORK)
-        result = network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, &s->look);
+        result =
+            network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, NETWORK_VIEWS, &s->look);
     if (result == OK && s->how == MERLIN_BY_BRDF) result = caster_of(&s->low, &s->caster);
     return result;
 }
