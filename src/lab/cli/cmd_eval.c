@@ -27,10 +27,12 @@ static const char help[] =
     "       merlin-lab eval lights --data DIR [options]\n"
     "       merlin-lab eval pictures FOLDER... [options]\n"
     "       merlin-lab eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
-    "Measures a model on samples it was not trained on (a folder made by merlin-lab render), beside two trivial "
-    "answers:\n"
-    "the data set's mean maps, and maps inflated from the mask. The second form computes the mean maps of a folder of\n"
-    "training data, to be given to the first. The others have a --help of their own: photometric stereo from one\n"
+    "Measures what merlin estimate and merlin relight make by a model of samples it was not trained on (a folder made "
+    "by\n"
+    "merlin-lab render), or with --raw its network alone, beside two trivial answers: the data set's mean maps, and "
+    "maps\n"
+    "inflated from the mask. The second form computes the mean maps of a folder of training data, to be given to the\n"
+    "first. The others have a --help of their own: photometric stereo from one\n"
     "photograph, its solvers where the truth is known, what more pixels add to an estimate's shape, what an estimate "
     "is\n"
     "worth by the kind of light and from every picture of a capture, and photographs taken apart by several weights "
@@ -40,12 +42,16 @@ static const char help[] =
     "  --model W          weights to measure: a file, or merlin-point or merlin-env\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
     "  --count N          only the first N samples\n"
-    "  --white W          the photograph is exposed so that radiance W saturates (default 1, as in the paper)\n"
-    "  --given MAP        the true albedo, normal, roughness or depth in place of the estimated one; may be repeated:\n"
-    "                     how well a model relights that errs in the others alone\n"
+    "  --raw              the network alone, as in the paper: the sample at its size, its exposure known, nothing "
+    "refined\n"
+    "  --white W          the photograph is exposed so that radiance W saturates (default 1.568, a camera's; with "
+    "--raw\n"
+    "                     1, as in the paper)\n"
+    "  --given MAP        with --raw: the true albedo, normal, roughness or depth in place of the network's; may be\n"
+    "                     repeated: how well a model relights that errs in the others alone\n"
     "  --environments N   relight the first N samples by environments, too (seconds each)\n"
     "  --views N          maps as merlin estimate --views N makes them (default 4, as there)\n"
-    "  --precision P      float32 (default) or bfloat16\n"
+    "  --precision P      with --raw: float32 (default) or bfloat16\n"
     "  --figure F.png     a picture of predictions beside the truth\n"
     "  --figure-rows N    samples shown in it (default 8)\n"
     "  --means DIR        compute mean maps over this folder\n"
@@ -94,15 +100,24 @@ static status check_means_apart(const request *r)
                 r->means_folder);
 }
 
+static status check_raw(const eval_options *o)
+{
+    if (o->raw) return OK;
+    if (o->given) return fail(MERLIN_WRONG_USE, "--given goes with --raw: merlin estimate knows no true maps");
+    if (o->type != NN_FLOAT32)
+        return fail(MERLIN_WRONG_USE, "--precision goes with --raw: merlin estimate computes in what is fastest");
+    return OK;
+}
+
 /* Nobody should wait for an evaluation to find that its report went elsewhere. */
 static status check(const request *r)
 {
     const eval_options *o = &r->options;
     if (!r->means_folder && r->output)
         return fail(MERLIN_WRONG_USE, "-o is for --means; an evaluation prints its report, with --json for a program");
-    if (!r->means_folder) return OK;
+    if (!r->means_folder) return check_raw(o);
     bool evaluates = o->data || o->weights || o->means || o->environments || o->white > 0 || o->given || o->views ||
-                     o->figure || o->figure_rows || o->type != NN_FLOAT32;
+                     o->figure || o->figure_rows || o->raw || o->type != NN_FLOAT32;
     if (evaluates || r->json) return fail(MERLIN_WRONG_USE, "--means goes with -o, --count and --quiet alone");
     if (!r->output) return fail(MERLIN_WRONG_USE, "--means needs -o FILE.exr");
     if (!file_ends_in(r->output, ".exr"))
@@ -118,6 +133,7 @@ static status parse(int argc, char **argv, request *r)
         {"means-file", .text = &r->options.means},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"environments", .count = &r->options.environments, .low = 1, .high = 100000000},
+        {"raw", .flag = &r->options.raw},
         {"white", .real = &r->options.white, .low = 1, .high = 16},
         {"given", .take = take_given, .into = &r->options.given, .many = true},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},

@@ -1,116 +1,105 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/detail_table.h"
 
-#include <string.h>
-
-#include "base/file.h"
 #include "base/progress.h"
 #include "estimate/photo/detail.h"
 #include "estimate/photo/input.h"
-#include "lab/eval/maps.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/surface/exposure.h"
+#include "lab/eval/each_sample.h"
 #include "lab/eval/metrics.h"
+#include "lab/eval/photograph.h"
+#include "lab/eval/truth.h"
 
 enum { LIGHTS = 4 };
 
 /* One sample on its way through. */
 typedef struct subject {
     const sample *sample;
-    img mask, photo; /* the mask 0 or 1, the flash picture saturated at radiance 1 */
-    img guide;       /* the photograph, encoded */
-    eval_maps truth;
-    illumination lights[LIGHTS];
-    img targets[LIGHTS]; /* the truth under them */
+    img mask; /* 1 where the object is, else 0 */
+    eval_photo photo;
+    surface truth;
+    float gain; /* as merlin_estimate found it, for the larger picture, too */
 } subject;
 
 static void subject_free(subject *on)
 {
     img_free(&on->mask);
-    img_free(&on->photo);
-    img_free(&on->guide);
-    eval_maps_free(&on->truth);
-    for (int i = 0; i < LIGHTS; i++)
-        img_free(&on->targets[i]);
+    eval_photo_free(&on->photo);
+    surface_free(&on->truth);
 }
 
-static status render(const subject *on, const eval_maps *maps, int light, img *out)
+static status subject_new(const sample *s, int views, subject *on)
 {
-    const sample *s = on->sample;
-    return eval_render(maps, &on->mask, s->fov, s->light_power, &on->lights[light], out);
-}
-
-static status subject_new(const sample *s, subject *on)
-{
+    img radiance = {0};
     *on = (subject){.sample = s};
     status st = eval_binary_mask(&s->mask, &on->mask);
-    if (st == OK) st = eval_picture(&s->direct, &s->indirect, &on->mask, &on->photo);
-    if (st == OK) st = img_copy(&on->guide, &on->photo);
-    if (st == OK) surface_encode_guide(&on->guide, 1);
-    if (st == OK) st = eval_maps_of_sample(s, &on->truth);
-    for (int i = 0; i < LIGHTS && st == OK; i++) {
-        on->lights[i] = (illumination){eval_light(s, i), NULL};
-        st = render(on, &on->truth, i, &on->targets[i]);
-    }
+    if (st == OK) st = img_copy(&radiance, &s->direct);
+    if (st == OK) img_add(&s->indirect, &radiance);
+    if (st == OK) st = eval_photo_take(s, &radiance, &s->mask, EXPOSURE_WHITE, &on->photo);
+    if (st == OK) st = eval_truth(s, &s->mask, &on->truth);
+    img_free(&radiance);
+    on->photo.params.views = views;
     if (st != OK) subject_free(on);
     return st;
 }
 
-/* The network's maps of the photograph in size × size pixels. */
-static status see(network *n, const subject *on, int size, int views, surface *out)
+/* merlin_estimate, which is not asked for finer normals, or is. */
+static status estimate(merlin_model *model, subject *on, int size, surface *out)
 {
-    img picture = {0}, mask = {0};
+    merlin_maps maps = {0};
+    on->photo.params.size = size;
+    status s = eval_photo_estimate(model, &on->photo, &maps);
+    if (s == OK) s = eval_photo_surface(&on->photo, &maps, out);
+    on->gain = maps.gain;
+    merlin_maps_free(&maps);
+    return s;
+}
+
+/* What merlin_estimate leaves undone: all maps of the larger picture. */
+static status see_large(merlin_model *model, const subject *on, int size, surface *out)
+{
+    img picture = {0}, mask = {0}, guide = {0};
     network_estimation e = {0};
-    status s = input_make(&on->photo, &on->mask, size, &picture, &mask);
-    if (s == OK) s = network_estimate(n, &picture, &mask, NULL, views, NULL, &e);
-    if (s == OK) {
-        *out = e.maps;
-        e.maps = (surface){0};
-    }
+    const sight how = {.lens = on->photo.lens};
+    status s = input_make(&on->photo.picture, &on->photo.mask, size, &picture, &mask);
+    if (s == OK) input_expose(&picture, on->gain);
+    if (s == OK) s = network_estimate(model->network, &picture, &mask, &how, on->photo.params.views, NULL, &e);
+    if (s == OK) s = img_copy(&guide, &on->photo.picture);
+    if (s == OK) surface_encode_guide(&guide, on->gain);
+    if (s == OK) s = surface_refine(&e.maps, &guide, &on->photo.mask, out);
     img_free(&picture);
     img_free(&mask);
+    img_free(&guide);
     network_estimation_free(&e);
     return s;
 }
 
-static status see_in(network *n, const subject *on, const detail_table *t, detail_way way, surface *out)
+static status find(merlin_model *model, subject *on, const detail_table *t, detail_way way, surface *out)
 {
-    detail_request r = {
-        .photo = &on->photo, .mask = &on->mask, .gain = 1, .side = t->larger, .views = detail_views(t->views)};
-    if (way == DETAIL_LARGE) return see(n, on, t->larger, t->views, out);
-    status s = see(n, on, NETWORK_SIZE, t->views, out);
-    return s == OK && way == DETAIL_BOTH ? detail_add(n, &r, out) : s;
+    if (way == DETAIL_LARGE) return see_large(model, on, t->larger, out);
+    return estimate(model, on, way == DETAIL_SMALL ? NETWORK_SIZE : NETWORK_LARGEST_SIZE, out);
 }
 
-/* At the sample's size, in the network's ranges. */
-static status estimate(network *n, const subject *on, const detail_table *t, detail_way way, eval_maps *out)
+static status similarity(const subject *on, const surface *maps, int light, double *out)
 {
-    surface seen = {0}, full = {0};
-    status s = see_in(n, on, t, way, &seen);
-    if (s == OK) s = surface_refine(&seen, &on->guide, &on->mask, &full);
-    surface_free(&seen);
-    if (s != OK) return s;
-    *out = (eval_maps){full.albedo, full.normal, full.roughness, full.depth};
-    img_free(&full.mask);
-    eval_to_network_range(&out->albedo);
-    eval_to_network_range(&out->roughness);
-    return OK;
-}
-
-static status similarity(const subject *on, const eval_maps *maps, int light, double *out)
-{
-    img lit = {0};
-    status s = render(on, maps, light, &lit);
-    if (s == OK) s = eval_ssim(&lit, &on->targets[light], out);
+    const illumination by = {eval_light(on->sample, light), NULL};
+    img lit = {0}, target = {0};
+    status s = eval_render(maps, &by, on->photo.white / on->gain, &lit);
+    if (s == OK) s = eval_render(&on->truth, &by, 1, &target);
+    if (s == OK) s = eval_ssim(&lit, &target, out);
     img_free(&lit);
+    img_free(&target);
     return s;
 }
 
-static status add_figures(const subject *on, const eval_maps *maps, double sum[DETAIL_FIGURES])
+static status add_figures(const subject *on, const surface *maps, double sum[DETAIL_FIGURES])
 {
-    sum[DETAIL_ALBEDO] += eval_mse(&maps->albedo, &on->truth.albedo, &on->mask);
+    sum[DETAIL_ALBEDO] += EVAL_UNIT * eval_mse(&maps->albedo, &on->truth.albedo, &on->mask);
     sum[DETAIL_NORMAL] += eval_mse(&maps->normal, &on->truth.normal, &on->mask);
     sum[DETAIL_ANGLE] += eval_angle(&maps->normal, &on->truth.normal, &on->mask);
     sum[DETAIL_DEPTH] += eval_mse(&maps->depth, &on->truth.depth, &on->mask);
-    sum[DETAIL_ROUGHNESS] += eval_mse(&maps->roughness, &on->truth.roughness, &on->mask);
+    sum[DETAIL_ROUGHNESS] += EVAL_UNIT * eval_mse(&maps->roughness, &on->truth.roughness, &on->mask);
     for (int i = 0; i < LIGHTS; i++) {
         double one;
         status s = similarity(on, maps, i, &one);
@@ -120,22 +109,29 @@ static status add_figures(const subject *on, const eval_maps *maps, double sum[D
     return OK;
 }
 
-static status measure(network *n, const sample *s, detail_table *t)
+static status measure(merlin_model *model, const sample *s, detail_table *t)
 {
     subject on;
-    status st = subject_new(s, &on);
+    status st = subject_new(s, t->views, &on);
     for (int way = 0; way < DETAIL_WAYS && st == OK; way++) {
-        eval_maps maps = {0};
-        st = estimate(n, &on, t, (detail_way)way, &maps);
+        surface maps = {0};
+        st = find(model, &on, t, (detail_way)way, &maps);
         if (st == OK) st = add_figures(&on, &maps, t->mean[way]);
-        eval_maps_free(&maps);
+        surface_free(&maps);
     }
     subject_free(&on);
     return st;
 }
 
-static status measure_file(network *n, const char *path, detail_table *t)
+typedef struct run {
+    merlin_model *model;
+    detail_table *table;
+} run;
+
+static status measure_file(void *context, const char *path)
 {
+    const run *r = context;
+    detail_table *t = r->table;
     sample s;
     status st = sample_read_training(path, &s);
     if (st != OK) return st;
@@ -148,47 +144,25 @@ static status measure_file(network *n, const char *path, detail_table *t)
     else if (t->larger == 0)
         st = fail(MERLIN_BAD_INPUT, "%s: samples of %d pixels a side show nothing finer than %d do; render larger ones",
                   path, first, NETWORK_SIZE);
-    if (st == OK) st = measure(n, &s, t);
+    if (st == OK) st = measure(r->model, &s, t);
     if (st == OK) t->samples++;
     sample_free(&s);
     return st;
 }
 
-static status measure_files(const detail_options *o, network *n, char **names, size_t count, detail_table *out)
+status detail_table_run(const detail_options *o, detail_table *out)
 {
-    progress p;
-    status s = OK;
-    progress_begin(&p, "evaluating", "samples", 0, count, o->quiet);
-    for (size_t i = 0; i < count && s == OK; i++) {
-        if (o->stopped && o->stopped())
-            s = fail(MERLIN_STOPPED, "stopped after %zu of %zu samples", i, count);
-        else
-            s = measure_file(n, names[i], out);
-        if (s == OK) progress_update(&p, i + 1, NULL);
-    }
-    progress_end(&p);
+    *out = (detail_table){.views = o->views};
+    double began = clock_seconds();
+    const eval_samples all = {o->data, "evaluating", o->count, o->quiet, o->stopped};
+    run r = {.table = out};
+    status s = merlin_model_open(o->weights, &r.model);
+    if (s != OK) return s;
+    snprintf(out->model, sizeof out->model, "%s", merlin_model_name(r.model));
+    s = eval_each_sample(&all, measure_file, &r);
     for (int i = 0; i < DETAIL_WAYS * DETAIL_FIGURES; i++)
         out->mean[i / DETAIL_FIGURES][i % DETAIL_FIGURES] /= (double)(out->samples ? out->samples : 1);
-    return s;
-}
-
-status detail_table_run(const detail_options *options, detail_table *out)
-{
-    *out = (detail_table){.views = options->views};
-    double began = clock_seconds();
-    char **names;
-    size_t count;
-    network *n;
-    status s = sample_list(options->data, &names, &count);
-    if (s != OK) return s;
-    s = network_open(options->weights, &n);
-    if (s == OK) {
-        size_t used = options->count && options->count < count ? options->count : count;
-        memcpy(out->model, network_config(n)->name, sizeof out->model);
-        s = measure_files(options, n, names, used, out);
-        network_close(n);
-    }
-    file_list_free(names, count);
+    merlin_model_close(r.model);
     out->seconds = clock_seconds() - began;
     return s;
 }

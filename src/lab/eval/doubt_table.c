@@ -9,7 +9,7 @@
 #include "estimate/photo/network.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
-#include "lab/render/sample.h"
+#include "lab/eval/photograph.h"
 
 static const float ROOM_SHARE = 0.15f, BRIGHT = 0.6f;
 static const double LAMP_BEGINS = 25, LAMP_IS_FAR = 50;
@@ -85,19 +85,19 @@ static void add_scaled(const img *part, float scale, img *sum)
 static status add_picture(doubt_table *t, merlin_model *model, const sample *s, const char *name, doubt_kind kind,
                           const img *sum, float bright)
 {
-    img picture;
+    eval_photo taken = {0};
     float part = 1;
     status st = bright_part(sum, &s->mask, &part);
-    if (st == OK) st = img_copy(&picture, sum);
+    if (st == OK) st = eval_photo_take(s, sum, &s->mask, bright > 0 ? part / bright : EXPOSURE_WHITE, &taken);
     if (st != OK) return st;
-    float scale = bright > 0 ? bright / part : 1 / EXPOSURE_WHITE;
-    for (size_t i = 0; i < img_value_count(&picture); i++)
-        picture.data[i] = fminf(picture.data[i] * scale, 1);
-    doubt_photo photo = {.name = name, .kind = kind, .picture = picture};
-    merlin_image mask = s->mask;
+    doubt_photo photo = {.name = name, .kind = kind, .picture = taken.picture};
+    const merlin_image mask = taken.mask;
     st = photo_object_choose(&photo.picture, &mask, NULL, &photo.object);
-    if (st == OK) return doubt_table_add(t, model, &photo);
-    img_free(&picture);
+    if (st == OK) {
+        taken.picture = (img){0};
+        st = doubt_table_add(t, model, &photo);
+    }
+    eval_photo_free(&taken);
     return st;
 }
 

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/evaluate.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/progress.h"
-#include "estimate/photo/network.h"
+#include "estimate/surface/exposure.h"
+#include "lab/eval/each_sample.h"
 #include "lab/eval/score.h"
+#include "lab/eval/sheet.h"
 
 typedef struct evaluation {
     const eval_options *options;
@@ -53,83 +55,94 @@ static status count_sample(eval_report *report, const sample *s, const eval_scor
     return OK;
 }
 
-static status evaluate_file(evaluation *e, const char *path)
+/* Of the network alone: what merlin_estimate does with pictures of other sizes is left out. */
+static status check_raw(const sample *first)
 {
+    const int side = first->mask.width;
+    if (side < NETWORK_LEAST_SIZE || side % MODEL_SIZE_MULTIPLE)
+        return fail(MERLIN_BAD_INPUT,
+                    "samples of %d pixels a side do not fit the model: the side must be a multiple of %d, from "
+                    "%d on",
+                    side, MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE);
+    if (first->slant.right == 0 && first->slant.up == 0) return OK;
+    return fail(MERLIN_BAD_INPUT,
+                "samples rendered with --off-axis are parts of larger pictures: measure them without --raw");
+}
+
+static status open_model(evaluation *e)
+{
+    const eval_options *o = e->options;
+    eval_report *r = e->report;
+    status s = merlin_model_open(o->weights, &e->scorer.model);
+    if (s != OK) return s;
+    if (o->raw) network_compute_in(e->scorer.model->network, o->type);
+    snprintf(r->model, sizeof r->model, "%s", merlin_model_name(e->scorer.model));
+    return OK;
+}
+
+static status take_means(evaluation *e)
+{
+    const eval_options *o = e->options;
+    eval_report *r = e->report;
+    status s = o->means ? eval_means_read(o->means, r->size, r->size, &e->scorer.means)
+                        : eval_means_of_folder(o->data, o->count, o->quiet, o->stopped, &e->scorer.means);
+    r->means_from_data = !o->means;
+    r->means_samples = e->scorer.means.samples;
+    return s;
+}
+
+/* The size of all samples is that of the first. */
+static status begin(void *context, const char *first_path)
+{
+    evaluation *e = context;
+    const eval_options *o = e->options;
+    sample first;
+    status s = sample_read_training(first_path, &first);
+    if (s != OK) return s;
+    e->report->size = first.mask.width;
+    s = o->raw ? check_raw(&first) : OK;
+    sample_free(&first);
+    if (s == OK) s = open_model(e);
+    if (s == OK && o->figure) s = eval_sheet_new(o->figure_rows, &e->scorer.sheet);
+    return s == OK ? take_means(e) : s;
+}
+
+static status evaluate_file(void *context, const char *path)
+{
+    evaluation *e = context;
+    const eval_report *r = e->report;
+    eval_scores scores = {0};
     sample s;
     status st = sample_read(path, &s);
     if (st != OK) return st;
-    eval_scores scores = {0};
-    if (s.mask.width != e->report->size || s.mask.height != e->report->size)
+    if (s.mask.width != r->size || s.mask.height != r->size)
         st = fail(MERLIN_BAD_INPUT, "%s is %dx%d but the first sample is %dx%d", path, s.mask.width, s.mask.height,
-                  e->report->size, e->report->size);
+                  r->size, r->size);
     if (st == OK) st = eval_score_sample(&e->scorer, &s, &scores);
     if (st == OK) st = count_sample(e->report, &s, &scores);
     sample_free(&s);
     return st;
 }
 
-/* The size of all samples is that of the first. */
-static status begin(evaluation *e, const char *first_path)
+status eval_run(const eval_options *o, eval_report *out)
 {
-    const eval_options *o = e->options;
-    sample first;
-    status s = sample_read_training(first_path, &first);
-    if (s != OK) return s;
-    e->report->size = first.mask.width;
-    e->scorer.environments = o->environments;
-    e->scorer.white = e->report->white = o->white > 0 ? o->white : 1;
-    e->scorer.given = e->report->given = o->given;
-    sample_free(&first);
-    e->report->views = o->views > 0 ? o->views : NETWORK_VIEWS;
-    s = eval_model_open(o->weights, e->report->size, o->type, e->report->views, &e->scorer.model);
-    if (s == OK) s = eval_prediction_new(e->scorer.model, &e->scorer.prediction);
-    if (s == OK && o->figure) s = eval_sheet_new(o->figure_rows, &e->scorer.sheet);
-    if (s != OK) return s;
-    e->report->means_from_data = !o->means;
-    if (o->means)
-        s = eval_means_read(o->means, e->report->size, e->report->size, &e->scorer.means);
-    else
-        s = eval_means_of_folder(o->data, o->count, o->quiet, o->stopped, &e->scorer.means);
-    e->report->means_samples = e->scorer.means.samples;
-    memcpy(e->report->model, eval_model_config(e->scorer.model)->name, sizeof e->report->model);
-    return s;
-}
-
-static status evaluate_files(evaluation *e, char **names, size_t count)
-{
-    progress p;
-    status s = OK;
-    progress_begin(&p, "evaluating", "samples", 0, count, e->options->quiet);
-    for (size_t i = 0; s == OK && i < count; i++) {
-        if (e->options->stopped && e->options->stopped())
-            s = fail(MERLIN_STOPPED, "stopped after %zu of %zu samples", i, count);
-        else
-            s = evaluate_file(e, names[i]);
-        if (s == OK) progress_update(&p, i + 1, NULL);
-    }
-    progress_end(&p);
-    return s;
-}
-
-status eval_run(const eval_options *options, eval_report *out)
-{
-    *out = (eval_report){0};
-    evaluation e = {.options = options, .report = out};
+    const int views = o->views > 0 ? o->views : NETWORK_VIEWS;
+    const float usual_white = o->raw ? 1 : EXPOSURE_WHITE, white = o->white > 0 ? o->white : usual_white;
+    const eval_samples first = {.folder = o->data, .count = 1, .quiet = true},
+                       all = {o->data, "evaluating", o->count, o->quiet, o->stopped};
     double started = clock_seconds();
-    char **names;
-    size_t count;
-    status s = options->figure ? file_check_writable(options->figure) : OK;
-    if (s == OK) s = sample_list(options->data, &names, &count);
-    if (s != OK) return s;
-    size_t used = options->count && options->count < count ? options->count : count;
-    s = begin(&e, names[0]);
-    if (s == OK) s = evaluate_files(&e, names, used);
-    if (s == OK && e.scorer.sheet) s = sheet_rows_write(e.scorer.sheet, options->figure);
+    *out = (eval_report){.raw = o->raw, .views = views, .white = white, .given = o->given};
+    evaluation e = {
+        .options = o,
+        .report = out,
+        .scorer = {.raw = o->raw, .views = views, .white = white, .given = o->given, .environments = o->environments}};
+    status s = o->figure ? file_check_writable(o->figure) : OK;
+    if (s == OK) s = eval_each_sample(&first, begin, &e);
+    if (s == OK) s = eval_each_sample(&all, evaluate_file, &e);
+    if (s == OK && e.scorer.sheet) s = sheet_rows_write(e.scorer.sheet, o->figure);
     out->seconds = clock_seconds() - started;
     sheet_rows_free(e.scorer.sheet);
-    eval_prediction_free(&e.scorer.prediction);
     eval_means_free(&e.scorer.means);
-    eval_model_close(e.scorer.model);
-    file_list_free(names, count);
+    merlin_model_close(e.scorer.model);
     return s;
 }

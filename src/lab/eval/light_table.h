@@ -38,7 +38,7 @@ typedef enum light_figure {
     LIGHT_ROUGHNESS,   /* mean squared error in [-1, 1] */
     LIGHT_RELIEF,      /* root mean square error of depth, its mean apart, in widths of the frame */
     LIGHT_AS_FLASH,    /* share of the photographs that are seen as lit by a flash alone; models of any light alone */
-    LIGHT_DIRECTION,   /* of the strongest lamp, degrees; the same */
+    LIGHT_DIRECTION,   /* of the strongest lamp where one is found, degrees; the same */
     LIGHT_FIGURES
 } light_figure;
 
@@ -60,7 +60,7 @@ typedef struct light_options {
     int (*stopped)(void); /* asked between samples; NULL: never */
 } light_options;
 
-/* MERLIN_BAD_INPUT for samples without lamps or environment, or of sizes that the network does not take. */
+/* MERLIN_BAD_INPUT for samples without lamps or environment. */
 status light_table_run(const light_options *options, light_table *out);
 
 const char *light_kind_name(light_kind kind);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The paper's measures of a material estimate and of a relit picture.
  *
- *     double error = eval_mse(&albedo, &truth.albedo, &mask);     maps in the network's ranges
+ *     double error = eval_mse(&albedo, &truth.albedo, &mask);
  *     double degrees = eval_angle(&normal, &truth.normal, &mask);
  *     double similarity;
  *     status s = eval_ssim(&relit, &target, &similarity);
@@ -14,10 +14,12 @@
 #include "image/image.h"
 
 #define EVAL_MASK_LEVEL 0.5f
+/* A squared error of values in [0, 1] times this is that in [-1, 1], as the paper has it of albedo and roughness. */
+#define EVAL_UNIT 4.0
 
 /* Mean squared difference over the mask's pixels and all channels; 0 for an empty mask. a and b share size and
  * channels, mask has one channel and their size. The paper's tables print this times 100, for albedo and roughness in
- * [-1, 1], unit normals and depth in scene units. */
+ * [-1, 1] (EVAL_UNIT), unit normals and depth in scene units. */
 double eval_mse(const img *a, const img *b, const img *mask);
 
 /* Mean angle in degrees between unit vectors (3 channels) over the mask's pixels; 0 for an empty mask. */

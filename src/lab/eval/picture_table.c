@@ -59,8 +59,7 @@ static status measure(run *r, const pst_capture *c, int i, picture_score *score)
     img photo = {0};
     snprintf(score->name, sizeof score->name, "%s", file_name_of(c->name[i]));
     status s = stereo_object_photo(c, i, &photo);
-    const merlin_image picture = photo, mask = c->mask;
-    if (s == OK) s = merlin_estimate(r->model, &picture, &mask, NULL, &maps);
+    if (s == OK) s = merlin_estimate(r->model, &photo, &c->mask, NULL, &maps);
     if (s == OK) s = judge(c, &maps, score);
     score->aside = aside_of(c, i);
     score->light = light_error(c, i, &maps.light);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "estimate/files/report.h"
-#include "lab/eval/maps.h"
 
 typedef struct row_text {
     const char *key, *label;
@@ -217,8 +216,9 @@ int eval_given_of(const char *name)
 
 void eval_print_table(const eval_report *report, FILE *stream)
 {
-    fprintf(stream, "%s (views: %d) on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model,
-            report->views, report->all.samples, report->size, report->size, report->means_samples,
+    fprintf(stream, "%s%s (views: %d) on %zu samples of %dx%d; mean maps of %zu samples%s\n\n", report->model,
+            report->raw ? ", the network alone" : " as merlin estimate and merlin relight have it", report->views,
+            report->all.samples, report->size, report->size, report->means_samples,
             report->means_from_data ? " (of the evaluated data itself, which favours that answer)" : "");
     if (report->white > 1)
         fprintf(stream, "photographs saturate at radiance %g, not at 1 as in the paper\n\n", (double)report->white);
@@ -278,6 +278,7 @@ char *eval_report_json(const eval_report *report)
     cJSON *o = report_begin(&(warnings){0});
     cJSON_AddStringToObject(o, "model", report->model);
     cJSON_AddNumberToObject(o, "size", report->size);
+    cJSON_AddBoolToObject(o, "raw", report->raw);
     cJSON_AddNumberToObject(o, "views", report->views);
     cJSON_AddNumberToObject(o, "white", (double)report->white);
     cJSON *list = cJSON_AddArrayToObject(o, "given");

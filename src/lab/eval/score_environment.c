@@ -3,9 +3,10 @@
 #include <math.h>
 
 #include "estimate/light/relight_env.h"
-#include "estimate/surface/smooth.h"
+#include "estimate/relight/stage.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/score_parts.h"
+#include "lab/eval/truth.h"
 #include "lab/render/generate.h"
 
 /* Four times what samples are made with: their grain costs more similarity than shadows bring. */
@@ -29,12 +30,8 @@ static void elsewhere_free(elsewhere *e)
 
 static status check_same(const eval_subject *on, const sample *again)
 {
-    eval_maps maps;
-    status s = eval_maps_of_sample(again, &maps);
-    if (s != OK) return s;
-    bool same = eval_mse(&maps.albedo, &on->truth.albedo, &on->mask) < SAME_ALBEDO &&
-                eval_mse(&maps.depth, &on->truth.depth, &on->mask) < SAME_DEPTH;
-    eval_maps_free(&maps);
+    bool same = EVAL_UNIT * eval_mse(&again->albedo, &on->truth.albedo, &on->mask) < SAME_ALBEDO &&
+                eval_mse(&again->depth, &on->truth.depth, &on->mask) < SAME_DEPTH;
     return same ? OK
                 : fail(MERLIN_BAD_INPUT,
                        "sample %llu of seed %llu is not what merlin-lab render makes of these numbers (a mesh, other "
@@ -60,7 +57,7 @@ static status render_truth(const eval_subject *on, elsewhere *out)
     status st = render_sample_elsewhere(&o, s->index, s->index + 1, &again, &env);
     if (st != OK) return st;
     st = check_same(on, &again);
-    if (st == OK) st = eval_picture(&again.env, NULL, &on->mask, &out->target);
+    if (st == OK) st = eval_picture(&again.env, NULL, &on->photo.mask, &out->target);
     if (st == OK) st = env_map_new(&env.map, &out->env);
     sample_free(&again);
     environment_free(&env);
@@ -68,25 +65,19 @@ static status render_truth(const eval_subject *on, elsewhere *out)
     return st;
 }
 
-/* Estimated ones as merlin estimate gives them. */
-static status surface_of(const eval_maps *maps, const img *mask, bool estimated, surface *out)
+/* ---- the model, as merlin relight --env has it ---- */
+
+static status score_model(eval_scorer *e, eval_subject *on, const elsewhere *there, merlin_relighting how, eval_row row)
 {
-    *out = (surface){0};
-    status s = img_copy(&out->albedo, &maps->albedo);
-    if (s == OK) s = img_copy(&out->normal, &maps->normal);
-    if (s == OK) s = img_copy(&out->roughness, &maps->roughness);
-    if (s == OK) s = img_copy(&out->depth, &maps->depth);
-    if (s == OK) s = img_copy(&out->mask, mask);
-    if (s == OK && estimated) s = smooth_estimate(out);
-    if (s == OK) {
-        eval_to_file_range(&out->albedo);
-        eval_to_file_range(&out->roughness);
-        surface_tidy(out);
-    } else {
-        surface_free(out);
-    }
+    const merlin_environment around = {.map = there->env};
+    merlin_image relit = {0};
+    status s = merlin_relight_environment(e->model, &on->maps, &around, NULL, how, &relit);
+    if (s == OK) s = eval_score_picture(on, row, &relit, &there->target);
+    merlin_image_free(&relit);
     return s;
 }
+
+/* ---- maps that no model made ---- */
 
 static status light_plainly(const surface *s, const env_map *env, img *lit)
 {
@@ -110,43 +101,37 @@ static status light_with_shadows(const surface *s, const env_map *env, img *lit)
 
 typedef status lighting(const surface *s, const env_map *env, img *lit);
 
-static status note_lit(eval_subject *on, const elsewhere *e, const surface *s, lighting *light, eval_row row,
+static status note_lit(eval_subject *on, const elsewhere *there, const surface *maps, lighting *light, eval_row row,
                        eval_answer answer)
 {
+    surface tidy = {0};
     img lit = {0}, picture = {0};
-    status st = img_new(&lit, s->mask.width, s->mask.height, 3);
-    if (st == OK) st = light(s, &e->env, &lit);
-    if (st == OK) st = eval_picture(&lit, NULL, &on->mask, &picture);
-    if (st == OK) st = eval_note_similarity(&on->scores, row, answer, &picture, &e->target);
+    const surface shown = eval_shown(on, maps);
+    status s = surface_resize(&shown, &shown.mask, &tidy);
+    if (s == OK) s = img_new(&lit, tidy.mask.width, tidy.mask.height, 3);
+    if (s == OK) s = light(&tidy, &there->env, &lit);
+    if (s == OK) s = eval_picture(&lit, NULL, &on->photo.mask, &picture);
+    if (s == OK) s = eval_note_similarity(&on->scores, row, answer, &picture, &there->target);
+    surface_free(&tidy);
     img_free(&lit);
     img_free(&picture);
-    return st;
-}
-
-static status score_maps(eval_subject *on, const elsewhere *e, const eval_maps *maps, eval_answer answer)
-{
-    surface s;
-    bool trivial = answer != EVAL_MODEL && answer != EVAL_TRUE_MAPS;
-    status st = surface_of(maps, &on->mask, answer == EVAL_MODEL, &s);
-    if (st != OK) return st;
-    st = note_lit(on, e, &s, light_plainly, EVAL_ENVIRONMENT_BRDF, answer);
-    if (st == OK && !trivial) st = note_lit(on, e, &s, light_with_shadows, EVAL_ENVIRONMENT_SHADOWS, answer);
-    surface_free(&s);
-    return st;
+    return s;
 }
 
 status eval_score_environment(eval_scorer *e, eval_subject *on)
 {
+    const eval_row plain = EVAL_ENVIRONMENT_BRDF, shadowed = EVAL_ENVIRONMENT_SHADOWS;
     elsewhere there;
     status s = render_truth(on, &there);
     if (s != OK) return s;
-    s = score_maps(on, &there, &e->prediction.maps, EVAL_MODEL);
-    if (s == OK) s = score_maps(on, &there, &on->truth, EVAL_TRUE_MAPS);
-    if (s == OK) s = score_maps(on, &there, &e->means.maps, EVAL_MEAN);
-    if (s == OK) s = score_maps(on, &there, &on->inflated, EVAL_INFLATED);
-    if (s == OK)
-        s = eval_note_similarity(&on->scores, EVAL_ENVIRONMENT_BRDF, EVAL_UNCHANGED, &on->image, &there.target);
-    eval_repeat_trivial(&on->scores, EVAL_ENVIRONMENT_BRDF, EVAL_ENVIRONMENT_SHADOWS);
+    s = score_model(e, on, &there, MERLIN_BY_BRDF_UNSHADOWED, plain);
+    if (s == OK) s = score_model(e, on, &there, MERLIN_BY_BRDF, shadowed);
+    if (s == OK) s = note_lit(on, &there, &on->truth, light_plainly, plain, EVAL_TRUE_MAPS);
+    if (s == OK) s = note_lit(on, &there, &on->truth, light_with_shadows, shadowed, EVAL_TRUE_MAPS);
+    if (s == OK) s = note_lit(on, &there, &e->means.maps, light_plainly, plain, EVAL_MEAN);
+    if (s == OK) s = note_lit(on, &there, &on->inflated, light_plainly, plain, EVAL_INFLATED);
+    if (s == OK) s = eval_note_similarity(&on->scores, plain, EVAL_UNCHANGED, &on->image, &there.target);
+    eval_repeat_trivial(&on->scores, plain, shadowed);
     elsewhere_free(&there);
     return s;
 }

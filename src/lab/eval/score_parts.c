@@ -1,48 +1,57 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/score_parts.h"
 
-status eval_score_trivial(eval_subject *on, const eval_maps *maps, eval_answer answer, eval_row row,
+#include "lab/eval/truth.h"
+
+status eval_score_trivial(eval_subject *on, const surface *maps, eval_answer answer, eval_row row,
                           const illumination *light, const img *target)
 {
-    img lit;
-    const sample *s = on->sample;
-    status st = eval_render(maps, &on->mask, s->fov, s->light_power, light, &lit);
-    if (st != OK) return st;
-    st = eval_note_similarity(&on->scores, row, answer, &lit, target);
+    img lit = {0};
+    const surface shown = eval_shown(on, maps);
+    status st = eval_render(&shown, light, 1, &lit);
+    if (st == OK) st = eval_note_similarity(&on->scores, row, answer, &lit, target);
     img_free(&lit);
     return st;
 }
 
-status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row decoder,
-                             eval_row brdf, const img *by_network, const img *by_brdf)
+status eval_score_picture(eval_subject *on, eval_row row, const merlin_image *picture, const img *target)
 {
-    status s = OK;
-    for (int i = 0; s == OK && i < r->count; i++) {
-        const img *target = &r->targets[i];
-        const illumination *light = &r->lights[i];
-        if (eval_model_relights(e->model))
-            s = eval_note_similarity(&on->scores, decoder, EVAL_MODEL, &by_network[i], target);
-        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &by_brdf[i], target);
-        if (s == OK) s = eval_score_trivial(on, &e->means.maps, EVAL_MEAN, brdf, light, target);
-        if (s == OK) s = eval_score_trivial(on, &on->inflated, EVAL_INFLATED, brdf, light, target);
-        if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_UNCHANGED, &on->image, target);
-    }
-    eval_repeat_trivial(&on->scores, brdf, decoder);
+    img radiance = {0};
+    status s = eval_photo_radiance(&on->photo, picture, &radiance);
+    if (s == OK) s = eval_note_similarity(&on->scores, row, EVAL_MODEL, &radiance, target);
+    img_free(&radiance);
     return s;
 }
 
-void eval_relighting_free(eval_relighting *r)
+status eval_score_answers(const eval_scorer *e, eval_subject *on, eval_row row, const illumination *light,
+                          const img *target)
 {
-    for (int i = 0; i < EVAL_LIGHTS; i++)
-        img_free(&r->targets[i]);
+    status s = eval_score_trivial(on, &e->means.maps, EVAL_MEAN, row, light, target);
+    if (s == OK) s = eval_score_trivial(on, &on->inflated, EVAL_INFLATED, row, light, target);
+    return s == OK ? eval_note_similarity(&on->scores, row, EVAL_UNCHANGED, &on->image, target) : s;
 }
 
-status eval_render_targets(const eval_subject *on, eval_relighting *r)
+static status score_decoder(eval_scorer *e, eval_subject *on, const illumination *light, eval_row row,
+                            const img *target)
 {
-    const sample *s = on->sample;
-    status st = OK;
-    for (int i = 0; i < r->count && st == OK; i++)
-        st = eval_render(&on->truth, &on->mask, s->fov, s->light_power, &r->lights[i], &r->targets[i]);
-    if (st != OK) eval_relighting_free(r);
-    return st;
+    img relit = {0};
+    if (!on->look) return OK;
+    status s = network_relight(e->model->network, on->look, light, &relit);
+    if (s == OK) s = eval_note_similarity(&on->scores, row, EVAL_MODEL, &relit, target);
+    img_free(&relit);
+    return s;
+}
+
+status eval_score_rendered(eval_scorer *e, eval_subject *on, const illumination *light, eval_row decoder, eval_row brdf)
+{
+    img target = {0}, lit = {0};
+    status s = eval_render(&on->truth, light, 1, &target);
+    if (s == OK) s = eval_render(&on->found, light, eval_exposure(on), &lit);
+    if (s == OK) s = eval_note_similarity(&on->scores, brdf, EVAL_MODEL, &lit, &target);
+    if (s == OK) s = score_decoder(e, on, light, decoder, &target);
+    if (s == OK) s = eval_score_answers(e, on, brdf, light, &target);
+    if (s == OK && e->raw) eval_repeat_trivial(&on->scores, brdf, decoder);
+    img_free(&target);
+    img_free(&lit);
+    return s;
 }

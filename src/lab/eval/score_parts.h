@@ -3,41 +3,61 @@
 #ifndef MERLIN_LAB_EVAL_SCORE_PARTS_H
 #define MERLIN_LAB_EVAL_SCORE_PARTS_H
 
-#include "lab/eval/predict.h"
+#include "lab/eval/raw.h"
 #include "lab/eval/scores.h"
-#include "lab/eval/sheet.h"
+#include "lab/eval/sheet_rows.h"
 #include "lab/eval/trivial.h"
+
+/* Lights that are drawn for each sample. */
+enum { EVAL_LIGHTS = 4 };
 
 /* What an evaluation keeps from sample to sample. */
 typedef struct eval_scorer {
-    eval_model *model;
+    merlin_model *model;
+    bool raw; /* the network alone is measured, else what merlin_estimate and merlin_relight make of it */
+    int views;
     eval_means means;
-    eval_prediction prediction;
     sheet_rows *sheet;   /* NULL: no picture wanted */
     float white;         /* radiance at which the photograph saturates */
-    int given;           /* set of EVAL_GIVEN_*: true maps that take the place of the estimated ones */
+    int given;           /* set of EVAL_GIVEN_*: true maps that take the place of the raw ones */
     size_t environments; /* samples that are still to be relit by environments */
 } eval_scorer;
 
 /* One sample on its way through. */
 typedef struct eval_subject {
     const sample *sample;
-    img mask;  /* binary */
-    img photo; /* the network's input before encoding */
-    img image; /* the same, saturated at radiance 1 as everything that is compared */
-    eval_maps truth, inflated;
+    img mask; /* 1 where the object is, else 0: what figures of maps count */
+    eval_photo photo;
+    img image; /* its radiance, saturated at 1 as everything that is compared */
+    surface truth, inflated;
+    merlin_maps maps;   /* the model's, in the photograph's frame */
+    surface found;      /* the same in the sample's */
+    network_look *look; /* of a raw model with a relighting decoder; else NULL */
     eval_scores scores;
 } eval_subject;
 
-/* Pictures of one relighting: up to EVAL_LIGHTS lights and their targets. */
-typedef struct eval_relighting {
-    illumination lights[EVAL_LIGHTS];
-    img targets[EVAL_LIGHTS];
-    int count;
-} eval_relighting;
-
 /* The middle, by the logarithm, of what training adds of a sample's environment. */
 #define EVAL_ENVIRONMENT_STRENGTH 0.316f
+
+static inline const model_config *eval_config(const eval_scorer *e)
+{
+    return network_config(e->model->network);
+}
+
+/* From the radiance that the maps explain to the true one: the estimate found the photograph's exposure itself. */
+static inline float eval_exposure(const eval_subject *on)
+{
+    return on->photo.white / on->maps.gain;
+}
+
+/* A trivial answer's maps as the sample's camera sees them; its images are borrowed. */
+static inline surface eval_shown(const eval_subject *on, const surface *trivial)
+{
+    surface shown = *trivial;
+    shown.mask = on->truth.mask;
+    shown.lens = on->truth.lens;
+    return shown;
+}
 
 /* The maps' errors by region. */
 void eval_score_regions(const eval_scorer *e, eval_subject *on);
@@ -51,13 +71,16 @@ const float (*eval_mean_surroundings(const eval_scorer *e, float sh[9][3]))[3];
 status eval_score_environment(eval_scorer *e, eval_subject *on);
 
 /* A trivial answer's picture, which is its maps rendered, against the target. */
-status eval_score_trivial(eval_subject *on, const eval_maps *maps, eval_answer answer, eval_row row,
+status eval_score_trivial(eval_subject *on, const surface *maps, eval_answer answer, eval_row row,
                           const illumination *light, const img *target);
-/* The model's pictures (by_network may be NULL) and the trivial answers' against the targets. */
-status eval_score_relighting(eval_scorer *e, eval_subject *on, const eval_relighting *r, eval_row decoder,
-                             eval_row brdf, const img *by_network, const img *by_brdf);
-/* Of the true maps under every light of r, without shadows. */
-status eval_render_targets(const eval_subject *on, eval_relighting *r);
-void eval_relighting_free(eval_relighting *r);
+/* A picture that the product made, of the photograph's size and exposure. */
+status eval_score_picture(eval_subject *on, eval_row row, const merlin_image *picture, const img *target);
+/* The trivial answers' pictures, and the photograph itself, against the target. */
+status eval_score_answers(const eval_scorer *e, eval_subject *on, eval_row row, const illumination *light,
+                          const img *target);
+/* The maps rendered under a light, and what a raw model's relighting decoder makes of it, against the true maps
+ * rendered, without shadows and bounces all. */
+status eval_score_rendered(eval_scorer *e, eval_subject *on, const illumination *light, eval_row decoder,
+                           eval_row brdf);
 
 #endif

@@ -7,26 +7,21 @@
 /* From which share of the flash's light that gloss returns the regions behind EVAL_BURNT_OUT begin. */
 static const float gloss_from[EVAL_REGIONS - 1] = {0, 0.03f, 0.1f, 0.3f};
 
-static bool is_burnt_out(const eval_subject *on, size_t i, float white)
+static bool is_burnt_out(const eval_subject *on, size_t i)
 {
-    const float *photo = on->photo.data + 3 * i;
-    return photo[0] >= white || photo[1] >= white || photo[2] >= white;
-}
-
-static vec3 to_unit(const float *a)
-{
-    return vec3_make(0.5f * (a[0] + 1), 0.5f * (a[1] + 1), 0.5f * (a[2] + 1));
+    const float *photo = on->photo.picture.data + 3 * i;
+    return photo[0] >= 1 || photo[1] >= 1 || photo[2] >= 1;
 }
 
 /* By the true maps. */
 static float gloss_share(const eval_subject *on, size_t i)
 {
     const sample *s = on->sample;
-    const eval_maps *t = &on->truth;
+    const surface *t = &on->truth;
     const size_t width = (size_t)on->mask.width, column = i % width, row = i / width;
-    const camera view = {.width = on->mask.width, .height = on->mask.height, .fov = s->fov};
-    shade_input in = {.albedo = to_unit(t->albedo.data + 3 * i),
-                      .roughness = 0.5f * (t->roughness.data[i] + 1),
+    const camera view = surface_camera(t);
+    shade_input in = {.albedo = vec3_of(t->albedo.data + 3 * i),
+                      .roughness = t->roughness.data[i],
                       .normal = vec3_of(t->normal.data + 3 * i),
                       .depth = t->depth.data[i],
                       .ray = camera_point(&view, (float)column + 0.5f, (float)row + 0.5f, 1),
@@ -37,9 +32,9 @@ static float gloss_share(const eval_subject *on, size_t i)
     return terms.specular / (terms.specular + diffuse);
 }
 
-static int region_of(const eval_subject *on, size_t i, float white)
+static int region_of(const eval_subject *on, size_t i)
 {
-    if (is_burnt_out(on, i, white)) return EVAL_BURNT_OUT;
+    if (is_burnt_out(on, i)) return EVAL_BURNT_OUT;
     float share = gloss_share(on, i);
     int region = EVAL_REGIONS - 1;
     while (region > EVAL_BURNT_OUT + 1 && share < gloss_from[region - 1])
@@ -57,21 +52,21 @@ static double squared_error(const img *a, const img *b, size_t i)
     return sum / (double)channels;
 }
 
-static void add_errors(eval_region *to, const eval_maps *maps, const eval_maps *truth, eval_answer answer, size_t i)
+static void add_errors(eval_region *to, const surface *maps, const surface *truth, eval_answer answer, size_t i)
 {
-    to->sum[EVAL_ALBEDO][answer] += squared_error(&maps->albedo, &truth->albedo, i);
+    to->sum[EVAL_ALBEDO][answer] += EVAL_UNIT * squared_error(&maps->albedo, &truth->albedo, i);
     to->sum[EVAL_NORMAL][answer] += squared_error(&maps->normal, &truth->normal, i);
     to->sum[EVAL_DEPTH][answer] += squared_error(&maps->depth, &truth->depth, i);
-    to->sum[EVAL_ROUGHNESS][answer] += squared_error(&maps->roughness, &truth->roughness, i);
+    to->sum[EVAL_ROUGHNESS][answer] += EVAL_UNIT * squared_error(&maps->roughness, &truth->roughness, i);
 }
 
 void eval_score_regions(const eval_scorer *e, eval_subject *on)
 {
     for (size_t i = 0; i < (size_t)on->mask.width * (size_t)on->mask.height; i++) {
         if (!(on->mask.data[i] > EVAL_MASK_LEVEL)) continue;
-        eval_region *r = &on->scores.regions[region_of(on, i, e->white)];
+        eval_region *r = &on->scores.regions[region_of(on, i)];
         r->pixels++;
-        add_errors(r, &e->prediction.maps, &on->truth, EVAL_MODEL, i);
+        add_errors(r, &on->found, &on->truth, EVAL_MODEL, i);
         add_errors(r, &e->means.maps, &on->truth, EVAL_MEAN, i);
         add_errors(r, &on->inflated, &on->truth, EVAL_INFLATED, i);
     }

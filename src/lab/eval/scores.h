@@ -38,6 +38,9 @@ typedef enum eval_answer {
     EVAL_ANSWERS
 } eval_answer;
 
+/* Sets of maps: bits in this order. What each is worth to relighting is in docs/notes/relighting_limits.md. */
+enum { EVAL_GIVEN_ALBEDO = 1, EVAL_GIVEN_NORMAL = 2, EVAL_GIVEN_ROUGHNESS = 4, EVAL_GIVEN_DEPTH = 8 };
+
 /* What the photograph shows of a pixel: a value at its limit, or by the share of the flash's light there that is gloss,
  * less than 3 %, 10 %, 30 %, and more. */
 enum { EVAL_BURNT_OUT, EVAL_MATTE, EVAL_REGIONS = 5 };

@@ -1,15 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* A picture of predictions beside the truth, a row a sample. */
+/* A picture of predictions beside the truth, a row a sample (sheet_rows.h). */
 #ifndef MERLIN_LAB_EVAL_SHEET_H
 #define MERLIN_LAB_EVAL_SHEET_H
 
-#include "lab/eval/predict.h"
+#include "estimate/surface/surface.h"
 #include "lab/eval/sheet_rows.h"
 
-/* For at most `rows` samples; later ones are ignored. */
+/* Columns of a row; between these the maps. */
+enum {
+    EVAL_SHEET_INPUT,
+    EVAL_SHEET_MAPS,
+    EVAL_SHEET_RECONSTRUCTION = 9,
+    EVAL_SHEET_RELIT_TRUE,
+    EVAL_SHEET_BY_NETWORK,
+    EVAL_SHEET_BY_BRDF,
+    EVAL_SHEET_COLUMNS
+};
+
 status eval_sheet_new(int rows, sheet_rows **out);
-/* relit_true: the target under the prediction's first light. Everything is copied. */
-status eval_sheet_add(sheet_rows *sheet, const img *image, const img *mask, const eval_maps *truth,
-                      const eval_prediction *p, const img *relit_true);
+/* The maps' columns of a row, true and found ones in turn. */
+status eval_sheet_maps(const surface *truth, const surface *found, const img *mask, img *row);
 
 #endif

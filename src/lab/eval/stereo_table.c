@@ -44,8 +44,7 @@ static void subject_free(subject *s)
 static status estimate(evaluation *e, subject *s)
 {
     merlin_maps maps = {0};
-    merlin_image photo = s->object.photo, mask = s->object.capture.mask;
-    status result = merlin_estimate(e->model, &photo, &mask, NULL, &maps);
+    status result = merlin_estimate(e->model, &s->object.photo, &s->object.capture.mask, NULL, &maps);
     if (result == OK) result = stereo_frame_check(&s->object.capture, &maps);
     if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
     merlin_maps_free(&maps);

@@ -5,8 +5,8 @@
  *     status s = eval_means_of_folder("train", 0, false, NULL, &means);
  *     if (s == OK) s = eval_means_write(&means, "means.exr");
  *     ...
- *     eval_maps guess;
- *     s = eval_inflate(&image, &mask, &means, 60, 5.95f, &guess);
+ *     surface guess;
+ *     s = eval_inflate(&photo, &mask, &means, &guess);
  */
 #ifndef MERLIN_LAB_EVAL_TRIVIAL_H
 #define MERLIN_LAB_EVAL_TRIVIAL_H
@@ -14,13 +14,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "lab/eval/maps.h"
+#include "lab/eval/photograph.h"
 
 /* Per pixel the mean over those samples whose mask holds the pixel (normals renormalized); where none does, the mean
  * over all. */
 typedef struct eval_means {
-    eval_maps maps;
-    float roughness, depth; /* over all pixels of all masks; roughness in [-1, 1] */
+    surface maps;           /* without a mask */
+    float roughness, depth; /* over all pixels of all masks */
     float sh[9][3];         /* of the environments; 0 where the samples have none */
     size_t samples;
 } eval_means;
@@ -34,9 +34,9 @@ status eval_means_write(const eval_means *means, const char *path);
 /* Resized to width × height. */
 status eval_means_read(const char *path, int width, int height, eval_means *out);
 
-/* Maps from one flash picture (linear, times the mask) without learning anything: normals and relief by pst_inflate
- * (stereo/uncalibrated/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were
- * diffuse (I π d² / Φ, clipped), the data's mean roughness. */
-status eval_inflate(const img *image, const img *mask, const eval_means *means, float fov, float power, eval_maps *out);
+/* Maps from one flash photograph, whose exposure is known, without learning anything: normals and relief by pst_inflate
+ * (stereo/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were diffuse (I π d² /
+ * Φ, clipped), the data's mean roughness. mask: 0 or 1. */
+status eval_inflate(const eval_photo *photo, const img *mask, const eval_means *means, surface *out);
 
 #endif

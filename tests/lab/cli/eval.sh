@@ -11,15 +11,22 @@ succeeds "means over 4 samples" "$MERLIN_LAB" eval --means "$samples" -o "$scrat
 succeeds "^albedo error" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --means-file "$scratch/means.exr" \
     --figure "$scratch/sheet.png" --figure-rows 2
 [[ -s $scratch/sheet.png ]] || complain "no figure"
+succeeds "as merlin estimate and merlin relight have it" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1
+succeeds "^relit by network" "$MERLIN_LAB" eval --raw --data "$samples" --model "$weights" --quiet --means-file "$scratch/means.exr"
+succeeds "the network alone" "$MERLIN_LAB" eval --raw --data "$samples" --model "$weights" --quiet --count 1 --precision bfloat16
+! "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 | grep -q "^relit by network" || complain "a row of the network alone is told of the product"
 succeeds "favours that answer" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1
 succeeds "environments: the first 2 samples" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --environments 2
 succeeds "saturate at radiance 1.5" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 --white 1.5
-succeeds "the true normal is given" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 --given depth --given normal
-succeeds "^normal error .1e-2.  *0.0000" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 --given normal
+succeeds "the true normal is given" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 --raw --given depth --given normal
+succeeds "^normal error .1e-2.  *0.0000" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --quiet --count 1 --raw --given normal
 options=(--data "$samples" --model "$weights" --environments 1 --quiet --json)
 OMP_NUM_THREADS=1 "$MERLIN_LAB" eval "${options[@]}" >"$scratch/a.json"
 OMP_NUM_THREADS=2 "$MERLIN_LAB" eval "${options[@]}" >"$scratch/b.json"
 cmp -s "$scratch/a.json" "$scratch/b.json" || complain "results depend on the number of threads"
+grep -q '"raw":.*false' "$scratch/a.json" || complain "the JSON report does not say what was measured"
+"$MERLIN_LAB" eval "${options[@]}" --raw >"$scratch/c.json"
+grep -q '"raw":.*true' "$scratch/c.json" || complain "the JSON report does not say that the network alone was measured"
 
 refuses 2 "--data DIR is missing" "$MERLIN_LAB" eval --model "$weights"
 refuses 2 "--model W is missing" "$MERLIN_LAB" eval --data "$samples"
@@ -34,6 +41,9 @@ refuses 2 "-o is for --means" "$MERLIN_LAB" eval --data "$samples" --model "$wei
 refuses 2 "--count wants" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --count 0
 refuses 2 "--count wants" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --count 3x
 refuses 2 "--white wants" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --white 0.5
+refuses 2 "--given goes with --raw" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --given normal
+refuses 2 "--precision goes with --raw" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --precision bfloat16
+refuses 2 "--means goes with" "$MERLIN_LAB" eval --means "$samples" -o "$scratch/other.exr" --raw
 refuses 2 "--given wants" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --given light
 refuses 2 "--environments wants" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --environments none
 refuses 2 "end in .png" "$MERLIN_LAB" eval --data "$samples" --model "$weights" --figure sheet.jpg
@@ -60,5 +70,9 @@ refuses 1 "000002.exr" "$MERLIN_LAB" eval --data "$scratch/damaged" --model "$we
 echo "not an image" >"$scratch/damaged/000002.exr"
 refuses 1 "000002.exr" "$MERLIN_LAB" eval --data "$scratch/damaged" --model "$weights" --quiet
 "$MERLIN_LAB" render --count 1 --size 72 --spp 1 --paths 1 --no-env --quiet -o "$scratch/odd" >/dev/null
-refuses 1 "multiple of 32" "$MERLIN_LAB" eval --data "$scratch/odd" --model "$weights" --quiet
+succeeds "of 72x72" "$MERLIN_LAB" eval --data "$scratch/odd" --model "$weights" --quiet
+refuses 1 "multiple of 32" "$MERLIN_LAB" eval --raw --data "$scratch/odd" --model "$weights" --quiet
+"$MERLIN_LAB" render --count 1 --size 64 --spp 1 --paths 1 --off-axis 30 --fov 30 --no-env --quiet -o "$scratch/aside" >/dev/null
+succeeds "on 1 samples" "$MERLIN_LAB" eval --data "$scratch/aside" --model "$weights" --quiet
+refuses 1 "without --raw" "$MERLIN_LAB" eval --raw --data "$scratch/aside" --model "$weights" --quiet
 finish

@@ -6,14 +6,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../../estimate/weights.h"
 #include "base/file.h"
 #include "estimate/photo/network.h"
 #include "lab/eval/evaluate.h"
-#include "lab/eval/maps.h"
 #include "lab/eval/report.h"
+#include "lab/eval/truth.h"
 #include "lab/render/generate.h"
-#include "model/model.h"
-#include "nn/safetensors.h"
 #include "scratch.h"
 #include "sphere.h"
 
@@ -36,22 +35,11 @@ static void write_weights(const char *path, const model_config *config)
 {
     nn_graph *g;
     nn_params *params;
+    char *json = model_config_write(config);
     assert_int_equal(model_build(config, MODEL_WHOLE, &g), OK);
     assert_int_equal(nn_params_new(g, 7, &params), OK);
-    size_t count = nn_params_count(params);
-    st_tensor *tensors = calloc(count, sizeof *tensors);
-    assert_non_null(tensors);
-    for (size_t i = 0; i < count; i++) {
-        const nn_param *p = nn_params_at(params, i);
-        tensors[i] = (st_tensor){.name = p->name, .type = ST_F32, .rank = p->rank, .count = p->count, .data = p->value};
-        memcpy(tensors[i].shape, p->shape, sizeof tensors[i].shape);
-    }
-    char *json = model_config_write(config);
-    assert_non_null(json);
-    const char *const metadata[][2] = {{"config", json}};
-    assert_int_equal(st_write(path, tensors, count, metadata, 1), OK);
+    assert_int_equal(write_params(path, params, json), OK);
     free(json);
-    free(tensors);
     nn_params_free(params);
     nn_graph_free(g);
 }
@@ -110,11 +98,18 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void evaluation_fills_every_row_and_class(void **state)
+/* Of setting A, where no environments are asked for. The decoder without bounces is the network's alone. */
+static bool is_filled(int row, bool raw)
 {
-    const fixture *f = *state;
+    if (row == EVAL_RELIT_NETWORK) return raw;
+    return row != EVAL_SURROUNDINGS && row != EVAL_BOTH_NETWORK && row != EVAL_BOTH_BRDF &&
+           row != EVAL_ENVIRONMENT_BRDF && row != EVAL_ENVIRONMENT_SHADOWS;
+}
+
+static void fill_rows(const fixture *f, bool raw)
+{
     eval_options options = {
-        .data = f->data, .weights = f->weights, .figure = f->figure, .figure_rows = 2, .quiet = true};
+        .data = f->data, .weights = f->weights, .raw = raw, .figure = f->figure, .figure_rows = 2, .quiet = true};
     eval_report r;
     assert_int_equal(eval_run(&options, &r), OK);
     assert_int_equal(r.all.samples, SAMPLES);
@@ -124,11 +119,8 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_string_equal(r.class_names[1], "relief");
     assert_int_equal(r.classes[0].samples, 2);
     for (int row = 0; row < EVAL_ROWS; row++) {
-        if (row == EVAL_SURROUNDINGS || row == EVAL_BOTH_NETWORK || row == EVAL_BOTH_BRDF ||
-            row == EVAL_ENVIRONMENT_BRDF || row == EVAL_ENVIRONMENT_SHADOWS) {
-            assert_int_equal(r.all.count[row][EVAL_MODEL], 0); /* setting B's, and those not asked for */
-            continue;
-        }
+        assert_int_equal(r.all.count[row][EVAL_MODEL] > 0, is_filled(row, raw));
+        if (!is_filled(row, raw)) continue;
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MODEL)));
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_MEAN)));
         assert_true(isfinite(eval_score(&r.all, (eval_row)row, EVAL_INFLATED)));
@@ -142,6 +134,13 @@ static void evaluation_fills_every_row_and_class(void **state)
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_BRDF, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(fabs(eval_score(&r.all, EVAL_TRACED_SHADOWS, EVAL_TRUE_MAPS) - 1) < 5e-4);
     assert_true(file_exists(f->figure));
+    assert_int_equal(remove(f->figure), 0);
+}
+
+static void evaluation_fills_every_row_and_class(void **state)
+{
+    fill_rows(*state, false);
+    fill_rows(*state, true);
 }
 
 static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
@@ -153,7 +152,7 @@ static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
                      0.1f); /* brightest 0.15: nothing; as it is: near the middle; all but its rim */
     write_lit_sphere(folder, 1, SIZE, 0, 1);
     write_lit_sphere(folder, 2, SIZE, 0, 1000);
-    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_options options = {.data = folder, .weights = f->weights, .raw = true, .quiet = true};
     eval_report r;
     assert_int_equal(eval_run(&options, &r), OK);
     for (int i = 0; i < EVAL_SATURATIONS; i++)
@@ -208,7 +207,7 @@ static void errors_are_sorted_by_what_a_photograph_shows(void **state)
     char *folder = file_join(f->folder, "gloss");
     assert_int_equal(file_make_folder(folder), OK);
     write_lit_sphere(folder, 0, SIZE, 0, 1);
-    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_options options = {.data = folder, .weights = f->weights, .raw = true, .quiet = true};
     eval_report r;
     assert_int_equal(eval_run(&options, &r), OK);
     static const eval_row maps[] = {EVAL_ALBEDO, EVAL_NORMAL, EVAL_DEPTH, EVAL_ROUGHNESS};
@@ -240,38 +239,44 @@ static void evaluation_is_deterministic(void **state)
 {
     const fixture *f = *state;
     eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
-    char *json[2];
-    for (int i = 0; i < 2; i++) {
-        eval_report r;
-        assert_int_equal(eval_run(&options, &r), OK);
-        json[i] = eval_report_json(&r);
-        assert_non_null(json[i]);
+    for (int raw = 0; raw < 2; raw++) {
+        char *json[2];
+        options.raw = raw;
+        for (int i = 0; i < 2; i++) {
+            eval_report r;
+            assert_int_equal(eval_run(&options, &r), OK);
+            json[i] = eval_report_json(&r);
+            assert_non_null(json[i]);
+        }
+        assert_string_equal(json[0], json[1]);
+        free(json[0]);
+        free(json[1]);
     }
-    assert_string_equal(json[0], json[1]);
-    free(json[0]);
-    free(json[1]);
 }
 
+/* But the decoder's where the product has it, which always sees four. */
 static void more_views_change_every_figure(void **state)
 {
     const fixture *f = *state;
-    eval_options options = {.data = f->data, .weights = f->weights, .views = 1, .quiet = true};
-    eval_report one, eight;
-    assert_int_equal(eval_run(&options, &one), OK);
-    options.views = 8;
-    assert_int_equal(eval_run(&options, &eight), OK);
-    for (int row = 0; row < EVAL_ROWS; row++) {
-        if (!one.all.count[row][EVAL_MODEL]) continue;
-        double a = eval_score(&one.all, (eval_row)row, EVAL_MODEL),
-               b = eval_score(&eight.all, (eval_row)row, EVAL_MODEL);
-        assert_true(isfinite(b) && a != b);
+    for (int raw = 0; raw < 2; raw++) {
+        eval_options options = {.data = f->data, .weights = f->weights, .raw = raw, .views = 1, .quiet = true};
+        eval_report one, eight;
+        assert_int_equal(eval_run(&options, &one), OK);
+        options.views = 8;
+        assert_int_equal(eval_run(&options, &eight), OK);
+        for (int row = 0; row < EVAL_ROWS; row++) {
+            if (!one.all.count[row][EVAL_MODEL]) continue;
+            double a = eval_score(&one.all, (eval_row)row, EVAL_MODEL),
+                   b = eval_score(&eight.all, (eval_row)row, EVAL_MODEL);
+            assert_true(isfinite(b) && a != b);
+        }
     }
 }
 
 static void views_are_those_of_estimate_where_none_are_given(void **state)
 {
     const fixture *f = *state;
-    eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
+    eval_options options = {.data = f->data, .weights = f->weights, .raw = true, .quiet = true};
     eval_report silent, given;
     assert_int_equal(eval_run(&options, &silent), OK);
     options.views = NETWORK_VIEWS;
@@ -290,7 +295,7 @@ static void a_model_without_extras_leaves_its_rows_empty(void **state)
     plain.feature_sharing = plain.global_illumination = false;
     char *weights = file_join(f->folder, "plain.safetensors");
     write_weights(weights, &plain);
-    eval_options options = {.data = f->data, .weights = weights, .count = 1, .quiet = true};
+    eval_options options = {.data = f->data, .weights = weights, .raw = true, .count = 1, .quiet = true};
     eval_report r;
     assert_int_equal(eval_run(&options, &r), OK);
     assert_int_equal(r.all.samples, 1);
@@ -305,13 +310,16 @@ static void samples_of_another_size_are_refused(void **state)
     const fixture *f = *state;
     char *folder = file_join(f->folder, "mixed");
     assert_int_equal(file_make_folder(folder), OK);
-    eval_options options = {.data = folder, .weights = f->weights, .quiet = true};
+    eval_options options = {.data = folder, .weights = f->weights, .raw = true, .quiet = true};
     eval_report r;
     assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no samples"));
     write_sphere(folder, 0, 50, 0);
     assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "multiple of 32"));
+    options.raw = false; /* merlin estimate takes any */
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.size, 50);
     write_sphere(folder, 0, 64, 0);
     write_sphere(folder, 1, 96, 0);
     assert_int_equal(eval_run(&options, &r), MERLIN_BAD_INPUT);
@@ -377,25 +385,29 @@ static void an_error_beside_none_has_no_ratio(void **state)
     free(table);
 }
 
+/* By a lamp so far away that it gives nothing. */
 static void even_surroundings_show_the_albedo(void **state)
 {
     (void)state;
     sphere of = {{0, 0, -1}, 0.3f, {0.2f, 0.5f, 0.8f}, 0.5f, 64};
     sample s;
-    eval_maps maps;
+    surface maps;
     img lit;
     assert_int_equal(sphere_sample(&of, 0, &s), OK);
-    assert_int_equal(eval_maps_of_sample(&s, &maps), OK);
+    assert_int_equal(eval_truth(&s, &s.mask, &maps), OK);
     float radiance = 0.7f, even[9][3] = {0};
     for (int c = 0; c < 3; c++)
         even[0][c] = radiance / 0.28209479f;
-    illumination surroundings = {{0, 0, 0}, (const float(*)[3])even};
-    assert_int_equal(eval_render(&maps, &s.mask, 60, 0, &surroundings, &lit), OK);
-    for (int c = 0; c < 3; c++)
-        assert_float_equal(img_at(&lit, 32, 32)[c], radiance * of.albedo[c], 1e-5);
-    assert_float_equal(img_at(&lit, 0, 0)[0], 0, 0);
-    img_free(&lit);
-    eval_maps_free(&maps);
+    illumination surroundings = {{0, 0, 1e6f}, (const float(*)[3])even};
+    for (int half = 0; half < 2; half++) {
+        const float exposure = half ? 0.5f : 1;
+        assert_int_equal(eval_render(&maps, &surroundings, exposure, &lit), OK);
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(img_at(&lit, 32, 32)[c], exposure * radiance * of.albedo[c], 1e-5);
+        assert_float_equal(img_at(&lit, 0, 0)[0], 0, 0);
+        img_free(&lit);
+    }
+    surface_free(&maps);
     sample_free(&s);
 }
 
@@ -420,6 +432,11 @@ static void models_of_both_lights_are_shown_the_environment_too(void **state)
     write_weights(f->weights, &both);
     eval_options options = {.data = f->data, .weights = f->weights, .quiet = true};
     eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_true(isfinite(eval_score(&r.all, EVAL_SURROUNDINGS, EVAL_MODEL)));
+    assert_int_equal(r.all.count[EVAL_BOTH_BRDF][EVAL_MODEL], 4 * SAMPLES);
+    assert_int_equal(r.all.count[EVAL_BOTH_NETWORK][EVAL_MODEL], 0);
+    options.raw = true;
     assert_int_equal(eval_run(&options, &r), OK);
     assert_true(isfinite(eval_score(&r.all, EVAL_RECONSTRUCTION, EVAL_MODEL)));
     assert_int_equal(r.all.count[EVAL_RELIT_NETWORK][EVAL_MODEL], 4 * SAMPLES);
