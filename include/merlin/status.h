@@ -27,6 +27,10 @@ const char *merlin_version(void);
  * had. Without it OMP_NUM_THREADS, else one a processor. */
 merlin_status merlin_set_threads(int count);
 
+/* Hears how far long work is, as a params' `progress`: the stage of the work, such as "estimating", and the share of it
+ * that is done, in [0, 1]. Called by the thread that called the library, with the params' progress_context. */
+typedef void (*merlin_progress)(void *context, const char *stage, float share);
+
 #ifdef __cplusplus
 }
 #endif

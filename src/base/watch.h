@@ -9,17 +9,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "merlin/status.h"
+
 typedef struct watch {
-    /* what: the stage, a literal; share of it that is done, in [0, 1]. Called from one thread at a time,
-     * the one that began the work. */
-    void (*tell)(void *context, const char *what, double share);
+    merlin_progress tell; /* NULL: nobody listens; `stage` is a literal */
     void *context;
     int (*stop)(void); /* nonzero: whoever waits gave up; may be NULL. Any thread */
 } watch;
 
-static inline void watch_tell(const watch *w, const char *what, double share)
+static inline void watch_tell(const watch *w, const char *stage, double share)
 {
-    if (w) w->tell(w->context, what, share);
+    if (w && w->tell) w->tell(w->context, stage, (float)share);
 }
 
 static inline bool watch_stops(const watch *w)

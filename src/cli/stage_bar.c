@@ -63,17 +63,17 @@ static void *tick(void *bar)
 /* ---- what is done ---- */
 
 /* Returns the whole's share where a stage's is done; stages that are not planned are where the bar stands. */
-static double whole_share(const stage_bar *b, const char *stage, double share)
+static double whole_share(const stage_bar *b, const char *stage, float share)
 {
     double done = -1, all = 0;
     for (size_t i = 0; i < b->count; i++) {
-        if (strcmp(b->stages[i].name, stage) == 0) done = all + share * b->stages[i].cost;
+        if (strcmp(b->stages[i].name, stage) == 0) done = all + (double)share * b->stages[i].cost;
         all += b->stages[i].cost;
     }
     return done < 0 || !(all > 0) ? b->pace.share : b->from + (b->to - b->from) * done / all;
 }
 
-static void tell(void *bar, const char *stage, double share)
+static void tell(void *bar, const char *stage, float share)
 {
     stage_bar *b = bar;
     if (!b->seen) return;

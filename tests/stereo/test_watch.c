@@ -13,10 +13,10 @@
 
 typedef struct heard {
     int count;
-    double last;
+    float last;
 } heard;
 
-static void hear(void *context, const char *what, double share)
+static void hear(void *context, const char *what, float share)
 {
     heard *h = context;
     assert_string_equal(what, "solving");
@@ -41,8 +41,8 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
         assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i]}, &alone), OK);
         assert_memory_equal(watched.normal.data, alone.normal.data, img_value_count(&alone.normal) * sizeof(float));
         if (methods[i] != PST_LS) {
-            print_message("%s: told %d times, to %.2f\n", pst_method_name(methods[i]), h.count, h.last);
-            assert_true(h.count > 20 && h.last > 0.6);
+            print_message("%s: told %d times, to %.2f\n", pst_method_name(methods[i]), h.count, (double)h.last);
+            assert_true(h.count > 20 && h.last > 0.6f);
         }
         pst_surface_free(&watched);
         pst_surface_free(&alone);
@@ -50,7 +50,7 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
     capture_drop(&c);
 }
 
-static void ignore(void *context, const char *what, double share)
+static void ignore(void *context, const char *what, float share)
 {
     (void)what;
     (void)share;
