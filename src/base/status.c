@@ -49,3 +49,13 @@ const char *status_message(void)
 {
     return message;
 }
+
+const char *merlin_error(void)
+{
+    return status_message();
+}
+
+const char *merlin_version(void)
+{
+    return MERLIN_VERSION;
+}

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/status.h"
+
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of what follows */
 static int tried, had; /* the most threads that were asked for, and how many of them there are */
 static bool sleepers_started;
@@ -180,4 +182,12 @@ void threads_begin(void)
     int own = omp_get_max_threads();
     bool changed = settled.change != atomic_load(&changes);
     if (changed || settled.threads != own) threads_use_here(changed ? atomic_load(&wanted) : own);
+}
+
+merlin_status merlin_set_threads(int count)
+{
+    if (count < 1 || count > THREADS_MOST)
+        return fail(MERLIN_WRONG_USE, "%d threads are not from 1 to %d", count, THREADS_MOST);
+    threads_use(count);
+    return MERLIN_OK;
 }

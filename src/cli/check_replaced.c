@@ -8,8 +8,7 @@
 #include <strings.h>
 
 #include "base/file.h"
-#include "stereo/calibrate/calibrate.h"
-#include "stereo/capture/capture.h"
+#include "base/lights/light_list.h"
 
 static status refuse(const char *folder, const char *name)
 {
@@ -53,7 +52,7 @@ static bool holds_capture(const char *folder)
     if (file_list(folder, NULL, &names, &count) != OK) return false;
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(names[i]);
-        holds |= is_among(pst_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
+        holds |= is_among(light_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
     }
     file_list_free(names, count);
     return holds;
@@ -86,7 +85,7 @@ static bool begins_with(const char *line, const char *words)
 
 static bool is_ours(const char *line)
 {
-    return begins_with(line, PST_CALIBRATION_LIST) || begins_with(line, LIST_OF_PLACES);
+    return begins_with(line, LIGHT_LIST_OF_CALIBRATION) || begins_with(line, LIST_OF_PLACES);
 }
 
 enum { FIRST_LINE = 64 };

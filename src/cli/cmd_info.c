@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text/report.h"
 #include "cli/commands.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "estimate/files/report.h"
 #include "model/model.h"
 #include "nn/safetensors.h"
 

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-#include "estimate/files/staging.h"
+#include "base/staging.h"
 
 enum { MESH_MOST_FILES = MAPS_MOST_ELSEWHERE };
 

@@ -3,7 +3,7 @@
 #ifndef MERLIN_CLI_WRITTEN_H
 #define MERLIN_CLI_WRITTEN_H
 
-#include "estimate/files/staging.h"
+#include "base/staging.h"
 
 enum { WRITTEN_WORDS = 64 };
 

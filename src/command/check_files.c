@@ -2,7 +2,7 @@
 #include "command/check_files.h"
 
 #include "base/file.h"
-#include "estimate/files/staging.h"
+#include "base/staging.h"
 
 status check_named(const char *what, const char *path)
 {

@@ -11,8 +11,8 @@
 #ifndef MERLIN_COMMAND_JSON_LINE_H
 #define MERLIN_COMMAND_JSON_LINE_H
 
+#include "base/staging.h"
 #include "base/status.h"
-#include "estimate/files/staging.h"
 #include <cJSON.h>
 
 /* A report's own text, of several lines, which is freed; NULL: memory ran out. */

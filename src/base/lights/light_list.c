@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+const char *const light_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
+
 void light_list_free(light_list *list)
 {
     for (size_t i = 0; list->name && i < list->count; i++)

@@ -22,6 +22,12 @@
 
 enum { LIGHT_LIST_MAX = 4096, LIGHT_LIST_NOTE = 256 };
 
+/* Names by which a folder's list of lights is found, up to NULL; an .lp file may have any. */
+extern const char *const light_list_names[];
+
+/* The first words of a list that merlin stereo calibrate has written, by which its own is known again. */
+#define LIGHT_LIST_OF_CALIBRATION "# Directions to the lights, found from"
+
 typedef struct light_list {
     vec3 *at;                   /* x y z as they stand; from angles of unit length, or the listed distance */
     char **name;                /* what stands beside the numbers: a picture's name, a number; NULL: nothing does */

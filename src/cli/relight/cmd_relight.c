@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "base/text/report.h"
 #include "base/warnings.h"
 #include "cli/commands.h"
 #include "cli/expect.h"
@@ -23,7 +24,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/files/report.h"
 #include "estimate/photo/doubts.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/stage.h"

@@ -5,10 +5,10 @@
 
 #include <stdbool.h>
 
+#include "base/staging.h"
 #include "base/status.h"
 #include "base/watch.h"
 #include "cli/relight/lamps.h"
-#include "estimate/files/staging.h"
 #include "image/write/write.h"
 #include "merlin/merlin.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "base/text/report.h"
 #include "cli/check_replaced.h"
 #include "cli/commands.h"
 #include "cli/stage_bar.h"
@@ -21,7 +22,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/files/report.h"
 #include "stereo/fit/albedo_scale.h"
 
 static const char help[] =

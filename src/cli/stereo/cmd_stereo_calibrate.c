@@ -5,14 +5,14 @@
 #include <string.h>
 
 #include "base/progress.h"
+#include "base/staging.h"
+#include "base/text/report.h"
 #include "cli/check_replaced.h"
 #include "cli/stage_bar.h"
 #include "cli/stereo/stereo_commands.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "estimate/files/report.h"
-#include "estimate/files/staging.h"
 #include "stereo/calibrate/calibrate.h"
 
 static const char help[] =

@@ -5,9 +5,9 @@
 
 #include <cJSON.h>
 
+#include "base/staging.h"
 #include "cli/mesh_file.h"
 #include "cli/stereo/stereo_result.h"
-#include "estimate/files/staging.h"
 
 typedef struct stereo_files {
     const char *folder;

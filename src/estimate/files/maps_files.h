@@ -3,8 +3,8 @@
 #ifndef MERLIN_ESTIMATE_FILES_MAPS_FILES_H
 #define MERLIN_ESTIMATE_FILES_MAPS_FILES_H
 
+#include "base/staging.h"
 #include "base/watch.h"
-#include "estimate/files/staging.h"
 #include "image/exr/exr.h"
 #include "merlin/merlin.h"
 

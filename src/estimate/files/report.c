@@ -3,8 +3,8 @@
 #include <cJSON.h>
 #include <math.h>
 
+#include "base/text/report.h"
 #include "estimate/files/maps_files.h"
-#include "estimate/files/report.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"
 #include "estimate/photo/doubts.h"
@@ -141,15 +141,6 @@ static void put_light(cJSON *root, const merlin_found_light *l)
 static bool is_scale_known(const merlin_maps *maps)
 {
     return !maps->light.known || found_light_share(&maps->light).flash >= 0.5f;
-}
-
-cJSON *report_begin(const warnings *doubts)
-{
-    cJSON *root = cJSON_CreateObject();
-    cJSON_AddStringToObject(root, "version", merlin_version());
-    cJSON_AddNumberToObject(root, "schema", REPORT_SCHEMA);
-    if (doubts) cJSON_AddItemToObject(root, "warnings", warnings_json(doubts));
-    return root;
 }
 
 char *maps_report(const merlin_maps *maps)

@@ -1,40 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "estimate/photo/model_pair.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/public.h"
-#include "base/threads.h"
 #include "estimate/object/mask.h"
 #include "image/read/read.h"
 #include "image/write/write.h"
-
-static_assert((int)MERLIN_WRONG_USE == (int)MERLIN_WRONG_USE && (int)MERLIN_BAD_INPUT == (int)MERLIN_BAD_INPUT &&
-                  (int)MERLIN_CANNOT_WRITE == (int)MERLIN_CANNOT_WRITE &&
-                  (int)MERLIN_NO_MEMORY == (int)MERLIN_NO_MEMORY &&
-                  (int)MERLIN_DEVICE_FAILED == (int)MERLIN_DEVICE_FAILED && (int)MERLIN_STOPPED == (int)MERLIN_STOPPED,
-              "the public codes are the inside's");
-
-const char *merlin_version(void)
-{
-    return MERLIN_VERSION;
-}
-
-const char *merlin_error(void)
-{
-    return status_message();
-}
-
-merlin_status merlin_set_threads(int count)
-{
-    if (count < 1 || count > THREADS_MOST)
-        return fail(MERLIN_WRONG_USE, "%d threads are not from 1 to %d", count, THREADS_MOST);
-    threads_use(count);
-    return MERLIN_OK;
-}
 
 merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
 {

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/bench/bench.h"
 #include "lab/bench/bench_network.h"
 #include "model/model.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <cjson/cJSON.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/bench/bench.h"
 #include "lab/bench/bench_network.h"
 

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/bench/bench_estimate.h"
 #include "lab/bench/bench_time.h"
 #include "stereo/methods/solve.h"

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text/report.h"
 #include "command/check_files.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "estimate/files/report.h"
 #include "lab/cli/commands.h"
 #include "lab/render/generate.h"
 

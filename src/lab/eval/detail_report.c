@@ -2,7 +2,7 @@
 /* detail_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "estimate/photo/network.h"
 #include "lab/eval/detail_table.h"
 

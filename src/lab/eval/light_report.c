@@ -3,7 +3,7 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/eval/light_table.h"
 
 typedef struct figure_words {

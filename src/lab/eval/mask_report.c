@@ -3,8 +3,8 @@
 #include <cJSON.h>
 #include <stdlib.h>
 
+#include "base/text/report.h"
 #include "base/utf8.h"
-#include "estimate/files/report.h"
 #include "lab/eval/mask_table.h"
 
 /* Above any confidence. */

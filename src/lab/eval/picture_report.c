@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/eval/metrics.h"
 #include "lab/eval/picture_table.h"
 

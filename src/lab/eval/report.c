@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 
 typedef struct row_text {
     const char *key, *label;

@@ -2,7 +2,7 @@
 /* solver_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
-#include "estimate/files/report.h"
+#include "base/text/report.h"
 #include "lab/eval/solver_table.h"
 
 typedef struct figure_words {

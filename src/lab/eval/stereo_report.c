@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text/report.h"
 #include "base/utf8.h"
-#include "estimate/files/report.h"
 #include "lab/eval/stereo_table.h"
 #include "photo_stereo/draws.h"
 

@@ -23,8 +23,6 @@ typedef struct pst_calibrate_options {
 
 /* MERLIN_BAD_INPUT with one clear line if the ball, or the light in a picture of it, is not found. */
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out);
-/* The first words of the list that is written, by which it is known again. */
-#define PST_CALIBRATION_LIST "# Directions to the lights, found from"
 /* lights: a direction a line, which pst_capture_read finds by the name of lights.txt; picture: a PNG of circle,
  * highlights and arrows to the lights. */
 status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture);

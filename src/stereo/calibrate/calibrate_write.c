@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/file.h"
+#include "base/lights/light_list.h"
 #include "image/resize.h"
 #include "image/write/canvas.h"
 #include "stereo/calibrate/calibrate.h"
@@ -13,7 +14,7 @@ static status write_lights(const pst_calibration *c, const char *path)
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
-    fprintf(out, PST_CALIBRATION_LIST " a %s ball: x right, y up, z toward the camera.\n",
+    fprintf(out, LIGHT_LIST_OF_CALIBRATION " a %s ball: x right, y up, z toward the camera.\n",
             c->ball == PST_CHROME ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];

@@ -74,9 +74,6 @@ typedef struct pst_read_options {
     float distance;      /* mean, from the camera to the object; 0: from the layout, or not known */
 } pst_read_options;
 
-/* The names that a folder's list of lights is found by, up to NULL; an .lp file may have any. */
-extern const char *const pst_list_names[];
-
 status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
 /* Whether a folder is laid out as an object of LUCES or DiLiGenT. */
 bool pst_is_of_data_set(const char *folder);

@@ -9,14 +9,12 @@
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/match_lights.h"
 
-const char *const pst_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
-
 /* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
 static status find_lights(const char *folder, const char *asked, char **path)
 {
     size_t found = 0;
     *path = NULL;
-    status s = asked ? OK : pst_find_named(folder, pst_list_names, path);
+    status s = asked ? OK : pst_find_named(folder, light_list_names, path);
     if (s == OK && !*path) s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
     if (s != OK || found < 2) return s;
     free(*path);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Begins every report of a command, on standard output and in report.json. docs/json.md lists all names. */
-#ifndef MERLIN_ESTIMATE_FILES_REPORT_H
-#define MERLIN_ESTIMATE_FILES_REPORT_H
+#ifndef MERLIN_BASE_TEXT_REPORT_H
+#define MERLIN_BASE_TEXT_REPORT_H
 
 #include <cJSON.h>
 

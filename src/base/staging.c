@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/files/staging.h"
+#include "base/staging.h"
 
 #include <dirent.h>
 #include <errno.h>

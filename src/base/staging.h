@@ -8,8 +8,8 @@
  *     status s = img_write_png(staging_path(t, "albedo.png", path), &albedo, IMG_SRGB8);
  *     s = s == OK ? staging_commit(t, NULL) : staging_abort(t, s);
  */
-#ifndef MERLIN_ESTIMATE_FILES_STAGING_H
-#define MERLIN_ESTIMATE_FILES_STAGING_H
+#ifndef MERLIN_BASE_STAGING_H
+#define MERLIN_BASE_STAGING_H
 
 #include <limits.h>
 #include <stddef.h>
