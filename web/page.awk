@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+# Puts the viewer's page together, on standard output: index.html with the style, the shaders and the modules in it.
+#
+#     awk -f page.awk -v folder=web
+#
+# Each module becomes a function that gives back what it exports, those first that others import, so that names are the
+# module's own. Imports and exports stand at the beginning of a line, an export before what it exports.
+
+function fail(words) {
+    print "page.awk: " words >"/dev/stderr"
+    failed = 1
+    exit 1
+}
+
+# Comments that have lines of their own are for the repository's readers.
+function read(name,    line, text, got) {
+    while ((got = (getline line <(folder "/" name))) > 0)
+        if (name !~ /\.(js|glsl)$/ || line !~ /^ *\/\//) text = text line "\n"
+    if (got < 0) fail("cannot read " folder "/" name)
+    close(folder "/" name)
+    return text
+}
+
+function shaders(    list, name, source, text) {
+    list = "ls " folder "/shaders"
+    text = "const shaders = {\n"
+    while ((list | getline name) > 0) {
+        source = read("shaders/" name)
+        if (source ~ /[`\\$]/) fail("shaders/" name ": a character that a template string takes for its own")
+        text = text "\"" name "\": `\n" source "`,\n"
+    }
+    close(list)
+    return text "};\n"
+}
+
+function module(name,    lines, n, i, line, words, body, exported, before) {
+    if (name in seen) return ""
+    seen[name] = 1
+    if (name == "shaders.js") return shaders()
+    n = split(read(name), lines, "\n")
+    for (i = 1; i < n; i++) {
+        line = lines[i]
+        if (line ~ /^import .* from "\.\/[a-z_]+\.js";$/) {
+            match(line, /[a-z_]+\.js/)
+            before = before module(substr(line, RSTART, RLENGTH))
+            continue
+        }
+        if (line ~ /^(import|export \{)/) fail(name ": " line)
+        if (sub(/^export /, "", line)) {
+            words = line
+            sub(/^(async )?(function|class|const|let) /, "", words)
+            # of const A = 1, B = 2; both
+            if (line ~ /^const .*;$/ && line !~ /[({]/)
+                while (match(words, /[A-Za-z_]+ = /)) {
+                    exported = exported substr(words, RSTART, RLENGTH - 3) ", "
+                    words = substr(words, RSTART + RLENGTH)
+                }
+            else {
+                match(words, /^[A-Za-z_0-9]+/)
+                exported = exported substr(words, 1, RLENGTH) ", "
+            }
+        }
+        body = body line "\n"
+    }
+    return before (exported ? "const { " substr(exported, 1, length(exported) - 2) " } = " : "") \
+        "(() => {\n" body (exported ? "return { " substr(exported, 1, length(exported) - 2) " };\n" : "") "})();\n\n"
+}
+
+BEGIN {
+    n = split(read("index.html"), page, "\n")
+    for (i = 1; i < n; i++) {
+        if (at = index(page[i], "/*style*/")) printf "%s\n%s%s\n", substr(page[i], 1, at - 1), read("style.css"), substr(page[i], at + 9)
+        else if (at = index(page[i], "/*script*/")) printf "%s\n%s%s\n", substr(page[i], 1, at - 1), module("main.js"), substr(page[i], at + 10)
+        else print page[i]
+    }
+    exit failed
+}
