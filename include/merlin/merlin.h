@@ -201,6 +201,7 @@ typedef enum merlin_relighting {
     MERLIN_BY_NETWORK, /* the relighting decoder, for lights on the frontal hemisphere: (sinθ cosφ, sinθ sinφ, cosθ - 1)
                         */
     MERLIN_BY_BRDF_UNSHADOWED, /* by the BRDF without cast shadows, as in the paper */
+    MERLIN_BY_BRDF_DIRECT,     /* by the BRDF with cast shadows, without the network's global illumination */
 } merlin_relighting;
 
 /* The object under one point light at this place instead of the flash, of the flash's power (5.95): the photograph's

@@ -23,6 +23,11 @@ present network/relit_000.png
 cmp -s network/relit_000.png disc.merlin/relit/relit_000.png && complain "network and BRDF give the same bits"
 succeeds plain relight disc.merlin --light 0.5,0.2,-0.4 --no-shadows -o plain
 present plain/relit_000.png
+succeeds direct relight disc.merlin --light 0.5,0.2,-0.4 --no-bounces -o direct
+present direct/relit_000.png
+for other in disc.merlin/relit plain; do
+    cmp -s direct/relit_000.png $other/relit_000.png && complain "--no-bounces gives what $other has"
+done
 
 succeeds disc.merlin/relit relight disc.merlin/maps.exr --light 0.5,0.2,-0.4 -o disc.merlin/relit
 (cd disc.merlin && succeeds ./relit relight maps.exr --light 0.5,0.2,-0.4)
@@ -189,6 +194,8 @@ refuses 2 'no photograph' relight
 refuses 2 'no light' relight disc.merlin
 refuses 2 '--frame is the side of an --orbit' relight disc.merlin --light 0,0,0 --frame 64
 refuses 2 '--no-shadows is of --by brdf' relight disc.merlin --light 0,0,0 --by network --no-shadows
+refuses 2 '--no-bounces is of --by brdf' relight disc.merlin --light 0,0,0 --by network --no-bounces
+refuses 2 'give it or --no-shadows' relight disc.merlin --light 0,0,0 --no-bounces --no-shadows
 refuses 2 'one --light, not 2' relight disc.merlin --env room.hdr --orbit 3 --light 0,0,0 --light 1,0,0
 refuses 2 'one --light, not 2' relight disc.merlin --env room.hdr --orbit 3 --lights lights.txt
 refuses 2 'holds maps already' relight disc.merlin --light 0,0,0 --views 8

@@ -196,10 +196,11 @@ static void stage_serves_many_lights(void **state)
 {
     fixture *f = *state;
     const float lights[3][3] = {{0.3f, 0.5f, -0.3f}, {-0.6f, 0, -0.4f}, {0.3f, 0.5f, -0.3f}};
-    const merlin_relighting ways[] = {MERLIN_BY_BRDF, MERLIN_BY_NETWORK, MERLIN_BY_BRDF_UNSHADOWED};
+    const merlin_relighting ways[] = {MERLIN_BY_BRDF, MERLIN_BY_NETWORK, MERLIN_BY_BRDF_UNSHADOWED,
+                                      MERLIN_BY_BRDF_DIRECT};
     merlin_environment *room;
     assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
-    for (int w = 0; w < 3; w++) {
+    for (int w = 0; w < 4; w++) {
         merlin_stage *stage;
         assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, ways[w], &stage), MERLIN_OK);
         for (int i = 0; i < 6; i++) { /* in the dark and in the room by turns */

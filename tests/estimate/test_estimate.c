@@ -267,7 +267,7 @@ static void relighting_moves_the_light_and_keeps_the_outside_black(void **state)
 {
     const fixture *f = *state;
     const float left[3] = {-0.7f, 0.3f, -0.4f}, right[3] = {0.7f, 0.3f, -0.4f};
-    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_UNSHADOWED; how++) {
+    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_DIRECT; how++) {
         merlin_maps maps;
         merlin_image a, b;
         estimate(f, &maps);
@@ -350,7 +350,7 @@ static void an_enlarged_picture_is_black_beside_the_object(void **state)
     merlin_stage *stage;
     merlin_image relit;
     estimate_ring(f, &maps);
-    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_UNSHADOWED; how++) {
+    for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_DIRECT; how++) {
         assert_int_equal(merlin_stage_new(f->model, &maps, SIDE, (merlin_relighting)how, &stage), MERLIN_OK);
         assert_int_equal(merlin_stage_relight(stage, left, NULL, &relit), MERLIN_OK);
         for (int i = 0; i < 3 * SIDE * SIDE; i++) {

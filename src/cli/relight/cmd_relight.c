@@ -78,6 +78,7 @@ static const char help_on_options[] =
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
     "                       network: the relighting decoder, made for lamps at distance 1 from 0,0,-1 with z >= -1\n"
     "      --no-shadows     brdf without cast shadows (lamps and surroundings), as in the paper\n"
+    "      --no-bounces     brdf with cast shadows, but without the network's global illumination\n"
     "      --matte          brdf without gloss: what least squares, as of RTI tools, finds normals in\n"
     "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin); - writes\n"
     "                       one picture to standard output\n"
@@ -93,7 +94,9 @@ static const char help_on_options[] =
     "      --json           a report as JSON on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
-    "  -h, --help           this text\n\n"
+    "  -h, --help           this text\n\n";
+
+static const char help_on_files[] =
     "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
     "them;\n"
     "for an orbit frame_000.png and on, and orbit.png.\n";
@@ -115,7 +118,7 @@ typedef struct request {
     img_file_kind format;
     int orbit, frame;
     relight_dome dome;
-    bool found, near, no_shadows, matte, json, quiet, help;
+    bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
 } request;
 
 static status take_exposing(const char *text, void *into)
@@ -196,6 +199,10 @@ static status check_way(request *r)
     bool by_network = r->how == MERLIN_BY_NETWORK;
     if (r->no_shadows && by_network)
         return fail(MERLIN_WRONG_USE, "--no-shadows is of --by brdf; the relighting decoder paints its own");
+    if (r->no_bounces && by_network)
+        return fail(MERLIN_WRONG_USE, "--no-bounces is of --by brdf; the relighting decoder paints its own");
+    if (r->no_bounces && r->no_shadows)
+        return fail(MERLIN_WRONG_USE, "--no-bounces keeps cast shadows: give it or --no-shadows, not both");
     if (r->matte && by_network)
         return fail(MERLIN_WRONG_USE, "--matte is of --by brdf; the relighting decoder paints gloss");
     if (r->found && by_network)
@@ -203,6 +210,7 @@ static status check_way(request *r)
     if (by_network && stereo_maps_in(r->input))
         return fail(MERLIN_WRONG_USE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
+    if (r->no_bounces) r->how = MERLIN_BY_BRDF_DIRECT;
     return OK;
 }
 
@@ -257,6 +265,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"env-exposure", .real = &r->env_exposure, .low = -20, .high = 20},
         {"by", .take = take_way, .into = &r->how},
         {"no-shadows", .flag = &r->no_shadows},
+        {"no-bounces", .flag = &r->no_bounces},
         {"matte", .flag = &r->matte},
         {"frame", .integer = &r->frame, .low = 32, .high = 1024},
         {"mask", .text = &r->mask},
@@ -480,6 +489,7 @@ int cmd_relight(int argc, char **argv)
     } else if (r.help) {
         fputs(help, stdout);
         fputs(help_on_options, stdout);
+        fputs(help_on_files, stdout);
     } else {
         cli_catch_interrupts();
         s = run(&r);

@@ -42,7 +42,7 @@ static status light_by_brdf(const stage *s, const lamp *light, img *full, img *l
 {
     status result = surface_shade_lamp(&s->full, light, full);
     if (result == OK) result = surface_shade_lamp(&s->low, light, low);
-    if (result == OK && s->how == MERLIN_BY_BRDF) result = cast_shadows(s, light, full, low);
+    if (result == OK && stage_casts_shadows(s)) result = cast_shadows(s, light, full, low);
     return result;
 }
 
@@ -126,7 +126,7 @@ static status dark(const stage *s, img *full, img *low)
 
 status stage_check(merlin_relighting how, const lamp *light, bool environment)
 {
-    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_UNSHADOWED)
+    if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_DIRECT)
         return fail(MERLIN_WRONG_USE, "no way of relighting has the number %d", (int)how);
     if (how != MERLIN_BY_NETWORK) return OK;
     if (!light)
@@ -146,7 +146,7 @@ static status add_lamp(network *n, const stage *s, const lamp *light, bool alone
 {
     const img none = {0};
     status result = light_by_lamp(n, s, light, full, low);
-    if (result == OK && alone) result = add_indirect(n, s, low, &none, full);
+    if (result == OK && alone && s->how != MERLIN_BY_BRDF_DIRECT) result = add_indirect(n, s, low, &none, full);
     if (result != OK) return result;
     dye(light->tint, full);
     if (!alone) dye(light->tint, low);
@@ -172,7 +172,7 @@ status stage_relight(network *n, const stage *s, const lamp *lights, int count, 
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
-    bool shadows = s->environment && s->how == MERLIN_BY_BRDF, joint = s->environment && !shadows;
+    bool shadows = s->environment && stage_casts_shadows(s), joint = s->environment && !shadows;
     status result = add_lamps(n, s, lights, count, !joint, out, &low);
     if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
     if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);

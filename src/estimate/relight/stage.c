@@ -86,7 +86,7 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
     if (result == OK && s->how == MERLIN_BY_NETWORK)
         result =
             network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, NETWORK_VIEWS, &s->look);
-    if (result == OK && s->how == MERLIN_BY_BRDF) result = caster_of(&s->low, &s->caster);
+    if (result == OK && stage_casts_shadows(s)) result = caster_of(&s->low, &s->caster);
     return result;
 }
 
@@ -114,6 +114,6 @@ status stage_make_matte(stage *s)
 status stage_surround(stage *s, const env_map *environment)
 {
     s->environment = environment;
-    bool first = environment && s->how == MERLIN_BY_BRDF && !s->horizon.closed;
+    bool first = environment && stage_casts_shadows(s) && !s->horizon.closed;
     return first ? horizon_new(&s->caster, &s->horizon) : OK;
 }

@@ -28,7 +28,14 @@ typedef struct stage {
     merlin_relighting how;
 } stage;
 
-/* side: the square's pixels a side; 0: as many as the crop has in the photograph. */
+/* Tells whether lamps and surroundings cast shadows. */
+static inline bool stage_casts_shadows(const stage *s)
+{
+    return s->how == MERLIN_BY_BRDF || s->how == MERLIN_BY_BRDF_DIRECT;
+}
+
+/* side: the square's pixels a side; 0: as many as the crop has in the photograph. n may be NULL for
+ * MERLIN_BY_BRDF_DIRECT. */
 status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out);
 void stage_free(stage *s);
 /* Another side for what follows. After a failure the stage is good for nothing but stage_free. */
@@ -44,7 +51,7 @@ status stage_surround(stage *s, const env_map *environment);
 /* MERLIN_WRONG_USE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
 status stage_check(merlin_relighting how, const lamp *light, bool environment);
 /* Renders the square under so many lamps together and the stage's environment, one of all at least and as stage_check
- * wants them, bounces included: 3 channels in [0, 1] of `white`. */
+ * wants them, bounces included unless how leaves them out: 3 channels in [0, 1] of `white`. */
 status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out);
 
 #endif
