@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "lab/eval/truth.h"
+#include "lab/eval/samples/truth.h"
 
 enum { PICTURE = 256 };
 

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "lab/eval/metrics.h"
+#include "lab/eval/metrics/metrics.h"
 
 enum { MAX_RUNS = 64, COPY_BYTES = 256 << 20 };
 

@@ -12,9 +12,9 @@
 #include "command/photos.h"
 #include "lab/cli/commands.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/evaluate.h"
-#include "lab/eval/report.h"
-#include "lab/eval/trivial.h"
+#include "lab/eval/samples/evaluate.h"
+#include "lab/eval/samples/report.h"
+#include "lab/eval/samples/trivial.h"
 
 static const char help[] =
     "usage: merlin-lab eval --data DIR --model W [options]\n"

@@ -10,7 +10,7 @@
 #include "command/photos.h"
 #include "estimate/photo/network.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/detail_table.h"
+#include "lab/eval/tables/detail_table.h"
 
 static const char help[] =
     "usage: merlin-lab eval detail --data DIR [options]\n\n"

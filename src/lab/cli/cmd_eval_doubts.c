@@ -13,7 +13,7 @@
 #include "command/photo_ahead.h"
 #include "estimate/photo/model_pair.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/doubt_table.h"
+#include "lab/eval/tables/doubt_table.h"
 #include "lab/render/sample.h"
 
 static const char help[] =

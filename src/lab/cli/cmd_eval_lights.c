@@ -10,7 +10,7 @@
 #include "command/photos.h"
 #include "estimate/photo/network.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/light_table.h"
+#include "lab/eval/tables/light_table.h"
 
 static const char help[] =
     "usage: merlin-lab eval lights --data DIR [options]\n\n"

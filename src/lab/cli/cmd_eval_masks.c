@@ -12,7 +12,7 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/mask_table.h"
+#include "lab/eval/tables/mask_table.h"
 #include "merlin/merlin.h"
 
 static const char help[] =

@@ -9,7 +9,7 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/picture_table.h"
+#include "lab/eval/stereo/picture_table.h"
 
 static const char help[] =
     "usage: merlin-lab eval pictures FOLDER... [options]\n\n"

@@ -7,7 +7,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/solver_table.h"
+#include "lab/eval/stereo/solver_table.h"
 
 static const char help[] =
     "usage: merlin-lab eval solvers [options]\n\n"

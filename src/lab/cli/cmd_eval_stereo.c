@@ -9,7 +9,7 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "lab/cli/eval_commands.h"
-#include "lab/eval/stereo_table.h"
+#include "lab/eval/stereo/stereo_table.h"
 
 static const char help[] =
     "usage: merlin-lab eval stereo --data DIR [options]\n\n"

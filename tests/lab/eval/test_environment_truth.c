@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "estimate/light/relight_env.h"
-#include "lab/eval/metrics.h"
+#include "lab/eval/metrics/metrics.h"
 #include "lab/render/generate.h"
 #include "lab/render/render.h"
 #include "lab/render/streams.h"

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "lab/eval/mask_table.h"
+#include "lab/eval/tables/mask_table.h"
 #include "sphere.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */

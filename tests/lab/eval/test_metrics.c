@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "base/rng.h"
-#include "lab/eval/metrics.h"
+#include "lab/eval/metrics/metrics.h"
 
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 

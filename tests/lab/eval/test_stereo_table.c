@@ -9,10 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "lab/eval/normal_frame.h"
-#include "lab/eval/stereo_frame.h"
-#include "lab/eval/stereo_object.h"
-#include "lab/eval/stereo_table.h"
+#include "lab/eval/metrics/normal_frame.h"
+#include "lab/eval/stereo/stereo_frame.h"
+#include "lab/eval/stereo/stereo_object.h"
+#include "lab/eval/stereo/stereo_table.h"
 #include "photo_stereo/draws.h"
 #include "photo_stereo/near_capture.h"
 #include "scratch.h"

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "lab/eval/metrics.h"
-#include "lab/eval/trivial.h"
+#include "lab/eval/metrics/metrics.h"
+#include "lab/eval/samples/trivial.h"
 #include "scratch.h"
 #include "sphere.h"
 

@@ -10,7 +10,7 @@
 #include <cmocka.h> /* behind ours: it has a macro named fail */
 
 #include "base/rng.h"
-#include "lab/eval/rendered_capture.h"
+#include "lab/eval/stereo/rendered_capture.h"
 #include "lab/scene/material/material.h"
 #include "relief.h"
 #include "stereo/integrate/surface_error.h"

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/* stereo_table.h's table as text and as JSON. */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text/report.h"
+#include "base/utf8.h"
+#include "base/text/report.h"
+#include "lab/eval/stereo/stereo_table.h"
+#include "photo_stereo/draws.h"
+
+enum { LABEL_WIDTH = 20, CELL_WIDTH = 9 };
+
+/* "3 superquadric" as "3" above "superqua": two lines of heading, in cells of one width. */
+static void print_heading(const stereo_table *t, FILE *stream)
+{
+    for (int line = 0; line < 2; line++) {
+        fprintf(stream, "%-*s", LABEL_WIDTH, "");
+        for (size_t i = 0; i < t->count; i++) {
+            const char *name = t->object[i].name, *blank = strchr(name, ' ');
+            int first = blank ? (int)(blank - name) : (int)strlen(name);
+            const char *text = line == 0 ? name : blank ? blank + 1 : "";
+            int length = line == 0 ? first : (int)strlen(text);
+            fprintf(stream, "%*.*s", CELL_WIDTH, length < CELL_WIDTH ? length : CELL_WIDTH - 1, text);
+        }
+        fprintf(stream, line == 0 ? "%*s\n" : "\n", CELL_WIDTH, "mean");
+    }
+}
+
+static void print_number(double value, FILE *stream)
+{
+    if (isnan(value))
+        fprintf(stream, "%*s", CELL_WIDTH, "-");
+    else
+        fprintf(stream, "%*.2f", CELL_WIDTH, value);
+}
+
+static void print_row(const stereo_table *t, stereo_row row, const char *label, FILE *stream)
+{
+    int failed = 0;
+    fprintf(stream, "%-*s", LABEL_WIDTH, label);
+    for (size_t i = 0; i < t->count; i++) {
+        print_number(t->object[i].row[row].error, stream);
+        failed += t->object[i].row[row].failed;
+    }
+    print_number(stereo_table_mean(t, row), stream);
+    if (failed) fprintf(stream, "   (%d draws without a solution left out)", failed);
+    fputc('\n', stream);
+}
+
+/* What the row's pictures are worth beside the single one, on the objects that were solved. */
+static void print_comparison(const stereo_table *t, stereo_row row, const char *label, FILE *stream)
+{
+    double change = 0;
+    size_t better = 0, solved = 0;
+    for (size_t i = 0; i < t->count; i++) {
+        double gain = t->object[i].row[row].error - t->object[i].row[STEREO_SINGLE].error;
+        if (isnan(gain)) continue;
+        change += gain;
+        better += gain < 0;
+        solved++;
+    }
+    if (!solved) {
+        fprintf(stream, "%s against the single image: no object was solved\n", label);
+        return;
+    }
+    fprintf(stream, "%s against the single image: %+.2f degrees; better on %zu of %zu", label, change / (double)solved,
+            better, solved);
+    const char *before = ", not on ";
+    for (size_t i = 0; i < t->count; i++)
+        if (t->object[i].row[row].error >= t->object[i].row[STEREO_SINGLE].error) {
+            fprintf(stream, "%s%s", before, t->object[i].name);
+            before = ", ";
+        }
+    fputc('\n', stream);
+}
+
+void stereo_table_print(const stereo_table *t, FILE *stream)
+{
+    fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
+            t->count, DRAW_PICTURES, DRAW_MOST);
+    print_heading(t, stream);
+    print_row(t, STEREO_SINGLE, "single image", stream);
+    fputs("calibrated\n", stream);
+    print_row(t, STEREO_RELIT, "  relit images", stream);
+    print_row(t, STEREO_REAL, "  real images", stream);
+    fputs("uncalibrated\n", stream);
+    print_row(t, STEREO_RELIT_UNCALIBRATED, "  relit images", stream);
+    print_row(t, STEREO_REAL_UNCALIBRATED, "  real images", stream);
+    fputc('\n', stream);
+    print_comparison(t, STEREO_RELIT, "relit images", stream);
+    print_comparison(t, STEREO_RELIT_UNCALIBRATED, "relit images, uncalibrated,", stream);
+    fprintf(stream, "%.1f s\n", t->seconds);
+}
+
+/* ---- JSON ---- */
+
+static const char *const keys[STEREO_ROWS] = {"single_image", "relit_images", "real_images",
+                                              "relit_images_uncalibrated", "real_images_uncalibrated"};
+
+static void add_number(cJSON *o, const char *key, double value)
+{
+    if (!isnan(value)) cJSON_AddNumberToObject(o, key, value);
+}
+
+static cJSON *object_json(const stereo_column *column)
+{
+    cJSON *o = cJSON_CreateObject();
+    char *name = utf8_valid(column->name); /* a folder's */
+    cJSON_AddStringToObject(o, "name", name ? name : "");
+    free(name);
+    cJSON_AddNumberToObject(o, "pixels", (double)column->pixels);
+    cJSON_AddNumberToObject(o, "real_pictures", column->pictures);
+    for (int row = 0; row < STEREO_ROWS; row++) {
+        cJSON *r = cJSON_AddObjectToObject(o, keys[row]);
+        add_number(r, "error_degrees", column->row[row].error);
+        if (row == STEREO_SINGLE) continue;
+        cJSON_AddNumberToObject(r, "spread_of_draws", column->row[row].spread);
+        cJSON_AddNumberToObject(r, "failed_draws", column->row[row].failed);
+    }
+    return o;
+}
+
+char *stereo_table_json(const stereo_table *t)
+{
+    cJSON *o = report_begin(&(warnings){0});
+    cJSON_AddStringToObject(o, "model", t->model);
+    cJSON_AddNumberToObject(o, "draws", DRAW_MOST);
+    cJSON_AddNumberToObject(o, "pictures_a_draw", DRAW_PICTURES);
+    cJSON *mean = cJSON_AddObjectToObject(o, "mean");
+    for (int row = 0; row < STEREO_ROWS; row++)
+        add_number(mean, keys[row], stereo_table_mean(t, (stereo_row)row));
+    cJSON *list = cJSON_AddArrayToObject(o, "objects");
+    for (size_t i = 0; i < t->count; i++)
+        cJSON_AddItemToArray(list, object_json(&t->object[i]));
+    cJSON_AddNumberToObject(o, "seconds", t->seconds);
+    char *text = cJSON_Print(o);
+    cJSON_Delete(o);
+    return text;
+}

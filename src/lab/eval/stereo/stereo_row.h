@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Rows of the stereo table. */
+#ifndef MERLIN_LAB_EVAL_STEREO_STEREO_ROW_H
+#define MERLIN_LAB_EVAL_STEREO_STEREO_ROW_H
+
+typedef enum stereo_row {
+    STEREO_SINGLE, /* the network's own normals */
+    STEREO_RELIT,  /* photometric stereo from relit pictures, lights known */
+    STEREO_REAL,   /* from real ones */
+    STEREO_RELIT_UNCALIBRATED,
+    STEREO_REAL_UNCALIBRATED,
+    STEREO_ROWS
+} stereo_row;
+
+#endif

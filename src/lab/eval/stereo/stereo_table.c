@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/eval/stereo/stereo_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "estimate/photo/model_pair.h"
+#include "lab/eval/metrics/normal_frame.h"
+#include "lab/eval/stereo/stereo_frame.h"
+#include "lab/eval/stereo/stereo_object.h"
+#include "lab/eval/stereo/stereo_sheet.h"
+#include "photo_stereo/draws.h"
+#include "photo_stereo/relit.h"
+#include "stereo/integrate/surface_error.h"
+
+typedef struct evaluation {
+    const stereo_options *options;
+    merlin_model *model;
+    sheet_rows *sheet; /* or NULL */
+    progress bar;
+    size_t solved;
+} evaluation;
+
+/* One object on its way through the rows. */
+typedef struct subject {
+    stereo_object object;
+    relit relit;
+    stereo_column *column;
+    img shown[STEREO_ROWS]; /* normals of the last draw; empty for rows without */
+} subject;
+
+static void subject_free(subject *s)
+{
+    stereo_object_free(&s->object);
+    relit_free(&s->relit);
+    for (int i = 0; i < STEREO_ROWS; i++)
+        img_free(&s->shown[i]);
+}
+
+/* ---- one row ---- */
+
+static status estimate(evaluation *e, subject *s)
+{
+    merlin_maps maps = {0};
+    status result = merlin_estimate(e->model, &s->object.photo, &s->object.capture.mask, NULL, &maps);
+    if (result == OK) result = stereo_frame_check(&s->object.capture, &maps);
+    if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
+    merlin_maps_free(&maps);
+    if (result == OK) result = img_copy(&s->shown[STEREO_SINGLE], &s->relit.maps.normal);
+    if (result != OK) return fail_in(result, "%s", s->object.name);
+    normal_frame_change(&s->shown[STEREO_SINGLE], &s->relit.capture.camera, &s->object.capture.camera);
+    s->column->row[STEREO_SINGLE].error =
+        normal_mean_angle(&s->shown[STEREO_SINGLE], &s->object.capture, &s->column->pixels);
+    return OK;
+}
+
+static status solve_draw(subject *s, stereo_row row, const pst_capture *from, int draw, double *angle)
+{
+    pst_method method = row >= STEREO_RELIT_UNCALIBRATED ? PST_UNCALIBRATED : PST_AUTO;
+    pst_surface found;
+    status result = draw_solve(from, draw, method, &found);
+    if (result != OK) return result;
+    normal_frame_change(&found.normal, &from->camera, &s->object.capture.camera);
+    *angle = normal_mean_angle(&found.normal, &s->object.capture, NULL);
+    img_free(&s->shown[row]);
+    s->shown[row] = found.normal;
+    found.normal = (img){0};
+    pst_surface_free(&found);
+    return OK;
+}
+
+/* A draw that a solver can make nothing of is a result too. */
+static status solve_draws(evaluation *e, subject *s, stereo_row row, const pst_capture *from)
+{
+    stereo_score *score = &s->column->row[row];
+    double sum = 0, squares = 0, angle = 0, count = 0;
+    for (int d = 0; d < draw_count(from); d++) {
+        if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
+        status result = solve_draw(s, row, from, d, &angle);
+        if (result != OK && result != MERLIN_BAD_INPUT) return fail_in(result, "%s", s->object.name);
+        score->failed += result != OK;
+        sum += result == OK ? angle : 0;
+        squares += result == OK ? angle * angle : 0;
+        count += result == OK;
+        progress_update(&e->bar, ++e->solved, s->object.name);
+    }
+    score->error = count > 0 ? sum / count : NAN;
+    score->spread = count > 0 ? sqrt(fmax(squares / count - score->error * score->error, 0)) : 0;
+    return OK;
+}
+
+/* ---- all of them ---- */
+
+static status evaluate_subject(evaluation *e, subject *s, const char *path)
+{
+    status result = stereo_object_read(path, &s->object);
+    if (result != OK) return result;
+    snprintf(s->column->name, sizeof s->column->name, "%s", s->object.name);
+    s->column->pictures = s->object.capture.count;
+    result = estimate(e, s);
+    const pst_capture *made = &s->relit.capture, *taken = &s->object.capture;
+    if (result == OK) result = solve_draws(e, s, STEREO_RELIT, made);
+    if (result == OK) result = solve_draws(e, s, STEREO_REAL, taken);
+    if (result == OK) result = solve_draws(e, s, STEREO_RELIT_UNCALIBRATED, made);
+    if (result == OK) result = solve_draws(e, s, STEREO_REAL_UNCALIBRATED, taken);
+    if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
+    return result;
+}
+
+static status evaluate_all(evaluation *e, char **path, stereo_table *out)
+{
+    status s = OK;
+    progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * 4 * DRAW_MOST, e->options->quiet);
+    for (size_t i = 0; i < out->count && s == OK; i++) {
+        subject one = {.column = &out->object[i]};
+        s = evaluate_subject(e, &one, path[i]);
+        subject_free(&one);
+        e->solved = (i + 1) * 4 * DRAW_MOST;
+    }
+    progress_end(&e->bar);
+    return s;
+}
+
+static status run_listed(const stereo_options *options, char **path, stereo_table *out)
+{
+    evaluation e = {.options = options};
+    out->object = calloc(out->count, sizeof *out->object);
+    if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
+    status s = model_open_pair(options->weights, options->flash, &e.model);
+    if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
+    if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
+    if (s == OK) s = evaluate_all(&e, path, out);
+    if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);
+    sheet_rows_free(e.sheet);
+    merlin_model_close(e.model);
+    return s;
+}
+
+status stereo_table_run(const stereo_options *options, stereo_table *out)
+{
+    *out = (stereo_table){0};
+    double began = clock_seconds();
+    char **path;
+    size_t count;
+    status s = options->figure ? file_check_writable(options->figure) : OK;
+    if (s == OK) s = stereo_object_list(options->data, &path, &count);
+    if (s != OK) return s;
+    out->count = options->count && options->count < count ? options->count : count;
+    s = run_listed(options, path, out);
+    file_list_free(path, count);
+    out->seconds = clock_seconds() - began;
+    if (s != OK) stereo_table_free(out);
+    return s;
+}
+
+void stereo_table_free(stereo_table *t)
+{
+    free(t->object);
+    *t = (stereo_table){0};
+}
+
+double stereo_table_mean(const stereo_table *t, stereo_row row)
+{
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < t->count; i++) {
+        if (isnan(t->object[i].row[row].error)) continue;
+        sum += t->object[i].row[row].error;
+        count++;
+    }
+    return count > 0 ? sum / count : NAN;
+}

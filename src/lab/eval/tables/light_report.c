@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+/* light_table.h's table as text and as JSON. */
+#include <cjson/cJSON.h>
+#include <math.h>
+
+#include "base/text/report.h"
+#include "lab/eval/tables/light_table.h"
+
+typedef struct figure_words {
+    const char *heading, *key;
+    double factor; /* of the printed figure */
+    int decimals;
+} figure_words;
+
+static const figure_words words[LIGHT_FIGURES] = {
+    [LIGHT_ANGLE] = {"degrees", "normal_angle_degrees", 1, 2},
+    [LIGHT_ALBEDO] = {"albedo", "albedo_error", 100, 2},
+    [LIGHT_ALBEDO_FREE] = {"its scale free", "albedo_error_scale_free", 100, 2},
+    [LIGHT_ROUGHNESS] = {"roughness", "roughness_error", 100, 2},
+    [LIGHT_RELIEF] = {"relief", "relief_error", 100, 2},
+    [LIGHT_AS_FLASH] = {"as a flash", "seen_as_flash_alone", 1, 2},
+    [LIGHT_DIRECTION] = {"lamp's way", "light_direction_median_degrees", 1, 1},
+};
+
+static const char *const names[LIGHT_KINDS] = {"flash",
+                                               "flash in a room",
+                                               "room",
+                                               "lamp to 10 degrees",
+                                               "lamp to 25 degrees",
+                                               "lamp to 40 degrees",
+                                               "lamp to 55 degrees",
+                                               "lamp further aside",
+                                               "lamp in a room"};
+
+enum { CELL = 16, LABEL = 22 };
+
+const char *light_kind_name(light_kind kind)
+{
+    return names[kind];
+}
+
+void light_table_print(const light_table *t, FILE *stream)
+{
+    const int figures = t->directions ? LIGHT_FIGURES : LIGHT_AS_FLASH; /* the last of all are of the light found */
+    fprintf(stream, "%s", t->model);
+    if (*t->flash_model) fprintf(stream, " and, for what it sees as a flash alone, %s", t->flash_model);
+    fprintf(stream, " on %zu samples; errors in 1e-2, relief in hundredths of the frame's width\n\n%-*s%*s", t->samples,
+            LABEL, "light", CELL, "photographs");
+    for (int f = 0; f < figures; f++)
+        fprintf(stream, "%*s", CELL, words[f].heading);
+    for (int kind = 0; kind < LIGHT_KINDS; kind++) {
+        if (t->count[kind] == 0) continue;
+        fprintf(stream, "\n%-*s%*zu", LABEL, names[kind], CELL, t->count[kind]);
+        for (int f = 0; f < figures; f++) {
+            if (isnan(t->mean[kind][f]))
+                fprintf(stream, "%*s", CELL, "-");
+            else
+                fprintf(stream, "%*.*f", CELL, words[f].decimals, words[f].factor * t->mean[kind][f]);
+        }
+    }
+    fprintf(stream, "\n\n%.1f s\n", t->seconds);
+}
+
+char *light_table_json(const light_table *t)
+{
+    cJSON *root = report_begin(&(warnings){0});
+    cJSON_AddStringToObject(root, "model", t->model);
+    if (*t->flash_model) cJSON_AddStringToObject(root, "flash_model", t->flash_model);
+    cJSON_AddNumberToObject(root, "samples", (double)t->samples);
+    cJSON_AddNumberToObject(root, "seconds", t->seconds);
+    cJSON *kinds = cJSON_AddObjectToObject(root, "lights");
+    for (int kind = 0; kind < LIGHT_KINDS; kind++) {
+        if (t->count[kind] == 0) continue;
+        cJSON *o = cJSON_AddObjectToObject(kinds, names[kind]);
+        cJSON_AddNumberToObject(o, "photographs", (double)t->count[kind]);
+        for (int f = 0; f < (t->directions ? LIGHT_FIGURES : LIGHT_AS_FLASH); f++)
+            if (!isnan(t->mean[kind][f])) cJSON_AddNumberToObject(o, words[f].key, t->mean[kind][f]);
+    }
+    char *text = cJSON_PrintUnformatted(root);
+    cJSON_Delete(root);
+    return text;
+}
