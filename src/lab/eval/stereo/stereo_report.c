@@ -7,7 +7,6 @@
 
 #include "base/text/report.h"
 #include "base/utf8.h"
-#include "base/text/report.h"
 #include "lab/eval/stereo/stereo_table.h"
 #include "photo_stereo/draws.h"
 

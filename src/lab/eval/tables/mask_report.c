@@ -5,7 +5,6 @@
 
 #include "base/text/report.h"
 #include "base/utf8.h"
-#include "base/text/report.h"
 #include "lab/eval/tables/mask_table.h"
 
 /* Above any confidence. */
