@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Puts the viewer's page together, on standard output: index.html with the style, the shaders and the modules in it.
+# Puts the viewer's page together: index.html with the style, the shaders and the modules in it.
 #
-#     awk -f page.awk -v folder=web
+#     awk -f web/page.awk -v folder=web -v out=page.html
+#     awk -f web/page.awk -v folder=web -v out=view_page.c     as src/view/view_page.h declares it
 #
 # Each module becomes a function that gives back what it exports, those first that others import, so that names are the
 # module's own. Imports and exports stand at the beginning of a line, an export before what it exports.
@@ -66,12 +67,36 @@ function module(name,    lines, n, i, line, words, body, exported, before) {
         "(() => {\n" body (exported ? "return { " substr(exported, 1, length(exported) - 2) " };\n" : "") "})();\n\n"
 }
 
+# Text with something else in the place of a character.
+function replaced(text, what, by,    parts, n, i, whole) {
+    n = split(text, parts, what)
+    whole = parts[1]
+    for (i = 2; i <= n; i++) whole = whole by parts[i]
+    return whole
+}
+
+# One line of the page, or of C: with a compiler that knows trigraphs two question marks are no two question marks.
+function put(line) {
+    if (!is_c) print line >out
+    else if (line == "<!--scene-->") print "    0,\n};\n\nconst char *const view_page_tail[] = {" >out
+    else print "    \"" replaced(replaced(replaced(line, "[\\\\]", "\\\\"), "[\"]", "\\\""), "[?]", "\\?") "\"," >out
+}
+
+function put_lines(text,    lines, n, i) {
+    n = split(text, lines, "\n")
+    for (i = 1; i < n; i++) put(lines[i])
+}
+
 BEGIN {
+    is_c = out ~ /\.c$/
+    if (is_c) print "/* Made by web/page.awk. */\n#include \"view/view_page.h\"\n\nconst char *const view_page_head[] = {" >out
     n = split(read("index.html"), page, "\n")
     for (i = 1; i < n; i++) {
-        if (at = index(page[i], "/*style*/")) printf "%s\n%s%s\n", substr(page[i], 1, at - 1), read("style.css"), substr(page[i], at + 9)
-        else if (at = index(page[i], "/*script*/")) printf "%s\n%s%s\n", substr(page[i], 1, at - 1), module("main.js"), substr(page[i], at + 10)
-        else print page[i]
+        line = page[i]
+        if (line == "/*style*/") put_lines(read("style.css"))
+        else if (line == "/*script*/") put_lines(module("main.js"))
+        else put(line)
     }
+    if (is_c) print "    0,\n};" >out
     exit failed
 }

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include "view/view_scene.h"
+
+#include <cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/utf8.h"
+#include "estimate/light/found_light.h"
+#include "optics/camera.h"
+
+/* A text, U+FFFD in the place of each byte that is not UTF-8. */
+static void put_text(cJSON *to, const char *key, const char *text)
+{
+    char *valid = utf8_valid(text);
+    if (valid) cJSON_AddStringToObject(to, key, valid);
+    free(valid);
+}
+
+static cJSON *list_of(const float *values, int count)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (int i = 0; i < count; i++)
+        cJSON_AddItemToArray(list, cJSON_CreateNumber((double)values[i]));
+    return list;
+}
+
+static void put_list(cJSON *to, const char *key, const float *values, int count)
+{
+    cJSON_AddItemToObject(to, key, list_of(values, count));
+}
+
+static void put_range(cJSON *to, const char *key, view_range r)
+{
+    put_list(to, key, (const float[]){r.near, r.far}, 2);
+}
+
+static void put_photograph(cJSON *root, const merlin_maps *maps)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "photograph");
+    cJSON_AddNumberToObject(o, "width", maps->mask.width);
+    cJSON_AddNumberToObject(o, "height", maps->mask.height);
+    cJSON_AddNumberToObject(o, "side", maps->crop.side);
+}
+
+static void put_camera(cJSON *root, const surface *s)
+{
+    const camera_lens lens = surface_lens(s);
+    cJSON_AddNumberToObject(root, "tangent", (double)camera_tangent(lens.fov));
+    put_list(root, "slant", (const float[]){lens.slant.right, lens.slant.up}, 2);
+}
+
+static void put_caster(cJSON *root, const shadow_caster *c, view_range range)
+{
+    cJSON *o = cJSON_AddObjectToObject(root, "caster");
+    cJSON_AddNumberToObject(o, "side", c->depth.width);
+    put_range(o, "depth", range);
+    cJSON_AddNumberToObject(o, "nearest", (double)c->nearest);
+    cJSON_AddNumberToObject(o, "farthest", (double)c->farthest);
+}
+
+static void put_lamp(cJSON *list, const lamp *l, bool fixed)
+{
+    cJSON *o = cJSON_CreateObject();
+    put_list(o, "at", (const float[]){l->at.x, l->at.y, l->at.z}, 3);
+    put_list(o, "tint", (const float[]){l->tint.x, l->tint.y, l->tint.z}, 3);
+    cJSON_AddBoolToObject(o, "distant", l->distant);
+    cJSON_AddBoolToObject(o, "fixed", fixed);
+    cJSON_AddItemToArray(list, o);
+}
+
+/* The light that was found in the photograph, null where nothing is known. */
+static void put_light(cJSON *root, const merlin_found_light *light)
+{
+    found_lights found;
+    if (!light->known || found_light_stand(light, 0, &found) != OK) {
+        cJSON_AddNullToObject(root, "light");
+        return;
+    }
+    cJSON *o = cJSON_AddObjectToObject(root, "light"), *lamps = cJSON_AddArrayToObject(o, "lamps");
+    cJSON *rest = cJSON_AddArrayToObject(o, "rest");
+    for (int i = 0; i < found.count; i++)
+        put_lamp(lamps, &found.lamps[i], i < found.fixed);
+    for (int i = 0; i < 9; i++)
+        cJSON_AddItemToArray(rest, list_of(light->rest[i], 3));
+    env_map_free(&found.rest);
+}
+
+static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_params *params, const stage *s,
+                    const view_ranges *ranges, float white)
+{
+    put_text(root, "name", params->name ? params->name : "object");
+    put_text(root, "folder", params->folder ? params->folder : "FOLDER");
+    cJSON_AddNumberToObject(root, "side", s->full.mask.width);
+    cJSON_AddNumberToObject(root, "low", s->low.mask.width);
+    put_photograph(root, maps);
+    put_camera(root, &s->full);
+    cJSON_AddBoolToObject(root, "matte", s->full.matte);
+    cJSON_AddBoolToObject(root, "metered", params->captured != 0);
+    cJSON_AddNumberToObject(root, "white", (double)white);
+    cJSON_AddNumberToObject(root, "ev", log2((double)s->white / (double)white));
+    put_range(root, "depth", ranges->covered);
+    put_range(root, "object", ranges->object);
+    put_caster(root, &s->caster, ranges->caster);
+    put_light(root, &maps->light);
+}
+
+/* The characters that would end the element in which the text stands, as JSON writes any. */
+static char *without_tags(const char *text)
+{
+    size_t longer = 0;
+    for (const char *c = text; *c; c++)
+        longer += *c == '<' ? 5 : 0;
+    char *out = malloc(strlen(text) + longer + 1), *to = out;
+    for (const char *c = text; out && *c; c++) {
+        if (*c == '<') {
+            memcpy(to, "\\u003c", 6);
+            to += 6;
+        } else {
+            *to++ = *c;
+        }
+    }
+    if (out) *to = 0;
+    return out;
+}
+
+status view_scene_text(const merlin_maps *maps, const merlin_view_params *params, const stage *s,
+                       const view_ranges *ranges, float white, char **text)
+{
+    cJSON *root = cJSON_CreateObject();
+    if (root) put_all(root, maps, params, s, ranges, white);
+    char *printed = root ? cJSON_PrintUnformatted(root) : NULL;
+    *text = printed ? without_tags(printed) : NULL;
+    free(printed);
+    cJSON_Delete(root);
+    return *text ? OK : fail(MERLIN_NO_MEMORY, "no memory to describe the maps");
+}
