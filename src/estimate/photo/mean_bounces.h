@@ -11,7 +11,7 @@
 
 #include "estimate/photo/network.h"
 
-/* Under the photograph's own flash, and its environment where the model knows one. */
+/* Asks the network for them, under the photograph's own flash, and its environment where the model knows one. */
 status mean_bounces(network *n, const network_estimation *mean, img *indirect);
 
 #endif

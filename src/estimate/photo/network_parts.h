@@ -36,7 +36,7 @@ typedef struct network_subject {
 status network_compile(struct network *n, model_part part, const char *const *outputs, int size, compiled *c);
 /* Takes scale·x + shift of an output of size × size pixels. */
 status network_take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out);
-/* The network on a photograph by its flash, in an orientation. */
+/* Runs the network on a photograph by its flash, in an orientation. */
 status network_run_view(struct network *n, const network_subject *at, int view, const char *const *outputs,
                         compiled *c);
 status network_check_views(int views);

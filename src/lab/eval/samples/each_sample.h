@@ -19,7 +19,8 @@ typedef struct eval_samples {
     int (*stopped)(void); /* asked between samples; NULL: never */
 } eval_samples;
 
-/* In the order of their names, until one fails. MERLIN_BAD_INPUT for a folder without samples. */
+/* Calls a function for each, in the order of their names, until one fails. MERLIN_BAD_INPUT for a folder without
+ * samples. */
 status eval_each_sample(const eval_samples *of, status (*each)(void *context, const char *path), void *context);
 
 #endif

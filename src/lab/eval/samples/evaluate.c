@@ -55,7 +55,7 @@ static status count_sample(eval_report *report, const sample *s, const eval_scor
     return OK;
 }
 
-/* Of the network alone: what merlin_estimate does with pictures of other sizes is left out. */
+/* Refuses what the network alone cannot see: merlin_estimate resizes pictures. */
 static status check_raw(const sample *first)
 {
     const int side = first->mask.width;
@@ -91,7 +91,7 @@ static status take_means(evaluation *e)
     return s;
 }
 
-/* The size of all samples is that of the first. */
+/* Opens what is needed; the size of all samples is that of the first. */
 static status begin(void *context, const char *first_path)
 {
     evaluation *e = context;

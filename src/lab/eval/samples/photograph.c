@@ -9,8 +9,8 @@
 #include "image/resize.h"
 #include "mesh/mesh.h"
 
-/* Where the sample's square lies beside the lens's axis the photograph reaches as far to the other side; to half a
- * pixel, a tenth of a degree, for it has whole ones. */
+/* Finds how large the photograph is. Where the sample's square lies beside the lens's axis it reaches as far to the
+ * other side, to half a pixel, a tenth of a degree, for it has whole ones. */
 static void find_frame(eval_photo *p)
 {
     const int side = p->picture.width;
@@ -61,14 +61,14 @@ status eval_photo_estimate(merlin_model *model, const eval_photo *p, merlin_maps
 
 /* ---- from the maps' camera to the sample's ---- */
 
-/* From the space of a camera that looks aside to that of the lens's axis. */
+/* Turns from the space of a camera that looks aside to that of the lens's axis. */
 static mat3 to_axis(camera_slant at)
 {
     const camera_plane p = camera_plane_of(at);
     return (mat3){{p.right, p.up, vec3_cross(p.right, p.up)}};
 }
 
-/* By the lens that was, whatever the estimate was told of it. */
+/* Tells where the crop's middle is, by the lens that was, whatever the estimate was told of it. */
 static camera_slant crop_slant(const eval_photo *p, const merlin_maps *maps)
 {
     return sight_of(p->fov, 0, p->width, p->height, crop_of(maps)).lens.slant;
@@ -102,7 +102,7 @@ static void turn_shape(const eval_photo *p, const merlin_maps *maps, surface *s)
         }
 }
 
-/* The sample's square of a picture of the photograph's size. */
+/* Cuts the sample's square out of a picture of the photograph's size. */
 static status cut_out(const eval_photo *p, const merlin_image *from, img *out)
 {
     const img whole = *from;

@@ -29,19 +29,20 @@ typedef struct eval_photo {
     merlin_params params; /* the defaults, but that this is known */
 } eval_photo;
 
-/* radiance: what the sample's camera sees, 3 channels. mask: 1 channel, outside of which the photograph is black. */
+/* Exposes the picture. radiance: what the sample's camera sees, 3 channels. mask: 1 channel, outside of which the
+ * photograph is black. */
 status eval_photo_take(const sample *s, const img *radiance, const img *mask, float white, eval_photo *out);
 void eval_photo_free(eval_photo *photo);
 
-/* merlin_estimate. */
+/* Calls merlin_estimate. */
 status eval_photo_estimate(merlin_model *model, const eval_photo *photo, merlin_maps *maps);
 
-/* The maps of the photograph's crop as the sample's camera sees them: merlin_estimate's own, unless it cropped. */
+/* Makes the maps what the sample's camera sees: merlin_estimate's own, unless it cropped. */
 status eval_photo_surface(const eval_photo *photo, const merlin_maps *maps, surface *out);
-/* A place or a direction from the sample's space to the maps', and back. */
+/* Turns a place or a direction from the sample's space to the maps', and back. */
 vec3 eval_photo_to_maps(const eval_photo *photo, const merlin_maps *maps, vec3 at);
 vec3 eval_photo_from_maps(const eval_photo *photo, const merlin_maps *maps, vec3 at);
-/* A picture of the photograph's size and exposure as radiance clipped to [0, 1], of the sample's size. */
+/* Makes a picture of the photograph's size and exposure radiance clipped to [0, 1], of the sample's size. */
 status eval_photo_radiance(const eval_photo *photo, const merlin_image *picture, img *out);
 
 #endif

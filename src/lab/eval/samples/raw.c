@@ -8,7 +8,7 @@
 #include "estimate/photo/mean_bounces.h"
 #include "lab/eval/samples/truth.h"
 
-/* Models of one light take every lens for the usual one. */
+/* Tells what the network is told of the lens: models of one light take every lens for the usual one. */
 static sight sight_by(const network *n, const eval_photo *photo)
 {
     sight how = {.flash = false};
@@ -38,7 +38,7 @@ static status see(network *n, const eval_photo *photo, int views, network_estima
     return views > 1 ? mean_bounces(n, out, &out->indirect) : OK;
 }
 
-/* In the photograph's values. */
+/* Draws what the maps explain, in the photograph's values. */
 static status reconstruct(const network *n, const eval_photo *photo, const network_estimation *e, img *out)
 {
     const float(*sh)[3] = (const float(*)[3])e->environment;

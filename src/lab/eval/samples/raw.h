@@ -13,10 +13,11 @@
 #include "estimate/photo/model_pair.h"
 #include "lab/eval/samples/photograph.h"
 
-/* photo: a whole one, its mask 0 or 1, its side a multiple of MODEL_SIZE_MULTIPLE. The maps are the mean of so many
- * views, as the network says them; the reconstruction is lit by its flash, and by the surroundings that it found. */
+/* Sees the photograph: a whole one, its mask 0 or 1, its side a multiple of MODEL_SIZE_MULTIPLE. The maps are the mean
+ * of so many views, as the network says them; the reconstruction is lit by its flash, and by the surroundings that it
+ * found. */
 status raw_estimate(merlin_model *model, const eval_photo *photo, int views, merlin_maps *maps);
-/* What the relighting decoder takes of it; NULL for a model without. */
+/* Takes what the relighting decoder wants of it; NULL for a model without. */
 status raw_look(merlin_model *model, const eval_photo *photo, int views, network_look **out);
 
 #endif

@@ -10,7 +10,7 @@
 
 /* ---- the photograph, and what the model makes of it ---- */
 
-/* The flash picture, of setting B in the sample's environment. */
+/* Takes the flash picture, of setting B in the sample's environment. */
 static status take_photograph(const eval_scorer *e, eval_subject *on)
 {
     const sample *s = on->sample;
@@ -106,7 +106,7 @@ static status score_relighting(eval_scorer *e, eval_subject *on, vec3 light, con
     return s;
 }
 
-/* The true maps under one light with the true indirect light: what relighting by BRDF itself leaves out. */
+/* Scores the true maps under one light with the true indirect light: what relighting by BRDF itself leaves out. */
 static status score_true_maps(eval_subject *on, const sample_target *t, const shadow_caster *caster, const img *target)
 {
     const eval_row rows[] = {EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS};
@@ -174,7 +174,7 @@ static status show_relit(eval_scorer *e, eval_subject *on, vec3 light, merlin_re
     return s;
 }
 
-/* A row of the sheet: what merlin_relight makes of the maps, beside the true maps rendered. */
+/* Fills a row of the sheet: what merlin_relight makes of the maps, beside the true maps rendered. */
 static status show(eval_scorer *e, eval_subject *on)
 {
     const vec3 light = eval_light(on->sample, 0);

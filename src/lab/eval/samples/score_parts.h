@@ -44,13 +44,14 @@ static inline const model_config *eval_config(const eval_scorer *e)
     return network_config(e->model->network);
 }
 
-/* From the radiance that the maps explain to the true one: the estimate found the photograph's exposure itself. */
+/* Returns the factor from the radiance that the maps explain to the true one: the estimate found the photograph's
+ * exposure itself. */
 static inline float eval_exposure(const eval_subject *on)
 {
     return on->photo.white / on->maps.gain;
 }
 
-/* A trivial answer's maps as the sample's camera sees them; its images are borrowed. */
+/* Returns a trivial answer's maps as the sample's camera sees them; its images are borrowed. */
 static inline surface eval_shown(const eval_subject *on, const surface *trivial)
 {
     surface shown = *trivial;
@@ -70,15 +71,15 @@ const float (*eval_mean_surroundings(const eval_scorer *e, float sh[9][3]))[3];
 /* Rows of relighting by environments. */
 status eval_score_environment(eval_scorer *e, eval_subject *on);
 
-/* A trivial answer's picture, which is its maps rendered, against the target. */
+/* Scores a trivial answer's picture, which is its maps rendered, against the target. */
 status eval_score_trivial(eval_subject *on, const surface *maps, eval_answer answer, eval_row row,
                           const illumination *light, const img *target);
-/* A picture that the product made, of the photograph's size and exposure. */
+/* Scores a picture that the product made, of the photograph's size and exposure. */
 status eval_score_picture(eval_subject *on, eval_row row, const merlin_image *picture, const img *target);
-/* The trivial answers' pictures, and the photograph itself, against the target. */
+/* Scores the trivial answers' pictures, and the photograph itself, against the target. */
 status eval_score_answers(const eval_scorer *e, eval_subject *on, eval_row row, const illumination *light,
                           const img *target);
-/* The maps rendered under a light, and what a raw model's relighting decoder makes of it, against the true maps
+/* Scores the maps rendered under a light, and what a raw model's relighting decoder makes of it, against the true maps
  * rendered, without shadows and bounces all. */
 status eval_score_rendered(eval_scorer *e, eval_subject *on, const illumination *light, eval_row decoder,
                            eval_row brdf);

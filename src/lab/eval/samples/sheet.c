@@ -13,7 +13,7 @@ status eval_sheet_new(int rows, sheet_rows **out)
     return sheet_rows_new((size_t)rows, EVAL_SHEET_COLUMNS, labels, out);
 }
 
-/* Every other column from this one on. */
+/* Fills every other column from this one on. */
 static status show_maps(const surface *maps, const img *mask, img *column)
 {
     status s = eval_picture(&maps->albedo, NULL, mask, &column[0]);

@@ -18,7 +18,7 @@ enum {
 };
 
 status eval_sheet_new(int rows, sheet_rows **out);
-/* The maps' columns of a row, true and found ones in turn. */
+/* Fills the maps' columns of a row, true and found ones in turn. */
 status eval_sheet_maps(const surface *truth, const surface *found, const img *mask, img *row);
 
 #endif

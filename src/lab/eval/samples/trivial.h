@@ -35,8 +35,8 @@ status eval_means_write(const eval_means *means, const char *path);
 status eval_means_read(const char *path, int width, int height, eval_means *out);
 
 /* Maps from one flash photograph, whose exposure is known, without learning anything: normals and relief by pst_inflate
- * (stereo/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were diffuse (I π d² /
- * Φ, clipped), the data's mean roughness. mask: 0 or 1. */
+ * (stereo/uncalibrated/inflate.h), depth with the data's mean, albedo as if every surface faced the flash and were
+ * diffuse (I π d² / Φ, clipped), the data's mean roughness. mask: 0 or 1. */
 status eval_inflate(const eval_photo *photo, const img *mask, const eval_means *means, surface *out);
 
 #endif

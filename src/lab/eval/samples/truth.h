@@ -13,20 +13,20 @@
 #include "estimate/surface/surface.h"
 #include "lab/render/sample.h"
 
-/* The sample's maps, times nothing; pictures of them are multiplied by the mask. */
+/* Copies the sample's maps; pictures of them are multiplied by the mask. */
 status eval_truth(const sample *s, const img *mask, surface *out);
 
-/* 1 where the coverage is above EVAL_MASK_LEVEL, else 0: the mask that the network is trained with. Made here. */
+/* Makes the mask that the network is trained with: 1 where the coverage is above EVAL_MASK_LEVEL, else 0. */
 status eval_binary_mask(const img *coverage, img *out);
 
-/* The surface under a light without shadows and bounces, times the exposure, then clipped to [0, 1]; what it reflects
- * of the surroundings is diffuse. out is made here. */
+/* Renders the surface under a light without shadows and bounces, times the exposure, then clipped to [0, 1]; what it
+ * reflects of the surroundings is diffuse. out is made here. */
 status eval_render(const surface *maps, const illumination *light, float exposure, img *out);
 
-/* a + b clipped to [0, 1], zero outside the mask; b may be NULL. Made here, 3 channels. */
+/* Adds a and b, which may be NULL, clipped to [0, 1] and zero outside the mask. */
 status eval_picture(const img *a, const img *b, const img *mask, img *out);
 
-/* The sample's target light number i, drawn from its seed and index: the same in every evaluation. */
+/* Draws the sample's target light number i from its seed and index: the same in every evaluation. */
 vec3 eval_light(const sample *s, int i);
 
 #endif

@@ -44,7 +44,7 @@ static status subject_new(const sample *s, int views, subject *on)
     return st;
 }
 
-/* merlin_estimate, which is not asked for finer normals, or is. */
+/* Asks merlin_estimate, which sees the larger picture, too, if size is larger. */
 static status estimate(merlin_model *model, subject *on, int size, surface *out)
 {
     merlin_maps maps = {0};
@@ -56,7 +56,7 @@ static status estimate(merlin_model *model, subject *on, int size, surface *out)
     return s;
 }
 
-/* What merlin_estimate leaves undone: all maps of the larger picture. */
+/* Does what merlin_estimate does not: all maps of the larger picture. */
 static status see_large(merlin_model *model, const subject *on, int size, surface *out)
 {
     img picture = {0}, mask = {0}, guide = {0};

@@ -114,7 +114,7 @@ static status mix(const subject *on, const mixture *m, img *out)
     return OK;
 }
 
-/* A flash alone is exposed as the samples are, everything else by its bright part. */
+/* Takes the photograph: a flash alone is exposed as the samples are, everything else by its bright part. */
 static status photograph(const run *r, const subject *on, const mixture *m, eval_photo *out)
 {
     float bright = 0, white = EXPOSURE_WHITE;
@@ -177,7 +177,7 @@ static status note_direction(directions *to, double degrees)
     return OK;
 }
 
-/* Of those in which a lamp is found. */
+/* Notes how far off the lamp is, if one is found. */
 static status judge_direction(run *r, const subject *on, const mixture *m, light_kind kind, vec3 found)
 {
     const sample_lamp *l = &on->s->lamps[m->lamp];
