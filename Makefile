@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -31,6 +31,13 @@ install: build
 	cmake --build --preset release --target libmerlin
 	cmake --install build/release --prefix "$(PREFIX)"
 	@if [ "$$(id -u)" = 0 ]; then ldconfig || true; fi
+
+# The Blender add-on as a zip, the same wherever it is made.
+blender:
+	@command -v python3 >/dev/null || { echo "merlin: python3 packs the add-on: apt-get install python3" >&2; exit 1; }
+	@mkdir -p build
+	@tools/pack-blender build/merlin-blender.zip
+	@echo "build/merlin-blender.zip"
 
 test: setup-test
 	cmake --preset release -DBUILD_TESTING=ON
