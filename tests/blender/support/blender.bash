@@ -6,6 +6,7 @@
 export BLENDER=${BLENDER:-blender} OMP_WAIT_POLICY=passive
 export BLENDER_USER_CONFIG=$scratch/blender/config BLENDER_USER_SCRIPTS=$scratch/blender/scripts
 export BLENDER_USER_RESOURCES=$scratch/blender BLENDER_USER_EXTENSIONS=$scratch/blender/extensions
+export TMPDIR=$scratch PYTHONDONTWRITEBYTECODE=1 # nothing is left behind
 unset MERLIN_MODEL
 
 # needs_blender: without it, and where merlin would take minutes, the test is skipped.
