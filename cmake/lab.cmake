@@ -19,7 +19,7 @@ add_dependencies(merlin-lab merlin) # which its bench runs
 # merlin-lab train --mpi, where there is an MPI.
 find_package(MPI COMPONENTS C QUIET)
 if(MPI_C_FOUND)
-  add_library(merlin_mpi MODULE src/lab/mpi/ranks.c)
+  add_library(merlin_mpi MODULE src/lab/mpi/mpi_ranks.c)
   set_target_properties(merlin_mpi PROPERTIES PREFIX "")
   target_include_directories(merlin_mpi PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(merlin_mpi PRIVATE MPI::MPI_C)

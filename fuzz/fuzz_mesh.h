@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/read/mesh_file.h"
+#include "mesh/read/mesh_read.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static inline void fuzz_check_mesh(scn_mesh *mesh, status read, int parts)
+static inline void fuzz_check_mesh(triangle_mesh *mesh, status read, int parts)
 {
     if (read != OK && strchr(status_message(), '\n')) abort();
     if (read == OK && mesh->triangle_count > 0) {

@@ -36,7 +36,7 @@ bool file_is_same(const char *one, const char *other)
     return stat(one, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/* A plain file's size. */
+/* Checks that a descriptor is a plain file of at most limit bytes, and sets *size to its length. */
 static status check_size(int descriptor, const char *path, size_t limit, size_t *size)
 {
     struct stat s;
@@ -65,8 +65,9 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
     return OK;
 }
 
-/* Something that is no file or folder gets a descriptor that tells what it is (fstat) and opens nothing: a pipe would
- * be waited for, and a device set to work. One that takes the file's place meanwhile is not waited for either. */
+/* Opens a file for reading. Anything that is neither file nor folder is opened as a path only (O_PATH): fstat can tell
+ * what it is, but a pipe is not waited for and a device is not started. O_NONBLOCK covers one that takes the file's
+ * place between the two calls. */
 static int open_descriptor(const char *path)
 {
     struct stat s;
@@ -148,12 +149,13 @@ status file_map(const char *path, size_t limit, file_view *out)
 
 void file_unmap(file_view *view)
 {
-    /* what was mapped was given as const to the reader only */
+    /* the cast is safe: mmap returned writable memory, only the reader gets it as const */
     if (view->data) munmap((void *)(uintptr_t)view->data, view->size);
     *view = (file_view){0};
 }
 
-/* A rename would put a file in the place of a device or a pipe: root, writing to /dev/null, would have it no more. */
+/* Refuses to replace a device or a pipe: a rename would put a plain file in its place, so that root writing to
+ * /dev/null would delete it. */
 static status check_replaceable(const char *path)
 {
     struct stat s;
@@ -162,14 +164,15 @@ static status check_replaceable(const char *path)
                 S_ISDIR(s.st_mode) ? "a folder" : "not a plain file");
 }
 
-/* The end of a name that leaves room for what is put in front of it: its ending says which format it has. */
+/* Returns the end of a long name, to leave room for the prefix of a temporary name; the end is kept because its
+ * extension tells the format. */
 static const char *end_of_long_name(const char *name)
 {
     enum { MOST = NAME_MAX - LEFTOVERS_FRONT };
     size_t length = strlen(name);
     if (length <= MOST) return name;
     name += length - MOST;
-    while ((*name & 0xc0) == 0x80) /* no half of a letter of UTF-8 */
+    while ((*name & 0xc0) == 0x80) /* do not begin in the middle of a UTF-8 character */
         name++;
     return name;
 }
@@ -181,7 +184,7 @@ static void clear_folder_of(const char *path)
     free(folder);
 }
 
-/* Frees a name that stands for nothing any more. */
+/* Frees a temporary name and takes it off the list of files to remove when the program is killed. */
 static void forget(char *temporary)
 {
     leftovers_forget(temporary);
@@ -343,7 +346,7 @@ bool file_ends_in_any(const char *name, const char *const *endings)
     return false;
 }
 
-/* Compares the numbers that begin here, and moves behind both. */
+/* Compares the numbers that begin at *a and *b, and moves both pointers behind them. */
 static int compare_numbers(const char **a, const char **b)
 {
     const char *x = *a + strspn(*a, "0"), *y = *b + strspn(*b, "0");
@@ -383,7 +386,7 @@ static bool append(char ***names, size_t *count, size_t *room, char *path)
     return true;
 }
 
-/* The folder's files, and with `deep` those of the folders in it. */
+/* Appends a folder's files to the list, and with `deep` those of its sub-folders. */
 static status list_into(const char *folder, const char *const *endings, bool deep, char ***names, size_t *count,
                         size_t *room)
 {
@@ -391,7 +394,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
     if (!d) return fail(MERLIN_BAD_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
     status s = OK;
     for (struct dirent *e; s == OK && (errno = 0, e = readdir(d));) {
-        if (e->d_name[0] == '.') continue; /* temporary files, too */
+        if (e->d_name[0] == '.') continue; /* hidden files, temporary files among them */
         char *path = file_join(folder, e->d_name);
         bool below = path && file_is_folder(path);
         if (below && deep) s = list_into(path, endings, false, names, count, room);

@@ -34,7 +34,7 @@ static inline uint16_t float_to_bf16(float x)
     return (uint16_t)((u + 0x7fffu + ((u >> 16) & 1u)) >> 16);
 }
 
-/* Exact also where the processor takes denormal floats for zero: no subnormal half passes through one. */
+/* Converts exactly even where the processor flushes denormal floats to zero: no denormal float arises on the way. */
 static inline float half_to_float(uint16_t h)
 {
     uint32_t sign = (uint32_t)(h & 0x8000u) << 16, rest = h & 0x7fffu;
@@ -43,7 +43,7 @@ static inline float half_to_float(uint16_t h)
     return bits_float(sign | ((rest << 13) + 0x38000000u + infinite));
 }
 
-/* Too large a value becomes infinity. */
+/* Converts with rounding to nearest even; values beyond the range become infinity. */
 static inline uint16_t float_to_half(float x)
 {
     uint32_t u = float_bits(x), sign = (u >> 16) & 0x8000u;

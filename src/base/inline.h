@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A loop with a call in it does not become vectors: what its body calls must be inlined, whatever its size. */
+/* Forces inlining: a loop vectorizes only if the functions it calls are inlined, whatever their size. */
 #ifndef MERLIN_BASE_INLINE_H
 #define MERLIN_BASE_INLINE_H
 

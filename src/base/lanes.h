@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Sixteen of a kind at once: loops over lanes become vector instructions, as wide as the processor has them.
+/* Sixteen vectors side by side: loops over lanes compile to vector instructions as wide as the processor has.
  *
  *     lanes p;
  *     lanes_put(&p, i, point);
  *     #pragma omp simd
  *     for (int k = 0; k < LANES; k++) length[k] = vec3_length(lanes_at(&p, k));
  *
- * All lanes are computed, wanted or not: a loop that stops early has a tail. */
+ * Loops compute all lanes, used or not: one that stops early would need a scalar remainder. */
 #ifndef MERLIN_BASE_LANES_H
 #define MERLIN_BASE_LANES_H
 
@@ -18,12 +18,12 @@
 
 enum { LANES = 16 };
 
-/* Vectors, one a lane. */
+/* Sixteen vectors, one a lane, by component. */
 typedef struct lanes {
     float x[LANES], y[LANES], z[LANES];
 } lanes;
 
-/* Some of the lanes: bit i for lane i. */
+/* A set of lanes: bit i for lane i. */
 typedef uint32_t lane_set;
 
 static inline bool lane_in(lane_set set, int i)

@@ -18,7 +18,7 @@
 
 /* ---- names ---- */
 
-/* FNV-1a. */
+/* Continues an FNV-1a hash. */
 static uint32_t mix(uint32_t hash, const void *data, size_t size)
 {
     for (size_t i = 0; i < size; i++)
@@ -26,8 +26,8 @@ static uint32_t mix(uint32_t hash, const void *data, size_t size)
     return hash;
 }
 
-/* The kernel's own number of this start, which no other machine has, and the space that process numbers are of:
- * containers have their own. */
+/* Returns a hash of the kernel's boot identifier, which no other machine and no other start has, and of the namespace
+ * of process numbers, as each container has its own. */
 static uint32_t mark_of_here(void)
 {
     char boot[64] = {0};
@@ -42,7 +42,7 @@ static uint32_t mark_of_here(void)
 
 void leftovers_file_front(char front[LEFTOVERS_FRONT])
 {
-    /* the thread's number, which no other thread of any process here has: several may write one file */
+    /* the thread's number: several threads of a process may write the same file at once */
     snprintf(front, LEFTOVERS_FRONT, ".%08x-%d~", mark_of_here(), (int)gettid());
 }
 
@@ -51,7 +51,7 @@ void leftovers_folder_name(char name[LEFTOVERS_NAME])
     snprintf(name, LEFTOVERS_NAME, ".merlin-%08x-%d-XXXXXX", mark_of_here(), (int)getpid());
 }
 
-/* ---- those of the dead ---- */
+/* ---- files of dead processes ---- */
 
 static bool is_old(int folder, const char *name)
 {
@@ -65,7 +65,7 @@ static bool is_dead(int number)
     return number > 0 && kill(number, 0) != 0 && errno == ESRCH;
 }
 
-/* Removes a folder's plain files and the folder. No memory is asked for: a signal's handler does this, too. */
+/* Removes a folder's plain files and the folder. It allocates no memory, as a signal handler calls it. */
 static void remove_folder(int parent, const char *name)
 {
     _Alignas(struct dirent64) char room[2048];
@@ -74,13 +74,13 @@ static void remove_folder(int parent, const char *name)
         for (ssize_t at = 0; at < got;) {
             const struct dirent64 *e = (const void *)(room + at);
             at += e->d_reclen;
-            (void)unlinkat(folder, e->d_name, 0); /* not "." and "..", which are folders */
+            (void)unlinkat(folder, e->d_name, 0); /* fails for "." and "..", which are folders */
         }
     if (folder >= 0) close(folder);
     (void)unlinkat(parent, name, AT_REMOVEDIR);
 }
 
-/* Tells a name of the two kinds, and whose it is. */
+/* Parses a temporary name of either kind into its mark and process number. */
 static bool parse(const char *name, unsigned *mark, int *number, bool *is_folder)
 {
     int length = 0;
@@ -119,9 +119,9 @@ void leftovers_clear_once(const char *folder)
     if (is_new) leftovers_clear(folder);
 }
 
-/* ---- one's own ---- */
+/* ---- files of this process ---- */
 
-enum { MOST_NOTED = 256 }; /* what is beyond that a later run removes */
+enum { MOST_NOTED = 256 }; /* files beyond this number are left to a later run */
 
 static struct {
     _Atomic(const char *) path;
@@ -148,7 +148,7 @@ void leftovers_forget(const char *path)
         }
 }
 
-/* The folder, and what was made for it above. */
+/* Removes a folder, and its parents as far as they were made for it. */
 static void remove_with_parents(const char *path, size_t kept)
 {
     char part[PATH_MAX];
@@ -159,7 +159,7 @@ static void remove_with_parents(const char *path, size_t kept)
     for (; length > kept; length--)
         if (part[length] == '/') {
             part[length] = 0;
-            (void)rmdir(part); /* which says no where anything is in it */
+            (void)rmdir(part); /* fails for folders that are not empty */
         }
 }
 

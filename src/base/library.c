@@ -9,18 +9,18 @@
 
 enum { REASON = 256 };
 
-/* Writes the reason why not where it fails. */
+/* Loads the library and its functions; on failure writes the reason. */
 static bool load(const library *l, char reason[REASON])
 {
     void *handle = dlopen(l->file, RTLD_LAZY | RTLD_LOCAL);
     bool found = handle != NULL;
     for (size_t i = 0; found && i < l->count; i++) {
-        /* dlsym gives functions as objects, which C does not turn into each other */
+        /* dlsym returns object pointers, and C has no conversion to function pointers */
         void *function = dlsym(handle, l->functions[i].name);
         memcpy(l->functions[i].into, &function, sizeof function);
         found = function != NULL;
     }
-    const char *why = found ? NULL : dlerror(); /* which names the library or the function */
+    const char *why = found ? NULL : dlerror(); /* names the library or the function */
     if (why) snprintf(reason, REASON, "%s", why);
     return found;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Shared libraries that a program loads when it needs them. One that is linked starts with every program, whether it is
- * called or not: libvips and the hundred libraries behind it take 20 ms.
+/* Shared libraries loaded when they are first needed. A linked library is loaded at every start, used or not: libvips
+ * and the hundred libraries behind it take 20 ms.
  *
  *     static struct { __typeof__(cbrt) *cbrt; } maths;
  *     static const library_function wanted[] = {{"cbrt", &maths.cbrt}};
@@ -19,18 +19,18 @@
 
 typedef struct library_function {
     const char *name;
-    void *into; /* the pointer to the function */
+    void *into; /* address of the function pointer to fill in */
 } library_function;
 
 typedef struct library {
     const char *file;
     const library_function *functions;
     size_t count;
-    atomic_bool loaded; /* library_need's */
+    atomic_bool loaded; /* set by library_need */
 } library;
 
-/* Loads it the first time, for good; from any thread, and cheap when it is there. MERLIN_DEVICE_FAILED if the library
- * or one of the functions is not. */
+/* Loads the library on the first call, for good; later calls are cheap. May be called from any thread.
+ * MERLIN_DEVICE_FAILED if the library or one of the functions is missing. */
 status library_need(library *l);
 
 #endif

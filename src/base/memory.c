@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
-/* A large page, and the least block that is likely to hold two whole ones. */
+/* size of a large page, and of the smallest block that is likely to hold two whole ones */
 static const size_t LARGE_PAGE = (size_t)2 << 20, LEAST_BLOCK = (size_t)6 << 20;
 
-/* What stands before a block. */
+/* The header in front of a block. */
 typedef struct origin {
-    void *whole;   /* what the system gave */
-    size_t mapped; /* bytes of it; 0: by calloc */
+    void *whole;   /* what the system returned */
+    size_t mapped; /* bytes mapped; 0: allocated by calloc */
 } origin;
 
 static origin *origin_of(void *block)
@@ -19,7 +19,8 @@ static origin *origin_of(void *block)
     return (origin *)block - 1;
 }
 
-/* Large ones straight from the system: calloc would clear what it has, though nobody may ever look at it. */
+/* Allocates zeros. Large blocks are mapped: calloc would clear memory it has reused, though the caller may never read
+ * it. */
 static origin take(size_t bytes)
 {
     if (bytes < LEAST_BLOCK) return (origin){calloc(1, bytes), 0};
@@ -60,5 +61,5 @@ void memory_prefer_large_pages(void *block, size_t bytes)
     if (!block || bytes < LEAST_BLOCK) return;
     char *first = (char *)block + (-(uintptr_t)block & (LARGE_PAGE - 1));
     size_t whole = (size_t)((char *)block + bytes - first) & ~(LARGE_PAGE - 1);
-    (void)madvise(first, whole, MADV_HUGEPAGE); /* it is only advice */
+    (void)madvise(first, whole, MADV_HUGEPAGE); /* only advice, so that failure does not matter */
 }

@@ -25,7 +25,7 @@ static FILE *own;
 static const char *program = "merlin";
 static int nowhere = -1;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static int inside; /* threads in decoders */
+static int inside; /* number of threads in decoders */
 
 void messages_keep(void)
 {
@@ -38,7 +38,7 @@ void messages_keep(void)
         if (copy >= 0) close(copy);
         return;
     }
-    setvbuf(stream, NULL, _IONBF, 0); /* as standard error is */
+    setvbuf(stream, NULL, _IONBF, 0); /* unbuffered, as standard error is */
     own = stream;
     nowhere = opened;
 }
@@ -58,7 +58,7 @@ const char *messages_program(void)
     return program;
 }
 
-void messages_hush(void)
+void messages_mute(void)
 {
     if (!own) return;
     pthread_mutex_lock(&lock);
@@ -66,7 +66,7 @@ void messages_hush(void)
     pthread_mutex_unlock(&lock);
 }
 
-void messages_unhush(void)
+void messages_unmute(void)
 {
     if (!own) return;
     pthread_mutex_lock(&lock);

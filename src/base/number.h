@@ -1,28 +1,43 @@
 /* SPDX-License-Identifier: MIT */
-/* Minimum, maximum, a smooth step that compile to an instruction or two: fminf and fmaxf are calls into the library,
- * because they promise more about NaN than anybody here needs. */
+/* Minimum, maximum, clamp and a smooth step that compile to an instruction or two: fminf and fmaxf are calls into the
+ * library, because they promise more about NaN than is needed here. */
 #ifndef MERLIN_BASE_NUMBER_H
 #define MERLIN_BASE_NUMBER_H
 
-static inline float min_of(float a, float b)
+#include <stddef.h>
+
+#include "base/real.h"
+
+static inline real min_of(real a, real b)
 {
     return a < b ? a : b;
 }
 
-static inline float max_of(float a, float b)
+static inline real max_of(real a, real b)
 {
     return a > b ? a : b;
 }
 
-static inline float clamp_to(float low, float high, float x)
+static inline int min_int(int a, int b)
 {
-    return min_of(high, max_of(low, x));
+    return a < b ? a : b;
 }
 
-/* Smooth 0 to 1 between the edges a < b (Hermite). */
-static inline float smooth_step(float a, float b, float x)
+static inline size_t min_size(size_t a, size_t b)
 {
-    float t = clamp_to(0, 1, (x - a) / (b - a));
+    return a < b ? a : b;
+}
+
+/* Limits x to [low, high]; NaN becomes low. */
+static inline real clamp(real x, real low, real high)
+{
+    return min_of(max_of(x, low), high);
+}
+
+/* Rises smoothly from 0 at x = a to 1 at x = b (Hermite); falls where a > b. */
+static inline real smooth_step(real a, real b, real x)
+{
+    real t = clamp((x - a) / (b - a), 0, 1);
     return t * t * (3 - 2 * t);
 }
 

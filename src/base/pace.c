@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* The share of the work after which what was before weighs a third: costs are planned roughly, and a stage that is
- * quicker than planned must not promise the same of the next. */
+/* share of the work after which earlier speed counts a third: the costs of stages are estimates, and a stage that is
+ * faster than estimated says little about the next */
 static const double MEMORY = 0.5;
 
 void pace_begin(pace *p, double share, double now)

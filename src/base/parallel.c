@@ -16,11 +16,12 @@ void parallel_for(size_t count, void (*body)(void *context, size_t i), void *con
         body(context, i);
 }
 
-/* Words are kept per thread, and threads go away. */
+/* A loop whose bodies can fail. Messages are kept per thread, and threads end, so that the first failure's is copied
+ * here. */
 typedef struct trial {
     status (*body)(void *context, size_t i);
     void *context;
-    atomic_size_t first; /* that failed; SIZE_MAX: none */
+    atomic_size_t first; /* lowest index that failed; SIZE_MAX: none */
     status result;
     char message[1024];
 } trial;
@@ -35,7 +36,8 @@ static void note_failure(trial *t, size_t i, status result)
     }
 }
 
-/* Those before one that failed are done all the same: they may fail too, and then are to be heard. */
+/* Runs one index unless a lower one has failed: those below must still run, as they may fail too and would then be the
+ * first. */
 static void try_one(void *context, size_t i)
 {
     trial *t = context;

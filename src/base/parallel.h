@@ -7,17 +7,17 @@
 
 #include "base/status.h"
 
-/* body(context, i) for every i in [0, count), iterations handed out one by one. */
+/* Calls body(context, i) for every i in [0, count), handing out iterations one by one. */
 void parallel_for(size_t count, void (*body)(void *context, size_t i), void *context);
 
-/* The same with bodies that can fail: the caller hears what the first of them, by i, returned and said. Those behind it
- * may not have been begun. */
+/* Runs such a loop whose bodies can fail: returns the status and sets the message of the first that failed, by i.
+ * Bodies after it may not have run. */
 status parallel_try(size_t count, status (*body)(void *context, size_t i), void *context);
 
-/* body(context, begin, end) over contiguous blocks that tile [0, count), one block a thread. */
+/* Calls body(context, begin, end) on contiguous blocks that tile [0, count), one block a thread. */
 void parallel_blocks(size_t count, void (*body)(void *context, size_t begin, size_t end), void *context);
 
-/* Returns how many threads the loops of the calling thread have (base/threads.h). */
+/* Returns the number of threads in the calling thread's loops (base/threads.h). */
 int parallel_threads(void);
 
 #endif

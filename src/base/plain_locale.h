@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Numbers in files have a decimal point, whatever a program that uses the library has told setlocale.
+/* The C locale, for numbers in files: they have a decimal point, whatever locale the program has set.
  *
  *     float x = strtof_l(word, &end, plain_locale());
  *
@@ -12,7 +12,7 @@
 
 #include <locale.h>
 
-/* The C locale; from any thread. */
+/* Returns the C locale; may be called from any thread. */
 locale_t plain_locale(void);
 
 #endif

@@ -26,7 +26,7 @@ void progress_time(double seconds, char out[PROGRESS_TIME])
         snprintf(out, PROGRESS_TIME, "%ld:%02ld", s / 60, s % 60);
 }
 
-/* ---- a line of a terminal ---- */
+/* ---- one line of a terminal ---- */
 
 bool progress_is_seen(void)
 {
@@ -50,7 +50,7 @@ void progress_draw(const char *label, double share, const char *words)
         bar[i] = (double)i + 1 <= share * WIDTH ? '#' : '.';
     bar[WIDTH] = 0;
     snprintf(line, sizeof line, "%s [%s] %s", label, bar, words);
-    size_t room = columns() - 1; /* in the last column some terminals begin another line */
+    size_t room = columns() - 1; /* not the last column, where some terminals wrap */
     if (room < sizeof line) line[room] = 0;
     fprintf(messages(), "\r%s\033[K", line);
     fflush(messages());
@@ -62,7 +62,7 @@ void progress_clear(void)
     fflush(messages());
 }
 
-/* ---- work that is counted ---- */
+/* ---- counted work ---- */
 
 static double share_of(const progress *p)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Random numbers that depend on (seed, index, stream) alone, so that a sample, an augmentation or a draw is the same
- * whatever thread makes it and in whatever order.
+/* Random numbers that depend on (seed, index, stream) alone: a sample or an augmentation is the same whatever thread
+ * makes it and in whatever order.
  *
  *     rng r = rng_at(seed, sample_index, STREAM_SHAPE);
  *     float u = rng_uniform(&r);
@@ -41,25 +41,26 @@ static inline rng rng_at(uint64_t seed, uint64_t index, uint64_t stream)
     return r;
 }
 
-/* Uniform in [0, 1). */
+/* Returns a number uniform in [0, 1). */
 static inline float rng_uniform(rng *r)
 {
     return (float)(rng_u32(r) >> 8) * 0x1p-24f;
 }
 
-/* Uniform in [low, high). */
+/* Returns a number uniform in [low, high). */
 static inline float rng_range(rng *r, float low, float high)
 {
     return low + (high - low) * rng_uniform(r);
 }
 
-/* Uniform in 0 .. count-1. */
+/* Returns a whole number uniform in 0 .. count-1. */
 static inline int rng_below(rng *r, int count)
 {
     return (int)(((uint64_t)rng_u32(r) * (uint64_t)count) >> 32);
 }
 
-/* Standard normal (Box & Muller 1958; the second value is dropped so that every call costs the same draws). */
+/* Returns a standard normal number (Box & Muller 1958; the second value is dropped, so that every call advances the
+ * generator equally). */
 static inline float rng_normal(rng *r)
 {
     float u = 1.0f - rng_uniform(r), v = rng_uniform(r);

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "base/utf8.h"
 
-/* Bytes kept free behind the names for ", ... and 1234567 more". */
+/* bytes reserved behind the names for ", ... and 1234567 more" */
 enum { ROOM_FOR_MORE = 32 };
 
 static status make_room(skipped_files *list, size_t more)
@@ -55,11 +55,11 @@ static bool is_told(const skipped_files *list, size_t i)
 
 typedef struct sentence {
     char *words;
-    size_t at, size; /* the latter without the room that is kept free */
+    size_t at, size; /* size: without the reserved bytes */
     size_t names;
 } sentence;
 
-/* Adds a name, and before it what ends the reason of those before. */
+/* Adds a name, preceded by `end`, which closes the reason of the names before it. */
 static bool say_name(sentence *s, const char *name, const char *end)
 {
     if (s->at + strlen(name) + strlen(end) + 2 >= s->size) return false;
@@ -68,7 +68,7 @@ static bool say_name(sentence *s, const char *name, const char *end)
     return true;
 }
 
-/* Adds the names that share a reason, and this in brackets. */
+/* Adds the names that share a reason, followed by the reason in brackets. */
 static bool say_reason(const skipped_files *list, size_t first, sentence *s)
 {
     const char *why = list->at[first].why;

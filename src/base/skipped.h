@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Files of a folder that were left aside, each with the reason, so that a person is told of them in one line.
+/* Files of a folder that were left out, each with the reason, reported to the user in one line.
  *
  *     skipped_files left = {0};
  *     status s = skipped_add(&left, "a.jxl", "JPEG XL is not read");
@@ -18,8 +18,8 @@
 #include "base/warnings.h"
 
 typedef struct skipped_file {
-    char *name; /* in its folder */
-    char *why;  /* without a full stop */
+    char *name; /* name within its folder */
+    char *why;  /* reason, without a full stop */
 } skipped_file;
 
 typedef struct skipped_files {
@@ -27,11 +27,11 @@ typedef struct skipped_files {
     size_t count;
 } skipped_files;
 
-/* Adds one; both texts are copied. */
+/* Adds a file; both texts are copied. */
 status skipped_add(skipped_files *list, const char *name, const char *why);
-/* Moves those of `more` behind the others. */
+/* Moves the entries of `more` to the end of the list. */
 status skipped_append(skipped_files *list, skipped_files *more);
-/* Puts how many there are, and as many names as there is room for, into words; "" without any. */
+/* Writes how many there are and as many names as fit; "" if there are none. */
 void skipped_words(const skipped_files *list, char *words, size_t size);
 /* Adds the warning files_skipped, if there are any. */
 void skipped_warn(const skipped_files *list, warnings *out);

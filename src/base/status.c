@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* the analysis' view of them, where it is in force */
+/* static analysis replaces it by a macro (status.h) */
 #undef fail
 #undef fail_in
 
@@ -13,7 +13,7 @@ enum { MESSAGE_SIZE = 1024 };
 
 static _Thread_local char message[MESSAGE_SIZE];
 
-/* A message is one line, whatever names a damaged file brought into it. */
+/* Keeps the message to one line: names in a damaged file may contain line breaks. */
 static void keep_one_line(void)
 {
     for (char *c = message; *c; c++)
@@ -38,7 +38,7 @@ status fail_in(status s, const char *format, ...)
     va_start(args, format);
     int used = vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    /* a message too long for the place loses its end */
+    /* a message that is too long loses its end */
     int room = MESSAGE_SIZE - 3 - used;
     if (used >= 0 && room > 0) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
     keep_one_line();

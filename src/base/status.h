@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* How functions report failure.
  *
- * A function that can fail returns a status. The words for a person (what, where, what to do) are kept per thread and
- * read once by whoever stops the work:
+ * A function that can fail returns a status. The message for the user (what, where, what to do) is kept per thread, and
+ * read once where the work is stopped:
  *
  *     status s = exr_read(path, &maps);
  *     if (s != OK) return fail_in(s, "cannot read maps from %s", path);
@@ -14,21 +14,22 @@
 
 #include "merlin/status.h"
 
-/* The library's own status, by a short name for the inside. */
+/* The library's public status under a short name for internal use. */
 typedef merlin_status status;
 
 #define OK MERLIN_OK
-/* Another process of the same work has failed, and says why (base/ranks/ranks.h). No public function returns it. */
+/* Status of a rank when another rank of the same work has failed and reports why (base/ranks/ranks.h). No public
+ * function returns it. */
 #define STATUS_ELSEWHERE ((status)(MERLIN_STOPPED + 1))
 
 /* Records the message and returns s. */
 status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Puts a context in front of the message of the failure being passed on ("context: message") and returns s. */
+/* Puts context in front of the recorded message ("context: message") and returns s. */
 status fail_in(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __clang_analyzer__
-/* Static analysis does not see into status.c: here it learns that a failure is never OK. */
+/* Tells static analysis, which does not see into status.c, that a failure is never OK. */
 static inline status status_given(status s, status recorded)
 {
     (void)recorded;
@@ -38,7 +39,7 @@ static inline status status_given(status s, status recorded)
 #define fail_in(s, ...) status_given(s, fail_in(s, __VA_ARGS__))
 #endif
 
-/* The message of this thread's last failure; "" if there was none. Valid until the next fail in this thread. */
+/* Returns the message of this thread's last failure; "" if there was none. Valid until the thread's next fail. */
 const char *status_message(void);
 
 #endif

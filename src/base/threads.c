@@ -9,27 +9,23 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/number.h"
 #include "base/status.h"
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of what follows */
-static int tried, had; /* the most threads that were asked for, and how many of them there are */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* guards the variables below */
+static int tried, had; /* tried: most threads that were asked for; had: how many of them the system granted */
 static bool sleepers_started;
 
-static atomic_int wanted; /* by threads_use; 0: OpenMP's own choice */
+static atomic_int wanted; /* set by threads_use; 0: OpenMP's own choice */
 static atomic_uint changes;
 
-/* The calling thread's number of threads for its loops, and the change that it has last heard of. */
+/* The calling thread's setting: its number of threads, and the last change of `wanted` that it has applied. */
 static _Thread_local struct {
     int threads;
     unsigned change;
 } settled;
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-/* ---- how many threads there are to be had ---- */
+/* ---- how many threads the system grants ---- */
 
 static void *wait_for_all(void *gate)
 {
@@ -38,7 +34,8 @@ static void *wait_for_all(void *gate)
     return NULL;
 }
 
-/* Starts so many at once, as large as OpenMP's, and ends them again; returns how many there were. */
+/* Starts `count` threads at once, with stacks as large as OpenMP's, and ends them again; returns how many could start.
+ */
 static int try_threads(int count)
 {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
@@ -59,21 +56,21 @@ bool threads_are_left(int count)
     return try_threads(count) == count;
 }
 
-/* ---- how they wait ---- */
+/* ---- how idle threads wait ---- */
 
-/* libgomp's threads spin for milliseconds before they sleep, 300,000 turns, unless there are more of them than
- * processors: then 1000, some tens of microseconds, which costs an idle machine nothing. Beside other work the long
- * wait is for a thread that has no processor, and takes another's meanwhile (docs/notes/waiting_threads.md). The
- * environment can say so as well, but is read before main. So there are more of them: a team that never has anything to
- * do, and sleeps. */
+/* Keeps a second OpenMP team asleep for the program's lifetime. libgomp's idle threads spin for milliseconds (300,000
+ * rounds) before they sleep, unless there are more OpenMP threads than processors: then for 1000 rounds, some tens of
+ * microseconds. The long spin takes processors from other work (docs/notes/waiting_threads.md). It can be shortened by
+ * the environment, but that is read before main starts, so that this team makes the threads outnumber the processors
+ * instead. */
 static void *sleep_for_good(void *team)
 {
 #pragma omp parallel num_threads(*(int *)team)
     {
-        __asm__ volatile("" ::: "memory"); /* an empty team would not be started */
+        __asm__ volatile("" ::: "memory"); /* an empty region would not start the team */
     }
     free(team);
-    while (pause() < 0) /* always */
+    while (pause() < 0) /* pause always returns -1 */
         ;
     return NULL;
 }
@@ -86,7 +83,7 @@ static void start_sleepers(int team)
     if (!context) return;
     *context = team;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before); /* the program's signals are for its own threads */
+    pthread_sigmask(SIG_SETMASK, &all, &before); /* leave signals to the program's own threads */
     if (pthread_create(&sleeper, NULL, sleep_for_good, context) == 0)
         pthread_detach(sleeper);
     else
@@ -94,29 +91,31 @@ static void start_sleepers(int team)
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
-/* Whoever says in the environment how threads are to wait is heard. */
+/* Tells whether the environment says how threads are to wait, which then holds. */
 static bool waiting_is_chosen(void)
 {
     return getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY");
 }
 
-/* ---- both ---- */
+/* ---- applying both ---- */
 
-/* Returns the size of the sleepers' team that makes OpenMP's threads more than processors beside a loop of so many. */
+/* Returns the size of the sleeping team with which OpenMP's threads outnumber the processors beside a loop of `threads`
+ * threads. */
 static int team_beside(int threads)
 {
     int processors = omp_get_num_procs();
     return threads < processors ? processors - threads + 2 : 2;
 }
 
-/* Threads to be started for two such loops at once, one of them in the thread that reads a photograph ahead; another
+/* Returns the number of threads for two such loops at once, as a second thread reads photographs ahead; one more
  * converts weights ahead. */
 static int needed_for(int threads)
 {
     return 2 * (threads - 1) + 2;
 }
 
-/* The most of `count` for which `found` threads suffice, with the sleepers if they fit at all. */
+/* Returns the largest number up to `count` for which `found` threads suffice, and whether the sleeping team fits, too.
+ */
 static int share_out(int found, int count, bool *sleepers)
 {
     *sleepers = !sleepers_started && !waiting_is_chosen();
@@ -138,26 +137,26 @@ static void find_out(int count)
     sleepers_started = true;
 }
 
-/* So many threads, or as many of them as there are. */
+/* Returns `count`, or as many threads as the system grants. */
 static int grant(int count)
 {
     if (count < 2) return 1;
     pthread_mutex_lock(&lock);
     if (count > tried) find_out(count);
-    int threads = smaller(count, had);
+    int threads = min_int(count, had);
     pthread_mutex_unlock(&lock);
     return threads;
 }
 
-/* OpenMP starts the calling thread's team at its first loop, when other work may have taken what was there: it is
- * started here, right after another look. */
+/* Starts the calling thread's OpenMP team right after checking again how many threads there are: OpenMP would start it
+ * at the first loop, when other work may have taken them. */
 static int start_team(int threads)
 {
     if (threads < 2 || omp_in_parallel()) return threads;
     threads = try_threads(threads - 1) + 1;
 #pragma omp parallel num_threads(threads)
     {
-        __asm__ volatile("" ::: "memory"); /* an empty team would not be started */
+        __asm__ volatile("" ::: "memory"); /* an empty region would not start the team */
     }
     return threads;
 }
@@ -166,7 +165,7 @@ void threads_use_here(int count)
 {
     bool first = settled.threads == 0;
     settled.change = atomic_load(&changes);
-    settled.threads = grant(smaller(count, THREADS_MOST));
+    settled.threads = grant(min_int(count, THREADS_MOST));
     if (first) settled.threads = start_team(settled.threads);
     omp_set_num_threads(settled.threads);
 }

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of the UTF-8 sequence that text begins with; 0 if it begins with none (RFC 3629: no overlong forms, no
- * surrogates, nothing above U+10FFFF). */
+/* Returns the length of the UTF-8 sequence at the beginning of text; 0 if there is none (RFC 3629: no overlong forms,
+ * no surrogates, nothing above U+10FFFF). */
 static size_t sequence(const unsigned char *text)
 {
     unsigned char first = text[0];

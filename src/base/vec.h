@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Small vectors. `real` is float everywhere but in tests, which compile the same headers with MERLIN_REAL double to
- * check derivatives against finite differences. */
+/* Small vectors. */
 #ifndef MERLIN_BASE_VEC_H
 #define MERLIN_BASE_VEC_H
 
 #include <tgmath.h>
 
-#ifndef MERLIN_REAL
-#define MERLIN_REAL float
-#endif
-typedef MERLIN_REAL real;
+#include "base/real.h"
 
 typedef struct vec3 {
     real x, y, z;
@@ -20,13 +16,13 @@ static inline vec3 vec3_make(real x, real y, real z)
     return (vec3){x, y, z};
 }
 
-/* Of three numbers in a row, such as a pixel's. */
+/* Reads a vector from three consecutive numbers, such as a pixel's. */
 static inline vec3 vec3_of(const real *p)
 {
     return (vec3){p[0], p[1], p[2]};
 }
 
-/* Back into such a row. */
+/* Writes a vector to three consecutive numbers. */
 static inline void vec3_put(vec3 v, real *p)
 {
     p[0] = v.x;
@@ -54,7 +50,7 @@ static inline vec3 vec3_scale(vec3 a, real s)
     return (vec3){a.x * s, a.y * s, a.z * s};
 }
 
-/* a + s b */
+/* Returns a + s b. */
 static inline vec3 vec3_fma(vec3 a, real s, vec3 b)
 {
     return (vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -75,7 +71,7 @@ static inline real vec3_length(vec3 a)
     return sqrt(vec3_dot(a, a));
 }
 
-/* a / |a|; the zero vector stays zero. */
+/* Returns a / |a|; the zero vector stays zero. */
 static inline vec3 vec3_normalize(vec3 a)
 {
     real length = vec3_length(a);

@@ -21,7 +21,7 @@ void warnings_add(warnings *list, const char *code, const char *format, ...)
     va_start(args, format);
     vsnprintf(w->message, sizeof w->message, format, args);
     va_end(args);
-    for (char *c = w->message; *c; c++) /* a file's name may hold anything */
+    for (char *c = w->message; *c; c++) /* file names may contain control characters */
         if ((unsigned char)*c < ' ') *c = '?';
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Warnings tell a person what to know of a result before they trust it: each has a code for programs, in snake_case,
- * and one sentence for people. They are gathered while the work is done and told once, at its end:
+/* Warnings tell the user what may be wrong with a result: each has a code for programs, in snake_case, and one sentence
+ * for people. They are collected during the work and printed once, at its end:
  *
  *     warnings doubts = {0};
  *     if (burnt_out >= 0.1) warnings_add(&doubts, "burnt_out", "%.0f %% of the object is burnt out", 100 * burnt_out);
@@ -8,7 +8,7 @@
  *     cJSON_AddItemToObject(report, "warnings", warnings_json(&doubts));      [{"code": ..., "message": ...}, ...]
  *     if (!quiet) warnings_print(&doubts, "estimate", photo, 3);              one line on standard error
  *
- * Nothing is allocated, so that a warning cannot get lost when memory runs out, and a list may be copied. */
+ * Nothing is allocated, so that no warning is lost when memory runs out, and lists can be copied. */
 #ifndef MERLIN_BASE_WARNINGS_H
 #define MERLIN_BASE_WARNINGS_H
 
@@ -18,24 +18,24 @@
 enum { WARNINGS_MOST = 24, WARNING_WORDS = 512 };
 
 typedef struct warning {
-    const char *code; /* a literal */
+    const char *code; /* string literal */
     char message[WARNING_WORDS];
 } warning;
 
 typedef struct warnings {
-    size_t count; /* in the list: at most WARNINGS_MOST */
-    size_t more;  /* that it had no room for */
+    size_t count; /* number of warnings in the list, at most WARNINGS_MOST */
+    size_t more;  /* number that did not fit */
     warning at[WARNINGS_MOST];
 } warnings;
 
-/* Adds one behind the others; the message is kept to one line, without a full stop. The most important come first. */
+/* Appends a warning; the message is kept to one line, without a full stop. The most important ones come first. */
 void warnings_add(warnings *list, const char *code, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Returns the first of this code, or NULL. */
+/* Returns the first warning of this code, or NULL. */
 const warning *warnings_find(const warnings *list, const char *code);
 /* Returns an array of objects with code and message; NULL if memory ran out. */
 cJSON *warnings_json(const warnings *list);
-/* Prints "PROGRAM COMMAND: SUBJECT: message; message" on one line to standard error, the first `most` of them and how
- * many more there are; nothing without any. */
+/* Prints "PROGRAM COMMAND: SUBJECT: message; message" on one line to standard error, the first `most` warnings and how
+ * many more there are; nothing if the list is empty. */
 void warnings_print(const warnings *list, const char *command, const char *subject, size_t most);
 
 #endif

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A watch tells how far long work is to whoever waits for it. Libraries take one and never print:
+/* A watch reports the progress of long work to the caller. Libraries take one, and never print:
  *
  *     watch_tell(w, "solving", 0.4);                                    w may be NULL
- *     if (watch_stops(w)) return fail(MERLIN_STOPPED, "stopped"); */
+ *     if (watch_stops(w)) return fail(MERLIN_STOPPED, "stopped");
+ */
 #ifndef MERLIN_BASE_WATCH_H
 #define MERLIN_BASE_WATCH_H
 
@@ -12,9 +13,9 @@
 #include "merlin/status.h"
 
 typedef struct watch {
-    merlin_progress tell; /* NULL: nobody listens; `stage` is a literal */
+    merlin_progress tell; /* NULL: progress is not reported; `stage` is a literal; called by one thread at a time */
     void *context;
-    int (*stop)(void); /* nonzero: whoever waits gave up; may be NULL. Any thread */
+    int (*stop)(void); /* returns nonzero to stop the work; may be NULL; may be called from any thread */
 } watch;
 
 static inline void watch_tell(const watch *w, const char *stage, double share)

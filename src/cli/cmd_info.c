@@ -29,7 +29,7 @@ typedef struct weights_info {
     model_config config;
     size_t parameters, statistics; /* trained numbers, and batch norm's running statistics */
     double gmac;                   /* at COST_SIZE */
-    st_file *file;
+    safetensors_file *file;
 } weights_info;
 
 /* Metadata that merlin-lab train writes beside the configuration. */
@@ -60,12 +60,12 @@ static status read_info(const char *path, weights_info *out)
         *(p->gradient ? &out->parameters : &out->statistics) += p->count;
     }
     s = measure_cost(&out->config, params, &out->gmac);
-    if (s == OK) s = st_open(path, &out->file);
+    if (s == OK) s = safetensors_open(path, &out->file);
     nn_params_free(params);
     return s;
 }
 
-static void format_shape(const st_tensor *t, char *out, size_t size)
+static void format_shape(const safetensors_tensor *t, char *out, size_t size)
 {
     size_t used = 0;
     out[0] = 0;
@@ -79,16 +79,16 @@ static void print_text(const weights_info *info, bool tensors)
     printf("parameters         %zu (and %zu running statistics)\n", info->parameters, info->statistics);
     printf("cost at %dx%d    %.2f GMAC\n", COST_SIZE, COST_SIZE, info->gmac);
     for (int i = 0; i < PROVENANCE; i++) {
-        const char *value = st_metadata(info->file, provenance[i]);
+        const char *value = safetensors_metadata(info->file, provenance[i]);
         if (value && *value) printf("%-18s %s\n", provenance[i], value);
     }
-    printf("config             %s\n", st_metadata(info->file, "config"));
-    printf("tensors            %zu\n", st_count(info->file));
-    for (size_t i = 0; tensors && i < st_count(info->file); i++) {
-        const st_tensor *t = st_at(info->file, i);
+    printf("config             %s\n", safetensors_metadata(info->file, "config"));
+    printf("tensors            %zu\n", safetensors_count(info->file));
+    for (size_t i = 0; tensors && i < safetensors_count(info->file); i++) {
+        const safetensors_tensor *t = safetensors_at(info->file, i);
         char shape[96];
         format_shape(t, shape, sizeof shape);
-        printf("  %-48s %-5s %s\n", t->name, st_type_name(t->type), shape);
+        printf("  %-48s %-5s %s\n", t->name, safetensors_type_name(t->type), shape);
     }
 }
 
@@ -105,14 +105,14 @@ static void add_text(cJSON *o, const char *key, const char *text)
     json_line_text(o, key, text);
 }
 
-static void add_tensors(cJSON *o, const st_file *file)
+static void add_tensors(cJSON *o, const safetensors_file *file)
 {
     cJSON *list = cJSON_AddArrayToObject(o, "tensors");
-    for (size_t i = 0; i < st_count(file); i++) {
-        const st_tensor *t = st_at(file, i);
+    for (size_t i = 0; i < safetensors_count(file); i++) {
+        const safetensors_tensor *t = safetensors_at(file, i);
         cJSON *entry = cJSON_CreateObject();
         json_line_text(entry, "name", t->name);
-        cJSON_AddStringToObject(entry, "type", st_type_name(t->type));
+        cJSON_AddStringToObject(entry, "type", safetensors_type_name(t->type));
         cJSON *shape = cJSON_AddArrayToObject(entry, "shape");
         for (int k = 0; k < t->rank; k++)
             cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[k]));
@@ -127,9 +127,9 @@ static status print_json(const weights_info *info, bool tensors)
     cJSON_AddNumberToObject(o, "parameters", (double)info->parameters);
     cJSON_AddNumberToObject(o, "statistics", (double)info->statistics);
     cJSON_AddNumberToObject(o, "gmac_256", info->gmac);
-    add_text(o, "config", st_metadata(info->file, "config"));
+    add_text(o, "config", safetensors_metadata(info->file, "config"));
     for (int i = 0; i < PROVENANCE; i++) {
-        const char *value = st_metadata(info->file, provenance[i]);
+        const char *value = safetensors_metadata(info->file, provenance[i]);
         if (value) add_text(o, provenance[i], value);
     }
     if (tensors) add_tensors(o, info->file);
@@ -158,6 +158,6 @@ int cmd_info(int argc, char **argv)
     free(path);
     if (s == OK && json) s = print_json(&info, tensors);
     if (s == OK && !json && !quiet) print_text(&info, tensors);
-    st_close(info.file);
+    safetensors_close(info.file);
     return s == OK ? 0 : cli_fail("info", s);
 }

@@ -13,7 +13,7 @@ status mesh_take_name(const char *path, void *into)
     mesh_names *names = into;
     if (names->count == MESH_MOST_FILES) return fail(MERLIN_WRONG_USE, "--mesh may be given %d times", MESH_MOST_FILES);
     names->at[names->count++] = path;
-    return pst_mesh_check_name(path);
+    return mesh_check_name(path);
 }
 
 bool mesh_is_name(const char *word)

@@ -13,7 +13,7 @@
 #include "base/messages.h"
 #include "command/last_words.h"
 #include "command/suggest.h"
-#include "image/start.h"
+#include "image/vips_start.h"
 #include "merlin/merlin.h"
 
 static const cli_command *find_command(const program *p, const char *name)

@@ -3,12 +3,9 @@
 
 #include <string.h>
 
-enum { LONGEST = 32 }; /* letters of a name */
+#include "base/number.h"
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
+enum { LONGEST = 32 }; /* letters of a name */
 
 /* The distance of Damerau and Levenshtein in which no letter is moved twice ("optimal string alignment"). */
 static int slips(const char *a, size_t a_length, const char *b, size_t b_length)
@@ -21,9 +18,9 @@ static int slips(const char *a, size_t a_length, const char *b, size_t b_length)
         const int *before = row[(i + 2) % 3], *earlier = row[(i + 1) % 3];
         now[0] = (int)i;
         for (size_t j = 1; j <= b_length; j++) {
-            now[j] = smaller(smaller(before[j], now[j - 1]) + 1, before[j - 1] + (a[i - 1] != b[j - 1]));
+            now[j] = min_int(min_int(before[j], now[j - 1]) + 1, before[j - 1] + (a[i - 1] != b[j - 1]));
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                now[j] = smaller(now[j], earlier[j - 2] + 1);
+                now[j] = min_int(now[j], earlier[j - 2] + 1);
         }
     }
     return row[a_length % 3][b_length];

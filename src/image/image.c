@@ -61,7 +61,7 @@ img_span img_row_span(const img *mask, int y)
     return s;
 }
 
-void img_blacken_impossible(img *image)
+void img_zero_invalid(img *image)
 {
     for (size_t i = 0, n = img_value_count(image); i < n; i++)
         if (!(isfinite(image->data[i]) && image->data[i] >= 0)) image->data[i] = 0;

@@ -39,7 +39,7 @@ static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
 }
 
 /* What no light has, values that are not finite or negative, becomes 0. */
-void img_blacken_impossible(img *image);
+void img_zero_invalid(img *image);
 
 /* Mean of 1 channel over the pixels where the mask, of the same size, is above a half; 0 if there are none. */
 double img_mean_within(const img *a, const img *mask);

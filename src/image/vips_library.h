@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The functions of libvips, which is loaded by vips_begin (image/start.h) and not when the program starts.
+/* The functions of libvips, which is loaded by vips_begin (image/vips_start.h) and not when the program starts.
  *
  *     status s = vips_begin();
  *     if (s == OK) failed = vips()->autorot(image, &made, NULL);
@@ -82,7 +82,7 @@ typedef struct vips_functions {
 #undef VIPS_MEMBER
 #undef GLIB_MEMBER
 
-/* Brings the functions, but starts nothing: for vips_begin (image/start.h) alone. */
+/* Brings the functions, but starts nothing: for vips_begin (image/vips_start.h) alone. */
 status vips_load(void);
 /* Returns the functions; to be called after vips_begin. */
 const vips_functions *vips(void);

@@ -6,14 +6,14 @@
 
 #include "base/number.h"
 
-void mesh_free(scn_mesh *mesh)
+void mesh_free(triangle_mesh *mesh)
 {
     free(mesh->position);
     free(mesh->reference);
     free(mesh->normal);
     free(mesh->triangle);
     free(mesh->part);
-    *mesh = (scn_mesh){0};
+    *mesh = (triangle_mesh){0};
 }
 
 static void *copy_of(const void *array, size_t size)
@@ -22,7 +22,7 @@ static void *copy_of(const void *array, size_t size)
     return copy ? memcpy(copy, array, size) : NULL;
 }
 
-void mesh_copy(const scn_mesh *mesh, scn_mesh *out)
+void mesh_copy(const triangle_mesh *mesh, triangle_mesh *out)
 {
     size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
     *out = *mesh;
@@ -43,7 +43,7 @@ static bool grow(void **array, size_t count, size_t size)
     return larger != NULL;
 }
 
-uint32_t mesh_add_vertex(scn_mesh *mesh, vec3 position)
+uint32_t mesh_add_vertex(triangle_mesh *mesh, vec3 position)
 {
     if (mesh->failed) return 0;
     if (mesh->vertex_count == mesh->vertex_capacity) {
@@ -59,7 +59,7 @@ uint32_t mesh_add_vertex(scn_mesh *mesh, vec3 position)
     return mesh->vertex_count++;
 }
 
-void mesh_add_triangle(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8_t part)
+void mesh_add_triangle(triangle_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8_t part)
 {
     if (mesh->failed) return;
     if (mesh->triangle_count == mesh->triangle_capacity) {
@@ -78,7 +78,7 @@ void mesh_add_triangle(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8
     mesh->part[mesh->triangle_count++] = part;
 }
 
-void mesh_add_quad(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint8_t part)
+void mesh_add_quad(triangle_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint8_t part)
 {
     if (mesh->failed) return;
     float ac = vec3_length(vec3_sub(mesh->position[a], mesh->position[c]));
@@ -92,7 +92,7 @@ void mesh_add_quad(scn_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t 
     }
 }
 
-void mesh_transform(scn_mesh *mesh, uint32_t first, const mat3 *linear, vec3 offset, bool references)
+void mesh_transform(triangle_mesh *mesh, uint32_t first, const mat3 *linear, vec3 offset, bool references)
 {
     for (uint32_t i = first; i < mesh->vertex_count; i++) {
         mesh->position[i] = vec3_add(mat3_apply(linear, mesh->position[i]), offset);
@@ -100,7 +100,7 @@ void mesh_transform(scn_mesh *mesh, uint32_t first, const mat3 *linear, vec3 off
     }
 }
 
-void mesh_normalize(scn_mesh *mesh)
+void mesh_normalize(triangle_mesh *mesh)
 {
     vec3 low = vec3_make(1e30f, 1e30f, 1e30f), high = vec3_scale(low, -1);
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
@@ -118,14 +118,14 @@ void mesh_normalize(scn_mesh *mesh)
     }
 }
 
-static vec3 face_normal(const scn_mesh *mesh, uint32_t triangle)
+static vec3 face_normal(const triangle_mesh *mesh, uint32_t triangle)
 {
     const uint32_t *t = mesh->triangle[triangle];
     vec3 a = mesh->position[t[0]];
     return vec3_cross(vec3_sub(mesh->position[t[1]], a), vec3_sub(mesh->position[t[2]], a));
 }
 
-void mesh_smooth_normals(const scn_mesh *mesh, vec3 *normal)
+void mesh_smooth_normals(const triangle_mesh *mesh, vec3 *normal)
 {
     memset(normal, 0, mesh->vertex_count * sizeof *normal);
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
@@ -139,7 +139,7 @@ void mesh_smooth_normals(const scn_mesh *mesh, vec3 *normal)
         normal[i] = vec3_normalize(normal[i]);
 }
 
-double mesh_signed_volume(const scn_mesh *mesh)
+double mesh_signed_volume(const triangle_mesh *mesh)
 {
     double sum = 0;
     for (uint32_t i = 0; i < mesh->triangle_count; i++)

@@ -8,7 +8,7 @@
 
 /* Everything one pass over the vertices needs; faces around vertex v are face[start[v]] .. face[start[v + 1] - 1]. */
 typedef struct finisher {
-    scn_mesh *mesh;
+    triangle_mesh *mesh;
     uint32_t *start, *face;
     vec3 *unit;  /* per face: direction */
     float *area; /* per face: twice its area */
@@ -18,7 +18,7 @@ typedef struct finisher {
 
 static bool drop_degenerate(finisher *f)
 {
-    scn_mesh *m = f->mesh;
+    triangle_mesh *m = f->mesh;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < m->triangle_count; i++) {
         const uint32_t *t = m->triangle[i];
@@ -38,7 +38,7 @@ static bool drop_degenerate(finisher *f)
 
 static void collect_faces(finisher *f)
 {
-    scn_mesh *m = f->mesh;
+    triangle_mesh *m = f->mesh;
     memset(f->start, 0, (m->vertex_count + 2) * sizeof *f->start);
     for (uint32_t i = 0; i < m->triangle_count; i++)
         for (int k = 0; k < 3; k++)
@@ -54,7 +54,7 @@ static void collect_faces(finisher *f)
  * the end, so that old and new indices never mix). */
 static void emit(finisher *f, uint32_t v, const uint8_t *group, uint8_t g)
 {
-    scn_mesh *m = f->mesh;
+    triangle_mesh *m = f->mesh;
     vec3 sum = {0, 0, 0}, first = {0, 0, 0};
     for (uint32_t k = f->start[v]; k < f->start[v + 1]; k++) {
         uint32_t corner = f->face[k];
@@ -112,7 +112,7 @@ static void split(finisher *f, float crease_cosine)
 
 static void take_over(finisher *f)
 {
-    scn_mesh *m = f->mesh;
+    triangle_mesh *m = f->mesh;
     for (uint32_t i = 0; i < m->triangle_count; i++)
         for (int k = 0; k < 3; k++)
             m->triangle[i][k] = ~m->triangle[i][k];
@@ -127,7 +127,7 @@ static void take_over(finisher *f)
     f->position = f->reference = f->normal = NULL;
 }
 
-status mesh_finish(scn_mesh *mesh, float crease_cosine)
+status mesh_finish(triangle_mesh *mesh, float crease_cosine)
 {
     if (mesh->failed) return fail(MERLIN_NO_MEMORY, "no memory for a shape");
     /* a corner makes at most one vertex */

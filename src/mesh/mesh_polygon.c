@@ -11,7 +11,7 @@ static float turn(vec3 a, vec3 b, vec3 c, vec3 n)
 }
 
 /* Twice the area, along the normal; corners need not lie in a plane. */
-static vec3 area_of(const scn_mesh *mesh, const uint32_t *corner, int count)
+static vec3 area_of(const triangle_mesh *mesh, const uint32_t *corner, int count)
 {
     vec3 sum = {0, 0, 0}, first = mesh->position[corner[0]];
     for (int k = 2; k < count; k++) {
@@ -23,7 +23,7 @@ static vec3 area_of(const scn_mesh *mesh, const uint32_t *corner, int count)
 
 /* Tells whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. Takes the
  * corners it looked at from *work. */
-static bool is_ear(const scn_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n, long *work)
+static bool is_ear(const triangle_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n, long *work)
 {
     vec3 a = mesh->position[corner[(i + count - 1) % count]], b = mesh->position[corner[i]];
     vec3 c = mesh->position[corner[(i + 1) % count]];
@@ -37,7 +37,7 @@ static bool is_ear(const scn_mesh *mesh, const uint32_t *corner, int count, int 
     return true;
 }
 
-void mesh_add_polygon(scn_mesh *mesh, uint32_t *corner, int count, uint8_t part)
+void mesh_add_polygon(triangle_mesh *mesh, uint32_t *corner, int count, uint8_t part)
 {
     if (mesh->failed || count < 3) return;
     vec3 n = vec3_normalize(area_of(mesh, corner, count));

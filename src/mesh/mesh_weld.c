@@ -36,7 +36,7 @@ static bool places_make(places *known, size_t count)
 }
 
 /* The new index of the vertex at p: that of an earlier one there, else `next`. */
-static uint32_t index_at(places *known, const scn_mesh *mesh, vec3 p, uint32_t next)
+static uint32_t index_at(places *known, const triangle_mesh *mesh, vec3 p, uint32_t next)
 {
     p = vec3_add(p, (vec3){0, 0, 0}); /* -0 is 0 */
     for (size_t i = hash_of(p) & known->mask;; i = (i + 1) & known->mask) {
@@ -50,7 +50,7 @@ static uint32_t index_at(places *known, const scn_mesh *mesh, vec3 p, uint32_t n
 }
 
 /* Moves what is kept to the front; to[v] becomes the new index of vertex v, where it is used. */
-static void renumber(scn_mesh *mesh, places *known, uint32_t *to)
+static void renumber(triangle_mesh *mesh, places *known, uint32_t *to)
 {
     uint32_t kept = 0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -65,7 +65,7 @@ static void renumber(scn_mesh *mesh, places *known, uint32_t *to)
     mesh->vertex_count = kept;
 }
 
-void mesh_weld(scn_mesh *mesh)
+void mesh_weld(triangle_mesh *mesh)
 {
     if (mesh->failed) return;
     places known = {0};
@@ -86,7 +86,7 @@ void mesh_weld(scn_mesh *mesh)
 }
 
 /* A triangle's corners, from the one on that comes first by its numbers. */
-static void places_of(const scn_mesh *mesh, const uint32_t t[3], vec3 out[3])
+static void places_of(const triangle_mesh *mesh, const uint32_t t[3], vec3 out[3])
 {
     int first = 0;
     vec3 p[3];
@@ -107,7 +107,7 @@ static bool is_same(const vec3 a[3], const vec3 b[3])
 }
 
 /* Tells whether no triangle before lies there, which from now on one does. */
-static bool is_new(places *known, const scn_mesh *mesh, const uint32_t t[3], uint32_t index)
+static bool is_new(places *known, const triangle_mesh *mesh, const uint32_t t[3], uint32_t index)
 {
     vec3 here[3], there[3];
     places_of(mesh, t, here);
@@ -123,7 +123,7 @@ static bool is_new(places *known, const scn_mesh *mesh, const uint32_t t[3], uin
 }
 
 /* The number of triangles that are left when those that repeat one are dropped; it is done where `drop`. */
-static uint32_t without_repeated(scn_mesh *mesh, places *known, bool drop)
+static uint32_t without_repeated(triangle_mesh *mesh, places *known, bool drop)
 {
     uint32_t kept = 0;
     memset(known->slot, 0, (known->mask + 1) * sizeof *known->slot);
@@ -138,7 +138,7 @@ static uint32_t without_repeated(scn_mesh *mesh, places *known, bool drop)
     return kept;
 }
 
-void mesh_drop_repeated(scn_mesh *mesh)
+void mesh_drop_repeated(triangle_mesh *mesh)
 {
     if (mesh->failed) return;
     places known = {0};

@@ -4,7 +4,7 @@
 #ifndef MERLIN_MODEL_BLOCKS_H
 #define MERLIN_MODEL_BLOCKS_H
 
-#include "model/config.h"
+#include "model/model_config.h"
 #include "nn/nn.h"
 
 /* 3×3 convolution, batch norm, ReLU: parameters `name.conv.*` and `name.norm.*`. */

@@ -7,6 +7,7 @@
 
 #include "model/blocks.h"
 #include "nn/safetensors.h"
+#include "optics/light.h"
 
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
 
@@ -227,7 +228,7 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
 static nn_node *render(network *n, nn_node *light)
 {
     nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
-    return nn_render(n->g, &in, MODEL_FOV, MODEL_LIGHT_POWER);
+    return nn_render(n->g, &in, CAMERA_FOV, LIGHT_POWER);
 }
 
 static nn_node *render_environment(network *n, nn_node *code)
@@ -351,16 +352,17 @@ static void add_light_losses(network *n)
     nn_graph *g = n->g;
     nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
     nn_node *truth = nn_input(g, "lights_true", MODEL_LIGHTS, NN_VECTOR);
-    nn_node *lamp = nn_input(g, "lamp_weight", 1, NN_VECTOR), *rest = nn_input(g, "rest_weight", 1, NN_VECTOR);
+    nn_node *lamp_weight = nn_input(g, "lamp_weight", 1, NN_VECTOR),
+            *rest_weight = nn_input(g, "rest_weight", 1, NN_VECTOR);
     const struct {
         const char *name;
         int first, count;
         nn_node *weight;
     } parts[] = {{"flash", MODEL_LIGHTS_FLASH, 1, one},
                  {"lamp", MODEL_LIGHTS_LAMP, 3, one},
-                 {"lamp_distance", MODEL_LIGHTS_DISTANCE, 1, lamp},
+                 {"lamp_distance", MODEL_LIGHTS_DISTANCE, 1, lamp_weight},
                  {"lamp_light", MODEL_LIGHTS_STRENGTH, 3, one},
-                 {"environment", MODEL_LIGHTS_REST, MODEL_SH, rest}};
+                 {"environment", MODEL_LIGHTS_REST, MODEL_SH, rest_weight}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         nn_masked_l2(g, nn_slice(g, n->lights, parts[i].first, parts[i].count),
                      nn_slice(g, truth, parts[i].first, parts[i].count), parts[i].weight, parts[i].name, 0.25f);
@@ -449,18 +451,18 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     return OK;
 }
 
-static status read_config(const st_file *file, const char *weights, model_config *config)
+static status read_config(const safetensors_file *file, const char *weights, model_config *config)
 {
-    if (st_metadata(file, "checkpoint"))
+    if (safetensors_metadata(file, "checkpoint"))
         return fail(MERLIN_BAD_INPUT,
                     "%s is a checkpoint of training, no model: that is weights.safetensors, once training wrote it",
                     weights);
-    const char *json = st_metadata(file, "config");
+    const char *json = safetensors_metadata(file, "config");
     if (json) return model_config_parse(json, strlen(json), weights, config);
     return fail(MERLIN_BAD_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
 }
 
-static status load(const st_file *file, const char *weights, model_config *config, nn_params **params)
+static status load(const safetensors_file *file, const char *weights, model_config *config, nn_params **params)
 {
     nn_graph *g = NULL;
     status s = read_config(file, weights, config);
@@ -472,21 +474,21 @@ static status load(const st_file *file, const char *weights, model_config *confi
 
 status model_load_config(const char *weights, model_config *config)
 {
-    st_file *file;
-    status s = st_open(weights, &file);
+    safetensors_file *file;
+    status s = safetensors_open(weights, &file);
     if (s != OK) return s;
     s = read_config(file, weights, config);
-    st_close(file);
+    safetensors_close(file);
     return s;
 }
 
 status model_load(const char *weights, model_config *config, nn_params **params)
 {
     *params = NULL;
-    st_file *file;
-    status s = st_open(weights, &file);
+    safetensors_file *file;
+    status s = safetensors_open(weights, &file);
     if (s != OK) return s;
     s = load(file, weights, config, params);
-    st_close(file);
+    safetensors_close(file);
     return s;
 }

@@ -31,22 +31,18 @@
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 
-#include "model/config.h"
+#include "model/model_config.h"
 #include "nn/nn.h"
 #include "optics/camera.h"
 
 enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
-
-/* Of every graph: the camera's horizontal field of view (degrees, square frame) and the lights' power. */
-#define MODEL_FOV 60.0f
-#define MODEL_LIGHT_POWER 5.95f
 
 /* The losses by name; a variant may lack some (nn_loss: NAN). New ones come last, behind the columns of older curves.
  */
 extern const char *const model_losses[MODEL_LOSSES];
 
 /* Where the parts of "lights" begin. Strengths are in the photograph's radiance: 1 is what the lamp of power
- * MODEL_LIGHT_POWER gives at distance 1. They span orders of magnitude, hence model_encode_strength. */
+ * LIGHT_POWER gives at distance 1. They span orders of magnitude, hence model_encode_strength. */
 enum {
     MODEL_LIGHTS_FLASH = 0, /* the flash's strength, encoded */
     MODEL_LIGHTS_LAMP = 1,  /* from the object's middle toward the strongest lamp, as long as the network is sure: 3 */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "nn/lower.h"
-#include "nn/program.h"
+#include "nn/nn_program.h"
 #include "nn/weights_ahead.h"
 
 /* Everything of a compilation in progress. Time runs 0 .. n-1 through the forward steps and n .. 2n-1 backward through
@@ -24,17 +24,17 @@ static int backward_time(const compilation *c, int step)
 }
 
 /* The value that a step's k-th input is. */
-static value *input_of(const compilation *c, int step, int k)
+static lowered_value *input_of(const compilation *c, int step, int k)
 {
     const lowered_step *from = &c->low.steps[step];
-    const value *head = &c->low.values[from->head];
+    const lowered_value *head = &c->low.values[from->head];
     return &c->low.values[k < head->node->inputs ? head->in[k] : from->beside];
 }
 
 static status fill_step(compilation *c, int index)
 {
     const lowered_step *from = &c->low.steps[index];
-    const value *values = c->low.values, *head = &values[from->head], *result = &values[from->result];
+    const lowered_value *values = c->low.values, *head = &values[from->head], *result = &values[from->result];
     nn_step *step = &c->program->steps[index];
     bool train = c->low.options.purpose == NN_TRAIN;
     *step = (nn_step){.op = head->node->op,
@@ -57,7 +57,7 @@ static status fill_step(compilation *c, int index)
     step->name = strdup(name);
     if (!step->name) return fail(MERLIN_NO_MEMORY, "no memory for a step");
     for (int k = 0; k < step->inputs; k++) {
-        const value *x = input_of(c, index, k);
+        const lowered_value *x = input_of(c, index, k);
         step->in[k] = step->in_gradient[k] = x->tensor;
         step->wants[k] = x->differentiable && op_passes_gradient(head->node->op, k);
     }
@@ -89,7 +89,7 @@ static void order_gradients(compilation *c)
     memset(written, 0, (size_t)c->low.graph->count);
     for (int i = c->low.step_count - 1; i >= 0; i--) {
         nn_step *step = &c->program->steps[i];
-        const value *head = &c->low.values[c->low.steps[i].head];
+        const lowered_value *head = &c->low.values[c->low.steps[i].head];
         for (int k = 0; step->backs && k < step->inputs; k++) {
             if (!step->wants[k]) continue;
             step->accumulate[k] = written[head->in[k]];
@@ -117,10 +117,10 @@ static void use_values(compilation *c, int i)
 {
     const nn_step *step = &c->program->steps[i];
     const lowered_step *from = &c->low.steps[i];
-    value *values = c->low.values, *result = &values[from->result];
+    lowered_value *values = c->low.values, *result = &values[from->result];
     int back = backward_time(c, i);
     for (int k = 0; k < step->inputs; k++) {
-        value *x = input_of(c, i, k);
+        lowered_value *x = input_of(c, i, k);
         use_buffer(c, &x->buffer, tensor_bytes(&x->tensor), i);
         if (!step->backs) continue;
         if (step->reads_in) use_buffer(c, &x->buffer, 0, back);
@@ -157,7 +157,7 @@ static status plan(compilation *c)
 {
     int count = c->low.graph->count, end = 2 * c->low.step_count;
     for (int i = 0; i < count; i++) { /* what the caller fills or reads lives all the time */
-        value *v = &c->low.values[i];
+        lowered_value *v = &c->low.values[i];
         if (!v->live || (v->node->op != OP_INPUT && !v->is_output)) continue;
         use_buffer(c, &v->buffer, tensor_bytes(&v->tensor), v->node->op == OP_INPUT ? -1 : end);
         use_buffer(c, &v->buffer, 0, end);
@@ -185,9 +185,9 @@ static status bind_step(compilation *c, int i)
 {
     nn_step *step = &c->program->steps[i];
     const lowered_step *from = &c->low.steps[i];
-    const value *values = c->low.values, *result = &values[from->result];
+    const lowered_value *values = c->low.values, *result = &values[from->result];
     for (int k = 0; k < step->inputs; k++) {
-        const value *x = input_of(c, i, k);
+        const lowered_value *x = input_of(c, i, k);
         step->in[k].data = address(c, x->buffer);
         step->in_gradient[k].data = step->backs && step->wants[k] ? address(c, x->gradient_buffer) : NULL;
     }
@@ -214,7 +214,7 @@ static status bind_steps(compilation *c)
 }
 
 /* The host's side of an input or output: the device's memory where that is float32. */
-static status make_port(compilation *c, program_port *port, const char *name, const value *v)
+static status make_port(compilation *c, program_port *port, const char *name, const lowered_value *v)
 {
     nn_tensor tensor = v->tensor;
     tensor.data = address(c, v->buffer);

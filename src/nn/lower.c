@@ -23,7 +23,7 @@ static status check_options(const nn_options *o)
     return OK;
 }
 
-static status infer_shape(const nn_options *o, value *v)
+static status infer_shape(const nn_options *o, lowered_value *v)
 {
     const nn_node *node = v->node;
     v->tensor =
@@ -50,14 +50,14 @@ static void find_live(lowering *l)
     const nn_graph *g = l->graph;
     for (int i = 0; i < g->output_count; i++) {
         if (!lower_wants_output(&l->options, g->outputs[i].name)) continue;
-        value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
+        lowered_value *v = &l->values[lower_resolve(l->options.type, g->outputs[i].node)];
         v->live = v->is_output = true;
     }
     for (int i = g->count; i-- > 0;) {
-        value *v = &l->values[i];
+        lowered_value *v = &l->values[i];
         if (op_is_loss(v->node->op)) v->live = true;
         for (int k = 0; v->live && k < v->node->inputs; k++) {
-            value *x = &l->values[v->in[k]];
+            lowered_value *x = &l->values[v->in[k]];
             x->live = true;
             x->consumers++;
             if (x->consumer < i) x->consumer = i;
@@ -70,13 +70,13 @@ static void find_differentiable(lowering *l)
     if (l->options.purpose != NN_TRAIN) return;
     int count = l->graph->count;
     for (int i = 0; i < count; i++) { /* depends on a parameter */
-        value *v = &l->values[i];
+        lowered_value *v = &l->values[i];
         v->differentiable = op_has_params(v->node->op);
         for (int k = 0; k < v->node->inputs; k++)
             if (op_passes_gradient(v->node->op, k) && l->values[v->in[k]].differentiable) v->differentiable = true;
     }
     for (int i = count; i-- > 0;) { /* and a loss depends on it */
-        value *v = &l->values[i];
+        lowered_value *v = &l->values[i];
         if (op_is_loss(v->node->op)) v->reaches_loss = true;
         for (int k = 0; v->reaches_loss && k < v->node->inputs; k++)
             if (op_passes_gradient(v->node->op, k)) l->values[v->in[k]].reaches_loss = true;
@@ -87,7 +87,7 @@ static void find_differentiable(lowering *l)
 /* The node that alone uses i and has this operation, or -1. */
 static int sole_consumer(const lowering *l, int i, nn_op op)
 {
-    const value *v = &l->values[i];
+    const lowered_value *v = &l->values[i];
     if (v->consumers != 1 || v->is_output) return -1;
     return l->values[v->consumer].node->op == op ? v->consumer : -1;
 }
@@ -97,7 +97,7 @@ static int sum_behind(const lowering *l, const lowered_step *step, int *beside)
 {
     int sum = sole_consumer(l, step->result, OP_ADD);
     if (sum < 0) return -1;
-    const value *v = &l->values[sum];
+    const lowered_value *v = &l->values[sum];
     *beside = v->in[0] == step->result ? v->in[1] : v->in[0];
     bool is_there = *beside < step->head, is_alike = l->values[*beside].tensor.type == l->options.type;
     return is_there && is_alike && v->tensor.type == l->options.type ? sum : -1;
@@ -129,7 +129,7 @@ static void fuse(const lowering *l, lowered_step *step)
 static void make_steps(lowering *l)
 {
     for (int i = 0; i < l->graph->count; i++) {
-        value *v = &l->values[i];
+        lowered_value *v = &l->values[i];
         if (!v->live || v->covered || v->node->op == OP_INPUT) continue;
         lowered_step *step = &l->steps[l->step_count++];
         *step = (lowered_step){.head = i, .norm = -1, .result = i, .beside = -1};
@@ -150,8 +150,8 @@ status lower_graph(const nn_graph *g, const nn_options *options, lowering *out)
     out->steps = calloc((size_t)g->count + 1, sizeof *out->steps);
     if (!out->values || !out->steps) s = fail(MERLIN_NO_MEMORY, "no memory to compile %d nodes", g->count);
     for (int i = 0; s == OK && i < g->count; i++) {
-        value *v = &out->values[i];
-        *v = (value){.node = g->nodes[i], .consumer = -1, .buffer = -1, .gradient_buffer = -1};
+        lowered_value *v = &out->values[i];
+        *v = (lowered_value){.node = g->nodes[i], .consumer = -1, .buffer = -1, .gradient_buffer = -1};
         for (int k = 0; k < v->node->inputs; k++)
             v->in[k] = lower_resolve(options->type, v->node->in[k]);
         s = infer_shape(options, v);

@@ -8,7 +8,7 @@
 #include "nn/plan.h"
 
 /* What becomes of one node. */
-typedef struct value {
+typedef struct lowered_value {
     const nn_node *node;
     int in[NN_MAX_INPUTS]; /* indices of nodes, conversions that do nothing skipped */
     bool live, is_output;
@@ -19,7 +19,7 @@ typedef struct value {
     nn_tensor tensor;            /* shape and type */
     bool differentiable;         /* depends on a parameter, and a loss depends on it */
     int buffer, gradient_buffer; /* in the plan; -1: none */
-} value;
+} lowered_value;
 
 /* One step before the device has seen it: the nodes it covers. */
 typedef struct lowered_step {
@@ -31,7 +31,7 @@ typedef struct lowered_step {
 typedef struct lowering {
     const nn_graph *graph;
     nn_options options;
-    value *values; /* per node */
+    lowered_value *values; /* per node */
     lowered_step *steps;
     int step_count;
 } lowering;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/progress.h"
-#include "nn/program.h"
+#include "nn/nn_program.h"
 
 nn_cost nn_program_cost(const nn_program *p)
 {

@@ -117,13 +117,13 @@ void nn_masked_dssim(nn_graph *g, nn_node *prediction, nn_node *target, nn_node 
 
 /* ---- parameters ---- */
 
-struct st_file; /* nn/safetensors.h */
+struct safetensors_file; /* nn/safetensors.h */
 
 /* Fresh parameters for a graph: convolutions He 2015, gamma 1, beta 0, biases 0. Deterministic from seed. */
 status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out);
 /* Those of a safetensors file that is open already, as nn_params_load has them; path for messages. They are for
  * programs of NN_INFER alone: weights that the file has as half floats stay such, in half the memory. */
-status nn_params_open(const nn_graph *g, const struct st_file *f, const char *path, nn_params **out);
+status nn_params_open(const nn_graph *g, const struct safetensors_file *f, const char *path, nn_params **out);
 void nn_params_free(nn_params *params);
 size_t nn_params_count(const nn_params *params);
 

@@ -74,14 +74,14 @@ static size_t padded(size_t count)
 
 /* Where parameters have their first values from. */
 typedef struct source {
-    const uint64_t *seed; /* NULL: zeros instead of random numbers */
-    const st_file *file;  /* NULL, or what decides which weights are kept as half floats */
+    const uint64_t *seed;         /* NULL: zeros instead of random numbers */
+    const safetensors_file *file; /* NULL, or what decides which weights are kept as half floats */
 } source;
 
 static bool stays_half(const source *from, const param_spec *spec)
 {
-    const st_tensor *t = from->file && spec->fan_in > 0 ? st_find(from->file, spec->name) : NULL;
-    return t && t->type == ST_F16;
+    const safetensors_tensor *t = from->file && spec->fan_in > 0 ? safetensors_find(from->file, spec->name) : NULL;
+    return t && t->type == SAFETENSORS_F16;
 }
 
 /* How many values all parameters have as floats, as half floats and of gradients, or where the next one's begin. */
@@ -192,7 +192,7 @@ status nn_params_new(const nn_graph *g, uint64_t seed, nn_params **out)
     return make_params(g, &(source){.seed = &seed}, out);
 }
 
-status params_like(const nn_graph *g, const st_file *f, nn_params **out)
+status params_like(const nn_graph *g, const safetensors_file *f, nn_params **out)
 {
     return make_params(g, &(source){.file = f}, out);
 }

@@ -15,9 +15,9 @@ struct nn_params {
 };
 
 /* Every parameter's values from the file's tensor of its name, all or nothing. */
-status params_take(nn_params *params, const struct st_file *f, const char *path);
+status params_take(nn_params *params, const struct safetensors_file *f, const char *path);
 /* With zeros where nn_params_new draws random numbers. */
-status params_like(const nn_graph *g, const struct st_file *f, nn_params **out);
+status params_like(const nn_graph *g, const struct safetensors_file *f, nn_params **out);
 
 /* The parameters an operation may have; absent ones are NULL. */
 typedef struct node_params {

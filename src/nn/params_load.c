@@ -6,7 +6,7 @@
 #include "nn/params.h"
 #include "nn/safetensors.h"
 
-static bool is_of_shape(const st_tensor *t, const nn_param *p)
+static bool is_of_shape(const safetensors_tensor *t, const nn_param *p)
 {
     bool same = t->rank == p->rank;
     for (int i = 0; same && i < p->rank; i++)
@@ -14,26 +14,27 @@ static bool is_of_shape(const st_tensor *t, const nn_param *p)
     return same;
 }
 
-static status check_tensor(const nn_param *p, const st_tensor *t, const char *path)
+static status check_tensor(const nn_param *p, const safetensors_tensor *t, const char *path)
 {
     if (!t) return fail(MERLIN_BAD_INPUT, "%s: tensor %s is missing", path, p->name);
     if (!is_of_shape(t, p))
         return fail(MERLIN_BAD_INPUT, "%s: tensor %s has another shape than the model's", path, p->name);
-    if (t->type == ST_I64) return fail(MERLIN_BAD_INPUT, "%s: tensor %s is not of a float type", path, p->name);
+    if (t->type == SAFETENSORS_I64)
+        return fail(MERLIN_BAD_INPUT, "%s: tensor %s is not of a float type", path, p->name);
     return OK;
 }
 
 /* Where a parameter is kept as half floats, the tensor has them. */
-static status take_values(const nn_param *p, const st_tensor *t)
+static status take_values(const nn_param *p, const safetensors_tensor *t)
 {
-    if (!p->half) return st_to_float(t, p->value);
+    if (!p->half) return safetensors_to_float(t, p->value);
     memcpy(p->half, t->data, t->count * sizeof *p->half);
     return OK;
 }
 
 typedef struct taking {
     nn_params *params;
-    const st_file *file;
+    const safetensors_file *file;
     const char *path;
 } taking;
 
@@ -41,18 +42,18 @@ static status take_one(void *context, size_t i)
 {
     const taking *t = context;
     const nn_param *p = &t->params->items[i];
-    status s = take_values(p, st_find(t->file, p->name));
+    status s = take_values(p, safetensors_find(t->file, p->name));
     return s == OK ? OK : fail_in(s, "%s: tensor %s", t->path, p->name);
 }
 
-status params_take(nn_params *params, const st_file *f, const char *path)
+status params_take(nn_params *params, const safetensors_file *f, const char *path)
 {
     for (size_t i = 0; i < params->count; i++) {
-        status s = check_tensor(&params->items[i], st_find(f, params->items[i].name), path);
+        status s = check_tensor(&params->items[i], safetensors_find(f, params->items[i].name), path);
         if (s != OK) return s;
     }
-    for (size_t i = 0; i < st_count(f); i++) {
-        const char *name = st_at(f, i)->name;
+    for (size_t i = 0; i < safetensors_count(f); i++) {
+        const char *name = safetensors_at(f, i)->name;
         if (!nn_params_find(params, name))
             return fail(MERLIN_BAD_INPUT, "%s: the model has no parameter for tensor %s", path, name);
     }
@@ -61,7 +62,7 @@ status params_take(nn_params *params, const st_file *f, const char *path)
     return s;
 }
 
-status nn_params_open(const nn_graph *g, const st_file *f, const char *path, nn_params **out)
+status nn_params_open(const nn_graph *g, const safetensors_file *f, const char *path, nn_params **out)
 {
     nn_params *params;
     status s = params_like(g, f, &params);
@@ -71,14 +72,14 @@ status nn_params_open(const nn_graph *g, const st_file *f, const char *path, nn_
     return s;
 }
 
-static status take_shared(nn_params *params, const st_file *f, const char *path)
+static status take_shared(nn_params *params, const safetensors_file *f, const char *path)
 {
     size_t taken = 0;
     for (size_t i = 0; i < params->count; i++) {
         const nn_param *p = &params->items[i];
-        const st_tensor *t = st_find(f, p->name);
-        if (!t || !is_of_shape(t, p) || t->type == ST_I64) continue;
-        status s = st_to_float(t, p->value);
+        const safetensors_tensor *t = safetensors_find(f, p->name);
+        if (!t || !is_of_shape(t, p) || t->type == SAFETENSORS_I64) continue;
+        status s = safetensors_to_float(t, p->value);
         if (s != OK) return fail_in(s, "%s: tensor %s", path, p->name);
         taken++;
     }
@@ -87,13 +88,14 @@ static status take_shared(nn_params *params, const st_file *f, const char *path)
     return OK;
 }
 
-static status load(nn_params *params, const char *path, status (*take)(nn_params *, const st_file *, const char *))
+static status load(nn_params *params, const char *path,
+                   status (*take)(nn_params *, const safetensors_file *, const char *))
 {
-    st_file *f;
-    status s = st_open(path, &f);
+    safetensors_file *f;
+    status s = safetensors_open(path, &f);
     if (s != OK) return s;
     s = take(params, f, path);
-    st_close(f);
+    safetensors_close(f);
     return s;
 }
 

@@ -18,25 +18,25 @@
 static const size_t FILE_LIMIT = (size_t)1 << 36;
 enum { WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken */ };
 
-struct st_file {
-    file_view view; /* the bytes, if st_open looked at them */
+struct safetensors_file {
+    file_view view; /* the bytes, if safetensors_open looked at them */
     cJSON *header;
-    st_tensor *tensors; /* by place */
-    const st_tensor **by_name;
+    safetensors_tensor *tensors; /* by place */
+    const safetensors_tensor **by_name;
     size_t count;
     const char *where;
     const unsigned char *data;
     size_t data_size;
 };
 
-const char *st_type_name(st_type type)
+const char *safetensors_type_name(safetensors_type type)
 {
-    static const char *const names[ST_TYPES] = {"F32", "F16", "BF16", "I64"};
+    static const char *const names[SAFETENSORS_TYPES] = {"F32", "F16", "BF16", "I64"};
     return names[type];
 }
 
 /* Where a tensor lies in the data. */
-static size_t begin_of(const st_file *f, const st_tensor *t)
+static size_t begin_of(const safetensors_file *f, const safetensors_tensor *t)
 {
     return (size_t)((const unsigned char *)t->data - f->data);
 }
@@ -51,18 +51,18 @@ static bool read_size(const cJSON *item, size_t *out)
     return true;
 }
 
-static bool read_type(const cJSON *item, st_type *out)
+static bool read_type(const cJSON *item, safetensors_type *out)
 {
     if (!cJSON_IsString(item)) return false;
-    for (int t = 0; t < ST_TYPES; t++) {
-        if (strcmp(item->valuestring, st_type_name((st_type)t)) != 0) continue;
-        *out = (st_type)t;
+    for (int t = 0; t < SAFETENSORS_TYPES; t++) {
+        if (strcmp(item->valuestring, safetensors_type_name((safetensors_type)t)) != 0) continue;
+        *out = (safetensors_type)t;
         return true;
     }
     return false;
 }
 
-static bool read_shape(const cJSON *item, st_tensor *t)
+static bool read_shape(const cJSON *item, safetensors_tensor *t)
 {
     int rank = cJSON_IsArray(item) ? cJSON_GetArraySize(item) : -1;
     if (rank < 0 || rank > 4) return false;
@@ -79,12 +79,12 @@ static bool read_shape(const cJSON *item, st_tensor *t)
     return true;
 }
 
-static status read_tensor(const st_file *f, const cJSON *item, st_tensor *t)
+static status read_tensor(const safetensors_file *f, const cJSON *item, safetensors_tensor *t)
 {
     const cJSON *type = cJSON_GetObjectItemCaseSensitive(item, "dtype");
     const cJSON *shape = cJSON_GetObjectItemCaseSensitive(item, "shape");
     const cJSON *offsets = cJSON_GetObjectItemCaseSensitive(item, "data_offsets");
-    *t = (st_tensor){.name = item->string};
+    *t = (safetensors_tensor){.name = item->string};
     if (!cJSON_IsObject(item) || cJSON_GetArraySize(item) != 3 || !type || !shape || !offsets)
         return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" needs dtype, shape and data_offsets", f->where, t->name);
     if (!read_type(type, &t->type))
@@ -96,7 +96,7 @@ static status read_tensor(const st_file *f, const cJSON *item, st_tensor *t)
     if (!cJSON_IsArray(offsets) || cJSON_GetArraySize(offsets) != 2 || !read_size(offsets->child, &begin) ||
         !read_size(offsets->child->next, &end) || begin > end)
         return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" has no usable data_offsets", f->where, t->name);
-    if (__builtin_mul_overflow(t->count, st_type_size(t->type), &bytes) || bytes != end - begin)
+    if (__builtin_mul_overflow(t->count, safetensors_type_size(t->type), &bytes) || bytes != end - begin)
         return fail(MERLIN_BAD_INPUT, "%s: the shape of the tensor \"%s\" does not fit its %zu bytes", f->where,
                     t->name, end - begin);
     if (end > f->data_size)
@@ -108,23 +108,23 @@ static status read_tensor(const st_file *f, const cJSON *item, st_tensor *t)
 
 static int compare_places(const void *a, const void *b)
 {
-    const st_tensor *x = a, *y = b;
+    const safetensors_tensor *x = a, *y = b;
     if (x->data != y->data) return (const char *)x->data < (const char *)y->data ? -1 : 1;
-    size_t size_x = st_bytes_of(x), size_y = st_bytes_of(y);
+    size_t size_x = safetensors_bytes_of(x), size_y = safetensors_bytes_of(y);
     if (size_x != size_y) return size_x < size_y ? -1 : 1;
     return strcmp(x->name, y->name);
 }
 
 /* The tensors tile the data without holes, overlaps or a rest. */
-static status check_places(const st_file *f)
+static status check_places(const safetensors_file *f)
 {
     size_t expected = 0;
     for (size_t i = 0; i < f->count; i++) {
-        const st_tensor *t = &f->tensors[i];
+        const safetensors_tensor *t = &f->tensors[i];
         if (begin_of(f, t) != expected)
             return fail(MERLIN_BAD_INPUT, "%s: the tensor \"%s\" %s", f->where, t->name,
                         begin_of(f, t) < expected ? "overlaps another" : "has a hole before it");
-        expected += st_bytes_of(t);
+        expected += safetensors_bytes_of(t);
     }
     if (expected != f->data_size)
         return fail(MERLIN_BAD_INPUT, "%s has %zu bytes behind its last tensor", f->where, f->data_size - expected);
@@ -144,7 +144,7 @@ static bool is_printable(const char *name)
     return true;
 }
 
-static status check_keys(const st_file *f, const cJSON *object)
+static status check_keys(const safetensors_file *f, const cJSON *object)
 {
     size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
     const char **names = malloc((count + 1) * sizeof *names);
@@ -165,7 +165,7 @@ static status check_keys(const st_file *f, const cJSON *object)
     return s;
 }
 
-static status check_metadata(const st_file *f, const cJSON *metadata)
+static status check_metadata(const safetensors_file *f, const cJSON *metadata)
 {
     if (!cJSON_IsObject(metadata)) return fail(MERLIN_BAD_INPUT, "%s: __metadata__ is not an object", f->where);
     const cJSON *item;
@@ -177,7 +177,7 @@ static status check_metadata(const st_file *f, const cJSON *metadata)
     return check_keys(f, metadata);
 }
 
-static status read_tensors(st_file *f)
+static status read_tensors(safetensors_file *f)
 {
     status s = check_keys(f, f->header);
     if (s != OK) return s;
@@ -196,10 +196,10 @@ static status read_tensors(st_file *f)
 
 static int compare_tensors(const void *a, const void *b)
 {
-    return strcmp((*(const st_tensor *const *)a)->name, (*(const st_tensor *const *)b)->name);
+    return strcmp((*(const safetensors_tensor *const *)a)->name, (*(const safetensors_tensor *const *)b)->name);
 }
 
-static status index_names(st_file *f)
+static status index_names(safetensors_file *f)
 {
     f->by_name = malloc((f->count + 1) * sizeof *f->by_name);
     if (!f->by_name) return fail(MERLIN_NO_MEMORY, "no memory for the names in %s", f->where);
@@ -209,12 +209,12 @@ static status index_names(st_file *f)
     return OK;
 }
 
-static status check_sum(const st_file *f)
+static status check_sum(const safetensors_file *f)
 {
-    const char *written = st_metadata(f, ST_CHECKSUM);
+    const char *written = safetensors_metadata(f, SAFETENSORS_CHECKSUM);
     if (!written) return OK;
-    char found[ST_CHECKSUM_SIZE];
-    st_format_checksum(libdeflate_crc32(0, f->data, f->data_size), found);
+    char found[SAFETENSORS_CHECKSUM_SIZE];
+    safetensors_format_checksum(libdeflate_crc32(0, f->data, f->data_size), found);
     if (strcmp(written, found) == 0) return OK;
     return fail(MERLIN_BAD_INPUT, "%s was altered: its data's checksum is %s, not the recorded one; get the file again",
                 f->where, found);
@@ -229,32 +229,33 @@ static bool only_spaces(const char *begin, const char *end)
 
 static const size_t for_header = (size_t)16 << 20; /* bytes: more than parsing asks for at once */
 
-static status read_header(st_file *f, const unsigned char *bytes, size_t size)
+static status read_header(safetensors_file *f, const unsigned char *bytes, size_t size)
 {
     uint64_t length = 0;
-    for (size_t i = 0; i < ST_PREFIX && i < size; i++)
+    for (size_t i = 0; i < SAFETENSORS_PREFIX && i < size; i++)
         length |= (uint64_t)bytes[i] << (8 * i);
-    if (size <= ST_PREFIX || bytes[ST_PREFIX] != '{' || length < 2 || length > ST_HEADER_LIMIT)
+    if (size <= SAFETENSORS_PREFIX || bytes[SAFETENSORS_PREFIX] != '{' || length < 2 ||
+        length > SAFETENSORS_HEADER_LIMIT)
         return fail(MERLIN_BAD_INPUT, "%s is not a safetensors file", f->where);
-    if (length > size - ST_PREFIX)
+    if (length > size - SAFETENSORS_PREFIX)
         return fail(MERLIN_BAD_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
-    const char *header = (const char *)bytes + ST_PREFIX, *end = NULL;
+    const char *header = (const char *)bytes + SAFETENSORS_PREFIX, *end = NULL;
     f->header = cJSON_ParseWithLengthOpts(header, (size_t)length, &end, false);
     if (!f->header && !memory_is_left(for_header)) /* cJSON does not say why */
         return fail(MERLIN_NO_MEMORY, "no memory to read the header of %s", f->where);
     if (!cJSON_IsObject(f->header) || !only_spaces(end, header + length))
         return fail(MERLIN_BAD_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);
-    f->data = bytes + ST_PREFIX + length;
-    f->data_size = size - ST_PREFIX - (size_t)length;
+    f->data = bytes + SAFETENSORS_PREFIX + length;
+    f->data_size = size - SAFETENSORS_PREFIX - (size_t)length;
     status s = read_tensors(f);
     if (s == OK) s = index_names(f);
     return s == OK ? check_sum(f) : s;
 }
 
 /* Takes over `view`. */
-static status parse(const char *where, file_view view, const void *bytes, size_t size, st_file **out)
+static status parse(const char *where, file_view view, const void *bytes, size_t size, safetensors_file **out)
 {
-    st_file *f = calloc(1, sizeof *f);
+    safetensors_file *f = calloc(1, sizeof *f);
     if (!f) {
         file_unmap(&view);
         return fail(MERLIN_NO_MEMORY, "no memory to read %s", where);
@@ -264,26 +265,26 @@ static status parse(const char *where, file_view view, const void *bytes, size_t
     status s = read_header(f, bytes, size);
     f->where = NULL;
     if (s != OK) {
-        st_close(f);
+        safetensors_close(f);
         return s;
     }
     *out = f;
     return OK;
 }
 
-status st_parse(const void *bytes, size_t size, st_file **out)
+status safetensors_parse(const void *bytes, size_t size, safetensors_file **out)
 {
     return parse("the weights", (file_view){0}, bytes, size, out);
 }
 
-status st_open(const char *path, st_file **out)
+status safetensors_open(const char *path, safetensors_file **out)
 {
     file_view view;
     status s = file_map(path, FILE_LIMIT, &view);
     return s == OK ? parse(path, view, view.data, view.size, out) : s;
 }
 
-void st_close(st_file *f)
+void safetensors_close(safetensors_file *f)
 {
     if (!f) return;
     cJSON_Delete(f->header);
@@ -293,33 +294,34 @@ void st_close(st_file *f)
     free(f);
 }
 
-size_t st_count(const st_file *f)
+size_t safetensors_count(const safetensors_file *f)
 {
     return f->count;
 }
 
-const st_tensor *st_at(const st_file *f, size_t i)
+const safetensors_tensor *safetensors_at(const safetensors_file *f, size_t i)
 {
     return &f->tensors[i];
 }
 
-const st_tensor *st_find(const st_file *f, const char *name)
+const safetensors_tensor *safetensors_find(const safetensors_file *f, const char *name)
 {
-    const st_tensor sought = {.name = name}, *key = &sought;
-    const st_tensor **found = bsearch(&key, f->by_name, f->count, sizeof *f->by_name, compare_tensors);
+    const safetensors_tensor sought = {.name = name}, *key = &sought;
+    const safetensors_tensor **found = bsearch(&key, f->by_name, f->count, sizeof *f->by_name, compare_tensors);
     return found ? *found : NULL;
 }
 
-const char *st_metadata(const st_file *f, const char *key)
+const char *safetensors_metadata(const safetensors_file *f, const char *key)
 {
     const cJSON *metadata = cJSON_GetObjectItemCaseSensitive(f->header, "__metadata__");
     return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(metadata, key));
 }
 
-status st_to_float(const st_tensor *t, float *out)
+status safetensors_to_float(const safetensors_tensor *t, float *out)
 {
-    if (t->type == ST_I64) return fail(MERLIN_BAD_INPUT, "the tensor \"%s\" holds integers, not weights", t->name);
-    if (t->type == ST_F32) {
+    if (t->type == SAFETENSORS_I64)
+        return fail(MERLIN_BAD_INPUT, "the tensor \"%s\" holds integers, not weights", t->name);
+    if (t->type == SAFETENSORS_F32) {
         memcpy(out, t->data, t->count * sizeof *out);
         return OK;
     }
@@ -328,7 +330,7 @@ status st_to_float(const st_tensor *t, float *out)
     for (size_t i = 0; i < t->count; i++) {
         uint16_t h;
         memcpy(&h, from + 2 * i, sizeof h);
-        out[i] = t->type == ST_F16 ? half_to_float(h) : bf16_to_float(h);
+        out[i] = t->type == SAFETENSORS_F16 ? half_to_float(h) : bf16_to_float(h);
     }
     return OK;
 }

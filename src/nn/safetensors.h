@@ -8,24 +8,25 @@
 #include "nn/safetensors_tensor.h"
 
 /* As files call it: "F32". */
-const char *st_type_name(st_type type);
+const char *safetensors_type_name(safetensors_type type);
 
-typedef struct st_file st_file;
+typedef struct safetensors_file safetensors_file;
 
-status st_open(const char *path, st_file **out);
+status safetensors_open(const char *path, safetensors_file **out);
 /* The same from bytes, which must outlive the file: for the fuzzer. */
-status st_parse(const void *bytes, size_t size, st_file **out);
-void st_close(st_file *f);
-size_t st_count(const st_file *f);
-const st_tensor *st_at(const st_file *f, size_t i);
-const st_tensor *st_find(const st_file *f, const char *name); /* NULL if absent */
-const char *st_metadata(const st_file *f, const char *key);   /* NULL if absent */
+status safetensors_parse(const void *bytes, size_t size, safetensors_file **out);
+void safetensors_close(safetensors_file *f);
+size_t safetensors_count(const safetensors_file *f);
+const safetensors_tensor *safetensors_at(const safetensors_file *f, size_t i);
+const safetensors_tensor *safetensors_find(const safetensors_file *f, const char *name); /* NULL if absent */
+const char *safetensors_metadata(const safetensors_file *f, const char *key);            /* NULL if absent */
 /* Converts count elements (any float type) to float32. */
-status st_to_float(const st_tensor *t, float *out);
+status safetensors_to_float(const safetensors_tensor *t, float *out);
 
 /* Writes tensors (given in their own type's bits) and metadata as key, value pairs; atomically. A CRC-32 of the data is
- * put into the metadata as "crc32" and checked by st_open when present, so that altered weights are refused. */
-status st_write(const char *path, const st_tensor *tensors, size_t count, const char *const (*metadata)[2],
-                size_t metadata_count);
+ * put into the metadata as "crc32" and checked by safetensors_open when present, so that altered weights are refused.
+ */
+status safetensors_write(const char *path, const safetensors_tensor *tensors, size_t count,
+                         const char *const (*metadata)[2], size_t metadata_count);
 
 #endif

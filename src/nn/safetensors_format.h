@@ -10,13 +10,18 @@
 
 #include "nn/safetensors_tensor.h"
 
-enum { ST_PREFIX = 8, ST_HEADER_LIMIT = 1 << 20, ST_TYPES = ST_I64 + 1, ST_CHECKSUM_SIZE = 9 };
+enum {
+    SAFETENSORS_PREFIX = 8,
+    SAFETENSORS_HEADER_LIMIT = 1 << 20,
+    SAFETENSORS_TYPES = SAFETENSORS_I64 + 1,
+    SAFETENSORS_CHECKSUM_SIZE = 9
+};
 
-#define ST_CHECKSUM "crc32"
+#define SAFETENSORS_CHECKSUM "crc32"
 
-static inline void st_format_checksum(uint32_t sum, char out[ST_CHECKSUM_SIZE])
+static inline void safetensors_format_checksum(uint32_t sum, char out[SAFETENSORS_CHECKSUM_SIZE])
 {
-    snprintf(out, ST_CHECKSUM_SIZE, "%08x", (unsigned)sum);
+    snprintf(out, SAFETENSORS_CHECKSUM_SIZE, "%08x", (unsigned)sum);
 }
 
 #endif

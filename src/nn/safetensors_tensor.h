@@ -6,25 +6,25 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum st_type { ST_F32, ST_F16, ST_BF16, ST_I64 } st_type;
+typedef enum safetensors_type { SAFETENSORS_F32, SAFETENSORS_F16, SAFETENSORS_BF16, SAFETENSORS_I64 } safetensors_type;
 
-typedef struct st_tensor {
+typedef struct safetensors_tensor {
     const char *name;
-    st_type type;
+    safetensors_type type;
     int rank; /* at most 4 */
     int64_t shape[4];
     size_t count;
     const void *data; /* count elements of type, may be unaligned */
-} st_tensor;
+} safetensors_tensor;
 
-static inline size_t st_type_size(st_type type)
+static inline size_t safetensors_type_size(safetensors_type type)
 {
-    return type == ST_I64 ? 8 : type == ST_F32 ? 4 : 2;
+    return type == SAFETENSORS_I64 ? 8 : type == SAFETENSORS_F32 ? 4 : 2;
 }
 
-static inline size_t st_bytes_of(const st_tensor *t)
+static inline size_t safetensors_bytes_of(const safetensors_tensor *t)
 {
-    return t->count * st_type_size(t->type);
+    return t->count * safetensors_type_size(t->type);
 }
 
 #endif

@@ -13,7 +13,7 @@
 #include <pthread.h>
 #include <stdbool.h>
 
-#include "nn/program.h"
+#include "nn/nn_program.h"
 
 typedef struct weights_ahead {
     nn_program *program;

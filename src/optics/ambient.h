@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* What the specular lobe reflects of surroundings that are known by nine spherical harmonics only.
+/* Specular reflection of an environment that is known only by nine spherical harmonic coefficients.
  *
  *     vec3 radiance = ambient_specular(sh, roughness, n, v);
  *
- * The lobe of Karis 2013 (brdf.h) is split as there: the share of a white furnace's light that it reflects, times what
- * the blurred surroundings send from the mirror direction. Right for smooth surroundings; highlights of lamps and
- * windows are not in nine coefficients. Used where a network that knows no more is trained and evaluated; the relighter
- * samples the map itself. */
+ * The lobe of Karis 2013 (brdf.h) is split as in that paper: the share that it reflects of constant radiance, times the
+ * blurred environment's radiance from the mirror direction. It is accurate for smooth environments; nine coefficients
+ * do not hold the highlights of lamps and windows. It is used where a network that knows only the coefficients is
+ * trained and evaluated; relighting samples the map itself. */
 #ifndef MERLIN_OPTICS_AMBIENT_H
 #define MERLIN_OPTICS_AMBIENT_H
 
+#include "base/number.h"
 #include "optics/brdf.h"
 #include "optics/sh.h"
 
-/* ∫ specular(l, v) (n·l) dl: what the lobe alone reflects of radiance 1 from everywhere. A least-squares fit in powers
- * of the roughness and of 1 - n·v to quadrature over roughness 0.03 to 1 and n·v 0.02 to 1: within 0.015, root mean
- * square 0.003. n·v in [0, 1]. */
+/* Returns ∫ specular(l, v) (n·l) dl, what the lobe reflects of radiance 1 from everywhere, for n·v in [0, 1]. It is a
+ * least-squares fit in powers of the roughness and of 1 - n·v to quadrature over roughness 0.03 to 1 and n·v 0.02 to 1:
+ * within 0.015, root mean square 0.003. */
 static inline real ambient_specular_albedo(real roughness, real n_v)
 {
     static const double fit[4][5] = {{0.0366, 0.3903, -2.1632, 3.4345, -1.7200},
@@ -24,22 +25,23 @@ static inline real ambient_specular_albedo(real roughness, real n_v)
                                      {0.0811, -1.2784, 6.1022, -8.0774, 3.2691}};
     real u = 1 - n_v, fresnel = (brdf_fresnel(n_v) - BRDF_F0) / (1 - BRDF_F0);
     const real terms[5] = {1, u, u * u, u * u * u, fresnel};
-    real r = brdf_clamp(roughness, BRDF_MIN_ROUGHNESS, 1), power = 1, sum = 0;
+    real r = clamp(roughness, BRDF_MIN_ROUGHNESS, 1), power = 1, sum = 0;
     for (int i = 0; i < 4; i++, power *= r)
         for (int j = 0; j < 5; j++)
             sum += (real)fit[i][j] * power * terms[j];
     return sum > 0 ? sum : 0;
 }
 
-/* How much of the bands 0, 1 and 2 the lobe lets through, a fit to the same quadrature, mean over n·v; within 0.1. */
+/* Returns the factor by which the lobe attenuates the band of coefficient i: a fit to the same quadrature, averaged
+ * over n·v; within 0.1. */
 static inline real ambient_specular_band(real roughness, int i)
 {
-    real r = brdf_clamp(roughness, BRDF_MIN_ROUGHNESS, 1), r2 = r * r;
+    real r = clamp(roughness, BRDF_MIN_ROUGHNESS, 1), r2 = r * r;
     if (i == 0) return 1;
     return i < 4 ? 1 - r2 * ((real)0.6625 - (real)0.1144 * r2) : 1 - r2 * ((real)1.5341 - (real)0.6194 * r2);
 }
 
-/* Radiance toward v that the lobe reflects; unit n and v. */
+/* Returns the radiance toward v that the lobe reflects; n and v are unit vectors. */
 static inline vec3 ambient_specular(const real sh[9][3], real roughness, vec3 n, vec3 v)
 {
     real basis[9], n_v = vec3_dot(n, v);
@@ -47,9 +49,9 @@ static inline vec3 ambient_specular(const real sh[9][3], real roughness, vec3 n,
     vec3 sum = {0, 0, 0};
     for (int i = 0; i < 9; i++)
         sum = vec3_fma(sum, ambient_specular_band(roughness, i) * basis[i], vec3_make(sh[i][0], sh[i][1], sh[i][2]));
-    real albedo = ambient_specular_albedo(roughness, brdf_clamp(n_v, 0, 1));
-    return vec3_make(albedo * brdf_clamp(sum.x, 0, (real)1e6), albedo * brdf_clamp(sum.y, 0, (real)1e6),
-                     albedo * brdf_clamp(sum.z, 0, (real)1e6));
+    real albedo = ambient_specular_albedo(roughness, clamp(n_v, 0, 1));
+    return vec3_make(albedo * clamp(sum.x, 0, (real)1e6), albedo * clamp(sum.y, 0, (real)1e6),
+                     albedo * clamp(sum.z, 0, (real)1e6));
 }
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The colour of light by its temperature.
+/* The colour of a black body by its temperature.
  *
  *     vec3 lamp = blackbody_color(2700);      a light bulb
  */
@@ -8,15 +8,16 @@
 
 #include "base/vec.h"
 
-/* A Gaussian of another width on either side. */
+/* Returns a Gaussian with different widths left and right of its middle. */
 static inline double blackbody_lobe(double x, double middle, double left, double right)
 {
     double t = (x - middle) / (x < middle ? left : right);
     return exp(-0.5 * t * t);
 }
 
-/* Linear sRGB of Planck's spectrum as the CIE 1931 observer sees it (fitted by lobes: Wyman, Sloan and Shirley 2013),
- * the strongest channel 1; what lies outside of sRGB's colours, as light below 1900 K does, is cut off there. */
+/* Returns Planck's spectrum in linear sRGB (colour matching functions of the CIE 1931 observer, fitted by lobes: Wyman,
+ * Sloan and Shirley 2013), scaled so that the largest channel is 1. Colours outside the sRGB gamut, as below 1900 K,
+ * are clipped to it. */
 static inline vec3 blackbody_color(double kelvin)
 {
     double x = 0, y = 0, z = 0;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The eight orientations of a square frame. Camera, flash and frame look the same after each of them, so that a turned
- * photograph is a photograph of the turned object.
+/* The eight orientations of a square frame, for augmentation. Camera, flash and frame are invariant under each, so that
+ * a turned photograph is a photograph of the turned object.
  *
  *     to[orientation_place(o, size, i)] = from[i];    a picture
- *     orientation_turn(o, n);                         a normal, a light's place
+ *     orientation_turn(o, n);                         a normal, a light's position
  *     orientation_turn_sh(o, sh);                     an environment
- *     orientation_inverse(o)                          back again */
+ *     orientation_inverse(o)                          the orientation that undoes o
+ */
 #ifndef MERLIN_OPTICS_ORIENTATION_H
 #define MERLIN_OPTICS_ORIENTATION_H
 
@@ -13,10 +14,10 @@
 
 #include "optics/sh.h"
 
-/* Bits of an orientation; flips come first. */
+/* Bits of an orientation; flips are applied first. */
 enum { ORIENTATION_FLIP_X = 1, ORIENTATION_FLIP_Y = 2, ORIENTATION_TRANSPOSE = 4, ORIENTATIONS = 8 };
 
-/* Where pixel i of size × size, row by row, comes to lie. */
+/* Returns the pixel to which pixel i of size × size moves, row by row. */
 static inline size_t orientation_place(int orientation, int size, size_t i)
 {
     size_t side = (size_t)size, x = i % side, y = i / side;
@@ -25,7 +26,7 @@ static inline size_t orientation_place(int orientation, int size, size_t i)
     return orientation & ORIENTATION_TRANSPOSE ? x * side + y : y * side + x;
 }
 
-/* Rows run downwards and y upwards, so exchanging rows and columns is (x, y) to (-y, -x). */
+/* Turns a vector. Rows run downwards and y upwards, so that exchanging rows and columns is (x, y) to (-y, -x). */
 static inline void orientation_turn(int orientation, real v[3])
 {
     if (orientation & ORIENTATION_FLIP_X) v[0] = -v[0];
@@ -48,7 +49,7 @@ static inline void orientation_turn_sh(int orientation, real sh[9][3])
     sh_turn(sh, (const real(*)[3])matrix);
 }
 
-/* Behind a transposition a flip of x undoes one of y. */
+/* Returns the orientation that undoes this one. After a transposition a flip of x undoes one of y. */
 static inline int orientation_inverse(int orientation)
 {
     if (!(orientation & ORIENTATION_TRANSPOSE)) return orientation;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A camera by its focal length and principal point in pixels, as calibrations tell it (camera.h has one by its field of
- * view); without perspective it is far away. */
+/* A pinhole camera by focal length and principal point in pixels, as calibrations give them (camera.h describes one by
+ * its field of view); without perspective for an object far away. */
 #ifndef MERLIN_OPTICS_PINHOLE_H
 #define MERLIN_OPTICS_PINHOLE_H
 
@@ -9,12 +9,12 @@
 
 typedef struct pinhole {
     bool perspective;
-    float focal;              /* pixels */
+    float focal;              /* focal length, pixels */
     float center_x, center_y; /* principal point, pixels from the top left corner */
-    float mean_distance;      /* from the camera to the object, in the unit of the light positions; 0 if unknown */
+    float mean_distance; /* distance from the camera to the object, in the unit of the light positions; 0 if unknown */
 } pinhole;
 
-/* The camera whose picture is so many degrees wide, with the axis through its middle. */
+/* Returns the camera of this horizontal field of view (degrees) with the principal point in the picture's middle. */
 static inline pinhole pinhole_of(int width, int height, float field_of_view)
 {
     static const float HALF_DEGREE = 0.00872664626f;

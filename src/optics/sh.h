@@ -5,13 +5,13 @@
  *     for (every texel) sh_accumulate(sh, direction, radiance times solid angle);
  *     vec3 e = sh_irradiance(sh, normal);
  *
- * Irradiance as in Ramamoorthi & Hanrahan 2001: the clamped cosine keeps π, 2π/3 and π/4 of the three bands. */
+ * Irradiance as in Ramamoorthi & Hanrahan 2001: the clamped cosine scales the three bands by π, 2π/3 and π/4. */
 #ifndef MERLIN_OPTICS_SH_H
 #define MERLIN_OPTICS_SH_H
 
 #include "base/vec.h"
 
-/* The nine basis functions at the unit direction d. */
+/* Evaluates the nine basis functions at the unit direction d. */
 static inline void sh_basis(vec3 d, real out[9])
 {
     out[0] = (real)0.28209479177387814;
@@ -37,13 +37,13 @@ static inline void sh_accumulate(real sh[9][3], vec3 d, vec3 weighted_radiance)
     }
 }
 
-/* What the clamped cosine keeps of the band that coefficient i belongs to. */
+/* Returns the clamped cosine's factor for the band of coefficient i. */
 static inline real sh_cosine_band(int i)
 {
     return i == 0 ? (real)3.14159265358979324 : i < 4 ? (real)2.09439510239319549 : (real)0.78539816339744831;
 }
 
-/* Irradiance on a surface of unit normal n; a Lambertian surface reflects albedo/π of it. */
+/* Returns the irradiance on a surface of unit normal n; a Lambertian surface reflects albedo/π of it. */
 static inline vec3 sh_irradiance(const real sh[9][3], vec3 n)
 {
     real basis[9];
@@ -54,7 +54,7 @@ static inline vec3 sh_irradiance(const real sh[9][3], vec3 n)
     return e;
 }
 
-/* Gradient of weight · sh_irradiance(sh, n) by n, whose components count as three free numbers. */
+/* Returns the gradient of weight · sh_irradiance(sh, n) by n, whose components count as three independent numbers. */
 static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weight)
 {
     real s[9];
@@ -66,7 +66,7 @@ static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weig
                      first * s[2] + second * (s[5] * n.y + s[7] * n.x) + (real)1.8923493915151202 * s[6] * n.z);
 }
 
-/* One channel's band 2 as the symmetric matrix q of dᵀ q d, and back. */
+/* Convert one channel's band 2 to the symmetric matrix q of dᵀ q d, and back. */
 static inline void sh_band2_matrix(const real sh[9][3], int channel, real q[3][3])
 {
     const real pair = (real)0.5462742152960396, squares = (real)0.54627421529603959, polar = (real)0.31539156525252005;
@@ -88,8 +88,7 @@ static inline void sh_band2_from_matrix(real q[3][3], int channel, real sh[9][3]
     sh[8][channel] = (q[0][0] - q[1][1]) / (2 * pair);
 }
 
-/* The coefficients of the environment turned by the orthogonal matrix m (rotation, reflection or both): what came from
- * d comes from m d. */
+/* Turns the environment by the orthogonal matrix m (rotation, reflection or both): light from d then comes from m d. */
 static inline void sh_turn(real sh[9][3], const real m[3][3])
 {
     for (int c = 0; c < 3; c++) {

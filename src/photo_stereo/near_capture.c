@@ -26,6 +26,6 @@ status near_capture_new(const img *mask, const img *depth, float field_of_view, 
 
 status near_capture_add(pst_capture *c, const img *picture, vec3 light)
 {
-    float power = (float)LIGHT_POWER / (NEAR_CAPTURE_WHITE * (float)BRDF_PI);
+    float power = (float)LIGHT_POWER / (NEAR_CAPTURE_WHITE * (float)PI);
     return pst_capture_add(c, picture, &(pst_light){.position = light, .intensity = {power, power, power}});
 }

@@ -4,11 +4,11 @@
 #include "base/rng.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/stage.h"
+#include "optics/camera.h"
 #include "optics/light.h"
 #include "photo_stereo/near_capture.h"
 
 enum { SEED = 1, STREAM_LIGHT = 1 };
-static const float FIELD_OF_VIEW = 60; /* the crop counts as the whole frame of docs/conventions.md */
 
 static vec3 light_at(int i)
 {
@@ -19,7 +19,7 @@ static vec3 light_at(int i)
 
 static status relight_all(network *n, const stage *st, int (*stop)(void), pst_capture *c)
 {
-    status s = near_capture_new(&st->full.mask, &st->full.depth, FIELD_OF_VIEW, c);
+    status s = near_capture_new(&st->full.mask, &st->full.depth, CAMERA_FOV, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
         if (stop && stop()) return fail(MERLIN_STOPPED, "stopped");
         img picture = {0};

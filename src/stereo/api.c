@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "merlin/merlin.h"
 #include "mesh/write/mesh_write.h"
 #include "stereo/fit/albedo_scale.h"
@@ -283,7 +283,7 @@ static status check_surface(const merlin_surface *s)
 merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
 {
     status s = api_needs(__func__, path && surface);
-    if (s == OK) s = pst_mesh_check_name(path);
+    if (s == OK) s = mesh_check_name(path);
     if (s == OK) s = check_surface(surface);
     if (s != OK) return s;
     img normal = surface->normal, depth = surface->depth, mask = surface->mask;
@@ -291,12 +291,12 @@ merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
     float scale, focal = surface->camera.focal;
     s = img_copy(&albedo, &relative);
     if (s == OK) s = pst_scale_albedo(&albedo, &mask, &scale);
-    const pst_mesh_source source = {.depth = &depth,
-                                    .mask = &mask,
-                                    .normal = &normal,
-                                    .albedo = &albedo,
-                                    .camera = {.perspective = focal > 0, focal, surface->camera.x, surface->camera.y}};
-    if (s == OK) s = pst_mesh_write(path, &source);
+    const mesh_source source = {.depth = &depth,
+                                .mask = &mask,
+                                .normal = &normal,
+                                .albedo = &albedo,
+                                .camera = {.perspective = focal > 0, focal, surface->camera.x, surface->camera.y}};
+    if (s == OK) s = mesh_write(path, &source);
     img_free(&albedo);
     return s;
 }

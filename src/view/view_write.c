@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
-#include "base/public.h"
 #include "estimate/relight/maps_surface.h"
 #include "image/resize.h"
 #include "image/write/write.h"
@@ -93,7 +93,7 @@ static status meter(const stage *s, float *white)
     const float cosine = 0.5f, sine = sqrtf(1 - cosine * cosine);
     lamp lamps[AROUND + 1] = {lamp_at(vec3_make(0, 0, 0))};
     for (int i = 0; i < AROUND; i++) {
-        const float phi = 2 * BRDF_PI * (float)i / AROUND;
+        const float phi = 2 * PI * (float)i / AROUND;
         lamps[i + 1] = lamp_at(vec3_make(sine * cosf(phi), sine * sinf(phi), cosine - 1));
     }
     return stage_meter(s, lamps, AROUND + 1, white);

@@ -15,13 +15,13 @@
 
 static void speak(void)
 {
-    messages_hush();
-    messages_hush();
+    messages_mute();
+    messages_mute();
     (void)!write(STDERR_FILENO, "library\n", 8);
     fprintf(messages(), "one\n");
-    messages_unhush();
+    messages_unmute();
     (void)!write(STDERR_FILENO, "library\n", 8);
-    messages_unhush();
+    messages_unmute();
     (void)!write(STDERR_FILENO, "abort\n", 6);
     fprintf(messages(), "two\n");
 }

@@ -31,7 +31,7 @@ static void sum_doubles(ranks *r, void *context)
     double *all = context, *mine = all + 5 * (size_t)r->index;
     for (size_t i = 0; i < 5; i++)
         mine[i] = part(r->index, i);
-    if (ranks_sum(r, mine, 5) != OK) ranks_abandon(r);
+    if (ranks_sum(r, mine, 5) != OK) ranks_abort(r);
 }
 
 /* From the first to the last: (1e16 + 1) - 1e16 is 0 in doubles, where another order gives 1. */
@@ -60,7 +60,7 @@ static void sum_floats(ranks *r, void *context)
     float *mine = f->all + MOST * (size_t)r->index;
     for (size_t i = 0; i < f->count; i++)
         mine[i] = (float)part(r->index, i + 1);
-    if (ranks_sum_floats(r, mine, f->count) != OK) ranks_abandon(r);
+    if (ranks_sum_floats(r, mine, f->count) != OK) ranks_abort(r);
 }
 
 static void floats_of_any_number_are_added_in_double(void **state)
@@ -108,7 +108,7 @@ static void what_the_first_has_reaches_all_and_one_alone_needs_nobody(void **sta
     assert_int_equal(ranks_sum(NULL, values, 2), OK);
     assert_int_equal(ranks_sum_floats(NULL, some, 2), OK);
     assert_int_equal(ranks_agree(NULL, MERLIN_NO_MEMORY), MERLIN_NO_MEMORY);
-    ranks_share(NULL, values, sizeof values);
+    ranks_broadcast(NULL, values, sizeof values);
     assert_true(values[0] == 1 && values[1] == 2 && some[0] == 3 && some[1] == 4);
 }
 

@@ -38,8 +38,8 @@ static void all_light_is_in_the_lights(void **state)
         bright += vec3_dot(lights[i].direction, lamp) > 0.99f;
         assert_true(fabsf(vec3_length(lights[i].direction) - 1) < 1e-4f);
     }
-    assert_true(fabsf(angle - 4 * OCTAHEDRON_PI) < 1e-3f);
-    float per_sh = sqrtf(4 * OCTAHEDRON_PI); /* band 0 of radiance 1 from everywhere, times this, is 4π */
+    assert_true(fabsf(angle - 4 * PI) < 1e-3f);
+    float per_sh = sqrtf(4 * PI); /* band 0 of radiance 1 from everywhere, times this, is 4π */
     assert_true(fabsf(sum.x / (e.sh[0][0] * per_sh) - 1) < 0.02f); /* texels against cells of the octahedron */
     assert_true(fabsf(sum.z / (e.sh[0][2] * per_sh) - 1) < 0.02f);
     assert_true(bright >= 8); /* the lamp is worth as much as the room but has 1/400 of the sphere */

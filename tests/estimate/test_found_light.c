@@ -95,7 +95,7 @@ static void flash_and_rest_add_up(void **state)
     assert_int_equal(surface_shade(&s, vec3_make(0, 0, 0), &flash), OK);
     for (size_t i = 0; i < 3 * SIDE * SIDE; i += 97) {
         vec3 n = vec3_of(s.normal.data + i / 3 * 3);
-        float ambient = s.albedo.data[i] / BRDF_PI * sh_irradiance((const float(*)[3])sh, n).x;
+        float ambient = s.albedo.data[i] / PI * sh_irradiance((const float(*)[3])sh, n).x;
         /* highlights of the surroundings come on top */
         assert_true(lit.data[i] >= 0.5f * flash.data[i] + ambient - 1e-4f);
         assert_true(lit.data[i] <= 0.5f * flash.data[i] + ambient + 0.1f);
@@ -130,7 +130,7 @@ static void what_hides_the_lamp_takes_its_light(void **state)
 /* Far away, so far aside and so far up from the right, in degrees. */
 static merlin_found_light lamp_from(float aside, float turn, float strength, float flash)
 {
-    const float a = aside * CAMERA_RADIAN, t = turn * CAMERA_RADIAN;
+    const float a = aside * DEGREE, t = turn * DEGREE;
     return (merlin_found_light){.known = 1,
                                 .flash = flash,
                                 .lamp = {sinf(a) * cosf(t), sinf(a) * sinf(t), cosf(a)},

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 enum { SIDE = 256, PIXELS = SIDE * SIDE };
-static const camera view = {.width = SIDE, .height = SIDE, .fov = SURFACE_FOV};
+static const camera view = {.width = SIDE, .height = SIDE, .fov = CAMERA_FOV};
 
 static vec3 ray_of(int i)
 {
@@ -50,8 +50,7 @@ static void put_sphere(surface *s, vec3 centre, float radius, bool inside, float
 static void horizon_of(const surface *s, horizon *out)
 {
     shadow_caster caster;
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = SURFACE_FOV}, &caster),
-                     OK);
+    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
     assert_int_equal(horizon_new(&caster, out), OK);
     shadow_caster_free(&caster);
 }

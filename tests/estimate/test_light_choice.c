@@ -5,7 +5,7 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "estimate/light/found_light.h"
 #include "merlin/merlin.h"
 #include "scratch.h"
@@ -282,10 +282,10 @@ static void share_of_the_flash(void **state)
     /* surroundings of radiance 1 send pi to whatever faces them */
     flash_code(1, 0, code);
     for (int c = 0; c < 3; c++)
-        sh[0][c] = 2 * sqrtf((float)BRDF_PI);
+        sh[0][c] = 2 * sqrtf((float)PI);
     model_encode_sh((const float(*)[3])sh, code + MODEL_LIGHTS_REST);
     found_light_take(code, &light);
-    assert_float_equal(found_light_share(&light).flash, 5.95f / (5.95f + (float)BRDF_PI), 1e-3);
+    assert_float_equal(found_light_share(&light).flash, 5.95f / (5.95f + (float)PI), 1e-3);
     assert_float_equal(found_light_share(&(merlin_found_light){0}).flash, 0, 0);
 }
 

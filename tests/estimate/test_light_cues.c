@@ -23,7 +23,7 @@ typedef struct scene {
 
 static void fill(scene *s)
 {
-    const camera view = {.width = SIDE, .height = SIDE, .fov = SURFACE_FOV};
+    const camera view = {.width = SIDE, .height = SIDE, .fov = CAMERA_FOV};
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             vec3 ray = camera_point(&view, (float)x + 0.5f, (float)y + 0.5f, 1), middle = vec3_make(0, 0, -1);
@@ -54,7 +54,7 @@ static void close_scene(scene *s)
 /* A lamp at a place, and light from everywhere beside it. */
 static void light(scene *s, vec3 place, float everywhere)
 {
-    const camera view = {.width = SIDE, .height = SIDE, .fov = SURFACE_FOV};
+    const camera view = {.width = SIDE, .height = SIDE, .fov = CAMERA_FOV};
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             if (*img_at(&s->maps.mask, x, y) == 0) continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "estimate/photo/doubts.h"
 #include "merlin/merlin.h"
 

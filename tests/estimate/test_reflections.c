@@ -50,7 +50,7 @@ static void sample_every_pixel(const surface *s, const env_map *env, const horiz
 {
     lobe_sampler l;
     lobe_over(env, hidden, &l);
-    camera eye = {.width = SIZE, .height = SIZE, .fov = SURFACE_FOV};
+    camera eye = {.width = SIZE, .height = SIZE, .fov = CAMERA_FOV};
     assert_int_equal(img_new(image, SIZE, SIZE, 3), OK);
     for (int i = 0; i < PIXELS; i++) {
         if (!(s->mask.data[i] > 0)) continue;
@@ -117,7 +117,7 @@ static void interpolated_reflections_know_the_horizon(void **state)
         s.depth.data[i] = i % SIZE > SIZE / 2 ? 0.7f : 1;
     shadow_caster caster;
     horizon h;
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = SURFACE_FOV}, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
     assert_int_equal(horizon_new(&caster, &h), OK);
     difference d = error_of(&s, &h);
     assert_true(d.rms > 0 && d.rms < 0.02);

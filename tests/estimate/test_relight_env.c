@@ -81,7 +81,7 @@ static float share_of_lobe(float roughness, vec3 n, vec3 v)
     for (int i = 0; i < STEPS * STEPS; i++) {
         float u1 = ((float)(i / STEPS) + 0.5f) / STEPS, u2 = ((float)(i % STEPS) + 0.5f) / STEPS;
         vec3 l = brdf_sample_cosine(n, u1, u2); /* density cosθ/π */
-        sum += (double)(brdf_specular(roughness, n, l, v) * BRDF_PI);
+        sum += (double)(brdf_specular(roughness, n, l, v) * PI);
     }
     return (float)(sum / (STEPS * STEPS));
 }
@@ -125,15 +125,15 @@ static void small_bright_spot_is_a_distant_light(void **state)
     img diffuse = picture(), shiny = picture();
     surface_add_ambient(&s, (const float(*)[3])e.sh, &diffuse);
     surface_add_reflections(&s, &e, NULL, &shiny);
-    float irradiance = env_map_mean(&e) * 4 * BRDF_PI, worst_diffuse = 0, worst = 0, brightest = 0;
+    float irradiance = env_map_mean(&e) * 4 * PI, worst_diffuse = 0, worst = 0, brightest = 0;
     for (int i = 1; i < PIXELS; i++) {
         vec3 n = normal_of(&s, i);
         float n_l = fmaxf(0, vec3_dot(n, spot));
         float lobe = n_l > 0 ? irradiance * n_l * brdf_specular(s.roughness.data[i], n, spot, view_of(i)) : 0;
         worst = fmaxf(worst, fabsf(shiny.data[3 * i] - lobe));
         brightest = fmaxf(brightest, lobe);
-        float lambert = irradiance * n_l * s.albedo.data[3 * i] / BRDF_PI;
-        worst_diffuse = fmaxf(worst_diffuse, fabsf(diffuse.data[3 * i] - lambert) / (irradiance * 0.2f / BRDF_PI));
+        float lambert = irradiance * n_l * s.albedo.data[3 * i] / PI;
+        worst_diffuse = fmaxf(worst_diffuse, fabsf(diffuse.data[3 * i] - lambert) / (irradiance * 0.2f / PI));
     }
     print_message("highlights %.3f of %.3f, diffuse %.3f\n", (double)worst, (double)brightest, (double)worst_diffuse);
     assert_true(worst < 0.12f * brightest); /* the header promises a tenth; the spot is not quite a point */

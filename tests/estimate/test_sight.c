@@ -63,7 +63,7 @@ static void normals_are_turned_with_the_line_of_sight(void **state)
     enum { SIDE = 32 };
     img normal, mask;
     const camera_lens lens = {15, {0.2f, -0.1f}};
-    const camera taken = {.width = SIDE, .height = SIDE, .fov = SURFACE_FOV}, meant = camera_through(lens, SIDE, SIDE);
+    const camera taken = {.width = SIDE, .height = SIDE, .fov = CAMERA_FOV}, meant = camera_through(lens, SIDE, SIDE);
     assert_int_equal(img_new(&normal, SIDE, SIDE, 3), OK);
     assert_int_equal(img_new(&mask, SIDE, SIDE, 1), OK);
     for (int y = 0; y < SIDE; y++)
@@ -93,8 +93,8 @@ static void the_usual_lens_changes_nothing(void **state)
         mask.data[i] = 1;
         depth.data[i] = 0.8f + 0.02f * (float)i;
     }
-    sight_turn_normals((camera_lens){.fov = SURFACE_FOV}, &mask, &normal);
-    sight_take_relief((camera_lens){.fov = SURFACE_FOV}, &mask, &depth);
+    sight_turn_normals((camera_lens){.fov = CAMERA_FOV}, &mask, &normal);
+    sight_take_relief((camera_lens){.fov = CAMERA_FOV}, &mask, &depth);
     for (int i = 0; i < 16; i++) {
         vec3 was = vec3_normalize(vec3_make(0.1f * (float)(i % 4), -0.2f, 1));
         assert_true(vec3_length(vec3_sub(was, vec3_of(normal.data + 3 * i))) < 1e-6f);

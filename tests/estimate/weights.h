@@ -13,14 +13,15 @@
 static inline status write_params(const char *path, nn_params *params, const char *config)
 {
     size_t count = nn_params_count(params);
-    st_tensor *tensors = calloc(count, sizeof *tensors);
+    safetensors_tensor *tensors = calloc(count, sizeof *tensors);
     for (size_t i = 0; i < count; i++) {
         const nn_param *p = nn_params_at(params, i);
-        tensors[i] = (st_tensor){.name = p->name, .type = ST_F32, .rank = p->rank, .count = p->count, .data = p->value};
+        tensors[i] = (safetensors_tensor){
+            .name = p->name, .type = SAFETENSORS_F32, .rank = p->rank, .count = p->count, .data = p->value};
         memcpy(tensors[i].shape, p->shape, sizeof p->shape);
     }
     const char *const metadata[][2] = {{"config", config}};
-    status s = st_write(path, tensors, count, metadata, 1);
+    status s = safetensors_write(path, tensors, count, metadata, 1);
     free(tensors);
     return s;
 }

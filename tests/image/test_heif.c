@@ -8,7 +8,7 @@
 
 #include "image/color.h"
 #include "image/read/read.h"
-#include "image/start.h"
+#include "image/vips_start.h"
 
 #include "writes.h"
 

@@ -19,7 +19,7 @@ static void grey_stays_grey(void **unused)
     (void)unused;
     uint8_t rgb[BYTES];
     memset(rgb, 100, sizeof rgb);
-    assert_int_equal(img_jpeg_spoil(rgb, WIDTH, HEIGHT, &(img_jpeg){.quality = 75, .halved = true}), OK);
+    assert_int_equal(img_jpeg_round_trip(rgb, WIDTH, HEIGHT, &(img_jpeg){.quality = 75, .halved = true}), OK);
     for (int i = 0; i < BYTES; i++)
         assert_true(abs(rgb[i] - 100) <= 1); /* a block's mean is a multiple of at most 8/8 steps at this quality */
 }
@@ -30,7 +30,7 @@ static double spoiled(int quality, bool halved)
     double error = 0;
     for (int i = 0; i < BYTES; i++)
         before[i] = rgb[i] = (uint8_t)(i / 3 % 4 < 2 ? 40 + 60 * (i % 3) : 200 - 50 * (i % 3));
-    assert_int_equal(img_jpeg_spoil(rgb, WIDTH, HEIGHT, &(img_jpeg){.quality = quality, .halved = halved}), OK);
+    assert_int_equal(img_jpeg_round_trip(rgb, WIDTH, HEIGHT, &(img_jpeg){.quality = quality, .halved = halved}), OK);
     for (int i = 0; i < BYTES; i++)
         error += abs(rgb[i] - before[i]);
     return error / BYTES;

@@ -106,19 +106,19 @@ static void fill_params(nn_params *params)
 
 /* ---- comparing ---- */
 
-static const st_tensor *stored(const st_file *f, const char *kind, const char *name)
+static const safetensors_tensor *stored(const safetensors_file *f, const char *kind, const char *name)
 {
     char full[NAME];
     snprintf(full, sizeof full, "%s.%s", kind, name);
-    return st_find(f, full);
+    return safetensors_find(f, full);
 }
 
 /* |found - expected| over |expected|, as vectors */
-static double distance(const st_tensor *expected, const float *found)
+static double distance(const safetensors_tensor *expected, const float *found)
 {
     float *wanted = malloc((expected->count + 1) * sizeof *wanted);
     assert_non_null(wanted);
-    assert_int_equal(st_to_float(expected, wanted), OK);
+    assert_int_equal(safetensors_to_float(expected, wanted), OK);
     double error = 0, size = 0;
     for (size_t i = 0; i < expected->count; i++) {
         error += pow((double)found[i] - (double)wanted[i], 2);
@@ -128,9 +128,9 @@ static double distance(const st_tensor *expected, const float *found)
     return sqrt(error / (size + 1e-30));
 }
 
-static void compare(const st_file *f, const char *kind, const char *name, const float *found, double tolerance)
+static void compare(const safetensors_file *f, const char *kind, const char *name, const float *found, double tolerance)
 {
-    const st_tensor *t = stored(f, kind, name);
+    const safetensors_tensor *t = stored(f, kind, name);
     if (!t) fail_msg("%s.%s is not in the reference", kind, name);
     double d = distance(t, found);
     if (!(d <= tolerance)) fail_msg("%s.%s is off by %.3g of its size, %.3g allowed", kind, name, d, tolerance);
@@ -140,7 +140,7 @@ static void compare(const st_file *f, const char *kind, const char *name, const 
 
 typedef struct session {
     model_config config;
-    st_file *reference;
+    safetensors_file *reference;
     nn_graph *training, *whole;
     nn_params *params;
     nn_program *train, *infer;
@@ -171,7 +171,7 @@ static session session_new(bool everything)
     const char *path = everything ? MERLIN_SOURCE_DIR "/tests/reference/merlin.safetensors"
                                   : MERLIN_SOURCE_DIR "/tests/reference/four_decoders.safetensors";
     nn_options options = {.batch = BATCH, .height = SIZE, .width = SIZE, .type = NN_FLOAT32, .purpose = NN_TRAIN};
-    if (st_open(path, &s.reference) != OK) fail_msg("%s", status_message());
+    if (safetensors_open(path, &s.reference) != OK) fail_msg("%s", status_message());
     assert_int_equal(model_build(&s.config, MODEL_TRAINING, &s.training), OK);
     assert_int_equal(model_build(&s.config, MODEL_WHOLE, &s.whole), OK);
     assert_int_equal(nn_params_new(s.training, 1, &s.params), OK);
@@ -189,7 +189,7 @@ static void session_free(session *s)
     nn_program_free(s->train), nn_program_free(s->infer);
     nn_params_free(s->params);
     nn_graph_free(s->training), nn_graph_free(s->whole);
-    st_close(s->reference);
+    safetensors_close(s->reference);
     free(s->before);
 }
 
@@ -198,7 +198,7 @@ static void compare_losses(const session *s, const char *kind, double tolerance)
     int count = 0;
     for (int i = 0; i < MODEL_LOSSES; i++) {
         float found = nn_loss(s->train, model_losses[i]);
-        const st_tensor *t = stored(s->reference, kind, model_losses[i]);
+        const safetensors_tensor *t = stored(s->reference, kind, model_losses[i]);
         assert_true((t == NULL) == (isnan(found) != 0));
         if (t) compare(s->reference, kind, model_losses[i], &found, tolerance), count++;
     }
@@ -255,7 +255,7 @@ static void compare_outputs(const session *s, double tolerance)
                                         "direct", "indirect", "relit_direct", "relit_brdf"};
     for (int k = 0; k < 8; k++) {
         const float *found = nn_output_data(s->infer, names[k]);
-        const st_tensor *t = stored(s->reference, "output", names[k]);
+        const safetensors_tensor *t = stored(s->reference, "output", names[k]);
         assert_true((t == NULL) == (found == NULL));
         if (!t) continue;
         size_t channels = (size_t)t->shape[3], pixels = t->count / channels, side = SIZE / STRIDE;
@@ -279,7 +279,8 @@ static void run_variant(bool everything)
     nn_params_scale_rate(s.params, "relight", 2);
     if (nn_forward(s.train) != OK) fail_msg("%s", status_message());
     float total = nn_total_loss(s.train);
-    if (distance(st_find(s.reference, "total"), &total) > 1e-5) fail_msg("the total loss is %.9g", (double)total);
+    if (distance(safetensors_find(s.reference, "total"), &total) > 1e-5)
+        fail_msg("the total loss is %.9g", (double)total);
     compare_losses(&s, "loss", 2e-5);
     if (nn_backward(s.train) != OK) fail_msg("%s", status_message());
     compare_gradients(&s, 1e-3);

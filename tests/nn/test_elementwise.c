@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "nn/cpu/kernels/functions.h"
+#include "nn/cpu/kernels/fast_math.h"
 
 #include "tensors.h"
 

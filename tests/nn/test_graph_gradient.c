@@ -11,7 +11,7 @@
 
 #include "base/rng.h"
 #include "nn/lower.h"
-#include "nn/program.h"
+#include "nn/nn_program.h"
 
 #include <cmocka.h> /* last: it defines fail as a macro */
 

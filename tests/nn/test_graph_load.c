@@ -38,12 +38,13 @@ static nn_params *new_params(uint64_t seed)
 }
 
 /* Describes all parameters; returns how many. */
-static size_t describe(nn_params *params, st_tensor *tensors)
+static size_t describe(nn_params *params, safetensors_tensor *tensors)
 {
     size_t count = nn_params_count(params);
     for (size_t i = 0; i < count; i++) {
         const nn_param *p = nn_params_at(params, i);
-        tensors[i] = (st_tensor){.name = p->name, .type = ST_F32, .rank = p->rank, .count = p->count, .data = p->value};
+        tensors[i] = (safetensors_tensor){
+            .name = p->name, .type = SAFETENSORS_F32, .rank = p->rank, .count = p->count, .data = p->value};
         memcpy(tensors[i].shape, p->shape, sizeof p->shape);
     }
     return count;
@@ -53,8 +54,8 @@ static void saved_parameters_are_loaded(void **state)
 {
     (void)state;
     nn_params *a = new_params(1), *b = new_params(2);
-    st_tensor tensors[MOST];
-    assert_int_equal(st_write(path, tensors, describe(a, tensors), NULL, 0), OK);
+    safetensors_tensor tensors[MOST];
+    assert_int_equal(safetensors_write(path, tensors, describe(a, tensors), NULL, 0), OK);
     assert_int_equal(nn_params_load(b, path), OK);
     for (size_t i = 0; i < nn_params_count(a); i++)
         assert_memory_equal(nn_params_at(a, i)->value, nn_params_at(b, i)->value,
@@ -64,10 +65,10 @@ static void saved_parameters_are_loaded(void **state)
 }
 
 /* Writes the tensors and loads them into other parameters, which must refuse with these words and stay as they were. */
-static void assert_refused(const st_tensor *tensors, size_t count, const char *words)
+static void assert_refused(const safetensors_tensor *tensors, size_t count, const char *words)
 {
     nn_params *b = new_params(2), *untouched = new_params(2);
-    assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
+    assert_int_equal(safetensors_write(path, tensors, count, NULL, 0), OK);
     assert_int_equal(nn_params_load(b, path), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
     for (size_t i = 0; i < nn_params_count(b); i++)
@@ -81,7 +82,7 @@ static void tensors_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
     nn_params *a = new_params(1);
-    st_tensor tensors[MOST];
+    safetensors_tensor tensors[MOST];
     size_t count = describe(a, tensors);
     assert_refused(tensors, count - 1, "norm.running_var is missing");
     tensors[count] = tensors[0];
@@ -98,21 +99,21 @@ static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
 {
     (void)state;
     nn_params *a = new_params(1), *b = new_params(2), *before = new_params(2);
-    st_tensor tensors[MOST];
+    safetensors_tensor tensors[MOST];
     size_t count = describe(a, tensors);
     /* a stranger, one missing, one of another shape */
     tensors[0].shape[0] = 3;
     tensors[0].shape[1] = 4;
     tensors[1].name = "stranger";
     nn_params_at(a, 2)->value[0] = 42;
-    assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
+    assert_int_equal(safetensors_write(path, tensors, count, NULL, 0), OK);
     assert_int_equal(nn_params_load_shared(b, path), OK);
     for (size_t i = 0; i < count; i++) {
         const nn_param *expected = nn_params_at(i < 2 ? before : a, i);
         assert_memory_equal(nn_params_at(b, i)->value, expected->value, expected->count * sizeof(float));
     }
     assert_true(nn_params_at(b, 2)->value[0] == 42);
-    assert_int_equal(st_write(path, tensors, 2, NULL, 0), OK);
+    assert_int_equal(safetensors_write(path, tensors, 2, NULL, 0), OK);
     assert_int_equal(nn_params_load_shared(b, path), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "no tensor fits"));
     nn_params_free(a);
@@ -140,7 +141,7 @@ static void write_halves(const nn_graph *g)
 {
     static uint16_t halves[3][MOST_WEIGHTS];
     nn_params *a;
-    st_tensor tensors[MOST];
+    safetensors_tensor tensors[MOST];
     assert_int_equal(nn_params_new(g, 1, &a), OK);
     size_t count = describe(a, tensors), used = 0;
     for (size_t i = 0; i < count; i++) {
@@ -149,11 +150,11 @@ static void write_halves(const nn_graph *g)
         uint16_t *to = halves[used++];
         for (size_t k = 0; k < tensors[i].count; k++)
             to[k] = float_to_half(k % 2 ? from[k] * 1e-5f : from[k]);
-        tensors[i].type = ST_F16;
+        tensors[i].type = SAFETENSORS_F16;
         tensors[i].data = to;
     }
     assert_int_equal(used, 3);
-    assert_int_equal(st_write(path, tensors, count, NULL, 0), OK);
+    assert_int_equal(safetensors_write(path, tensors, count, NULL, 0), OK);
     nn_params_free(a);
 }
 
@@ -176,13 +177,13 @@ static void weights_kept_as_half_floats_give_the_same_bits(void **state)
     static float of_floats[SIZE * SIZE * CHANNELS], of_halves[SIZE * SIZE * CHANNELS];
     nn_graph *g = build_deep_net();
     nn_params *floats, *halves;
-    st_file *f;
+    safetensors_file *f;
     write_halves(g);
     assert_int_equal(nn_params_new(g, 2, &floats), OK);
     assert_int_equal(nn_params_load(floats, path), OK);
-    assert_int_equal(st_open(path, &f), OK);
+    assert_int_equal(safetensors_open(path, &f), OK);
     assert_int_equal(nn_params_open(g, f, path, &halves), OK);
-    st_close(f);
+    safetensors_close(f);
     for (size_t i = 0; i < nn_params_count(halves); i++)
         assert_true((nn_params_at(halves, i)->half != NULL) == (nn_params_at(halves, i)->rank == 4));
     for (int type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {

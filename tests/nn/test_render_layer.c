@@ -94,9 +94,9 @@ static camera camera_at(const scene *s, size_t i, double *relief)
     *relief = 1;
     if (!s->lens.data) return c;
     double tangent = tensor_get(&s->lens, sample);
-    c.fov = 2 * atan(tangent) / CAMERA_RADIAN;
+    c.fov = 2 * atan(tangent) / DEGREE;
     c.slant = (camera_slant){tensor_get(&s->lens, sample + 1), tensor_get(&s->lens, sample + 2)};
-    *relief = tangent / tan((double)fov / 2 * CAMERA_RADIAN);
+    *relief = tangent / tan((double)fov / 2 * DEGREE);
     return c;
 }
 

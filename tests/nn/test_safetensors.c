@@ -36,54 +36,54 @@ static const int64_t number = -7;
 
 static void write_sample(void)
 {
-    const st_tensor tensors[] = {
-        {"encoder.conv1.weight", ST_F32, 4, {1, 2, 3, 1}, 6, values},
-        {"half", ST_F16, 1, {3}, 3, halves},
-        {"bfloat \"quoted\"", ST_BF16, 2, {2, 1}, 2, bfloats},
-        {"empty", ST_F32, 1, {0}, 0, NULL},
-        {"step", ST_I64, 0, {0}, 1, &number},
+    const safetensors_tensor tensors[] = {
+        {"encoder.conv1.weight", SAFETENSORS_F32, 4, {1, 2, 3, 1}, 6, values},
+        {"half", SAFETENSORS_F16, 1, {3}, 3, halves},
+        {"bfloat \"quoted\"", SAFETENSORS_BF16, 2, {2, 1}, 2, bfloats},
+        {"empty", SAFETENSORS_F32, 1, {0}, 0, NULL},
+        {"step", SAFETENSORS_I64, 0, {0}, 1, &number},
     };
     const char *const metadata[][2] = {{"config", "{\"name\": \"tiny\"}"}, {"author", "ä"}};
-    assert_int_equal(st_write(path, tensors, 5, metadata, 2), OK);
+    assert_int_equal(safetensors_write(path, tensors, 5, metadata, 2), OK);
 }
 
 static void what_was_written_is_read(void **state)
 {
     (void)state;
     write_sample();
-    st_file *f = NULL;
-    assert_int_equal(st_open(path, &f), OK);
-    assert_int_equal(st_count(f), 5);
-    const st_tensor *t = st_find(f, "encoder.conv1.weight");
+    safetensors_file *f = NULL;
+    assert_int_equal(safetensors_open(path, &f), OK);
+    assert_int_equal(safetensors_count(f), 5);
+    const safetensors_tensor *t = safetensors_find(f, "encoder.conv1.weight");
     assert_non_null(t);
     assert_int_equal(t->rank, 4), assert_int_equal(t->shape[2], 3), assert_int_equal(t->count, 6);
     float out[6];
-    assert_int_equal(st_to_float(t, out), OK);
+    assert_int_equal(safetensors_to_float(t, out), OK);
     assert_memory_equal(out, values, sizeof values);
-    assert_int_equal(st_to_float(st_find(f, "half"), out), OK);
+    assert_int_equal(safetensors_to_float(safetensors_find(f, "half"), out), OK);
     assert_true(out[0] == 1 && out[1] == -2 && out[2] == 0x1p-24f);
-    assert_int_equal(st_to_float(st_find(f, "bfloat \"quoted\""), out), OK);
+    assert_int_equal(safetensors_to_float(safetensors_find(f, "bfloat \"quoted\""), out), OK);
     assert_true(out[0] == 1 && out[1] == -1);
-    assert_int_equal(st_find(f, "empty")->count, 0);
-    assert_int_equal(st_find(f, "step")->rank, 0);
-    assert_int_equal(st_to_float(st_find(f, "step"), out), MERLIN_BAD_INPUT);
-    assert_memory_equal(st_find(f, "step")->data, &number, sizeof number);
-    assert_string_equal(st_metadata(f, "config"), "{\"name\": \"tiny\"}");
-    assert_string_equal(st_metadata(f, "author"), "ä");
-    assert_null(st_metadata(f, "nobody"));
-    assert_null(st_find(f, "nobody"));
-    st_close(f);
+    assert_int_equal(safetensors_find(f, "empty")->count, 0);
+    assert_int_equal(safetensors_find(f, "step")->rank, 0);
+    assert_int_equal(safetensors_to_float(safetensors_find(f, "step"), out), MERLIN_BAD_INPUT);
+    assert_memory_equal(safetensors_find(f, "step")->data, &number, sizeof number);
+    assert_string_equal(safetensors_metadata(f, "config"), "{\"name\": \"tiny\"}");
+    assert_string_equal(safetensors_metadata(f, "author"), "ä");
+    assert_null(safetensors_metadata(f, "nobody"));
+    assert_null(safetensors_find(f, "nobody"));
+    safetensors_close(f);
 }
 
 static void tensors_are_given_in_their_order_in_the_file(void **state)
 {
     (void)state;
     write_sample();
-    st_file *f = NULL;
-    assert_int_equal(st_open(path, &f), OK);
-    assert_string_equal(st_at(f, 0)->name, "encoder.conv1.weight");
-    assert_string_equal(st_at(f, 1)->name, "half");
-    st_close(f);
+    safetensors_file *f = NULL;
+    assert_int_equal(safetensors_open(path, &f), OK);
+    assert_string_equal(safetensors_at(f, 0)->name, "encoder.conv1.weight");
+    assert_string_equal(safetensors_at(f, 1)->name, "half");
+    safetensors_close(f);
 }
 
 static char *sample_bytes(size_t *size)
@@ -107,10 +107,10 @@ static void a_file_of_more_than_a_gigabyte_is_read(void **state)
     assert_int_equal(fwrite(header, length, 1, out), 1);
     assert_int_equal(fclose(out), 0);
     assert_int_equal(truncate(path, (off_t)(sizeof length + length + 1200000000)), 0);
-    st_file *f = NULL;
-    if (st_open(path, &f) != OK) fail_msg("%s", status_message());
-    assert_int_equal(st_find(f, "w")->count, 300000000);
-    st_close(f);
+    safetensors_file *f = NULL;
+    if (safetensors_open(path, &f) != OK) fail_msg("%s", status_message());
+    assert_int_equal(safetensors_find(f, "w")->count, 300000000);
+    safetensors_close(f);
     assert_int_equal(unlink(path), 0);
 }
 
@@ -124,12 +124,12 @@ static void truncated_weights_are_refused(void **state)
         char *part = malloc(n + 1);
         assert_non_null(part);
         memcpy(part, bytes, n);
-        st_file *f = NULL;
-        assert_int_equal(st_parse(part, n, &f), MERLIN_BAD_INPUT);
+        safetensors_file *f = NULL;
+        assert_int_equal(safetensors_parse(part, n, &f), MERLIN_BAD_INPUT);
         free(part);
     }
-    st_file *f = NULL;
-    assert_int_equal(st_parse(bytes, size - 3, &f), MERLIN_BAD_INPUT);
+    safetensors_file *f = NULL;
+    assert_int_equal(safetensors_parse(bytes, size - 3, &f), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "truncated"));
     free(bytes);
 }
@@ -141,8 +141,8 @@ static void altered_weights_are_refused(void **state)
     char *bytes = sample_bytes(&size);
     for (size_t i = size - 42; i < size; i++) {
         bytes[i] ^= 4;
-        st_file *f = NULL;
-        assert_int_equal(st_parse(bytes, size, &f), MERLIN_BAD_INPUT);
+        safetensors_file *f = NULL;
+        assert_int_equal(safetensors_parse(bytes, size, &f), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "altered"));
         bytes[i] ^= 4;
     }
@@ -155,13 +155,13 @@ static void other_files_are_called_what_they_are(void **state)
     static const char *const others[] = {"", "{}", "\x89PNG\r\n\x1a\n and so on, a picture", "8 bytes!{not a length}"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         assert_int_equal(file_write(path, others[i], strlen(others[i])), OK);
-        st_file *f = NULL;
-        assert_int_equal(st_open(path, &f), MERLIN_BAD_INPUT);
+        safetensors_file *f = NULL;
+        assert_int_equal(safetensors_open(path, &f), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "not a safetensors file"));
         assert_non_null(strstr(status_message(), path));
     }
-    st_file *f = NULL;
-    assert_int_equal(st_open("/nowhere/w.safetensors", &f), MERLIN_BAD_INPUT);
+    safetensors_file *f = NULL;
+    assert_int_equal(safetensors_open("/nowhere/w.safetensors", &f), MERLIN_BAD_INPUT);
 }
 
 /* A file with this header and so many bytes of zeros behind it. */
@@ -173,9 +173,9 @@ static status parse_text(const char *header, size_t data)
     for (int i = 0; i < 8; i++)
         bytes[i] = (char)(length >> (8 * i));
     memcpy(bytes + 8, header, length);
-    st_file *f = NULL;
-    status s = st_parse(bytes, size, &f);
-    if (s == OK) st_close(f);
+    safetensors_file *f = NULL;
+    status s = safetensors_parse(bytes, size, &f);
+    if (s == OK) safetensors_close(f);
     free(bytes);
     return s;
 }
@@ -265,10 +265,10 @@ static void a_failed_write_leaves_the_old_file(void **state)
     (void)state;
     size_t size, now;
     char *bytes = sample_bytes(&size), *again = NULL;
-    st_tensor t = {"x", ST_F32, 1, {1}, 1, values};
+    safetensors_tensor t = {"x", SAFETENSORS_F32, 1, {1}, 1, values};
     char *nowhere = file_join(path, "below-a-file");
     assert_non_null(nowhere);
-    assert_int_equal(st_write(nowhere, &t, 1, NULL, 0), MERLIN_CANNOT_WRITE);
+    assert_int_equal(safetensors_write(nowhere, &t, 1, NULL, 0), MERLIN_CANNOT_WRITE);
     assert_int_equal(file_read(path, 1 << 20, &again, &now), OK);
     assert_int_equal(size, now);
     assert_memory_equal(bytes, again, size);

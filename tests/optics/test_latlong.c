@@ -36,7 +36,7 @@ static void solid_angles_add_up_to_the_sphere(void **state)
     double sum = 0;
     for (int y = 0; y < 64; y++)
         sum += 128 * latlong_solid_angle(y, 128, 64);
-    assert_true(fabs(sum - 4 * LATLONG_PI) < 1e-9);
+    assert_true(fabs(sum - 4 * PI) < 1e-9);
 }
 
 int main(void)

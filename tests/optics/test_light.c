@@ -156,10 +156,9 @@ static void a_cut_sees_along_the_same_lines_as_the_whole_picture(void **state)
     const double right = 20, up = -10;
     camera whole = {.width = 1000, .height = 1000, .fov = 80}, cut = {.width = 100, .height = 100};
     cut.slant = camera_tilt(right, up);
-    double unit = camera_pixel_size(&whole), x = 500 + tan(right * CAMERA_RADIAN) / unit,
-           y = 500 - tan(up * CAMERA_RADIAN) / unit,
+    double unit = camera_pixel_size(&whole), x = 500 + tan(right * DEGREE) / unit, y = 500 - tan(up * DEGREE) / unit,
            forward = sqrt(1 - cut.slant.right * cut.slant.right - cut.slant.up * cut.slant.up);
-    cut.fov = 2 * atan(50 * unit * forward) / CAMERA_RADIAN;
+    cut.fov = 2 * atan(50 * unit * forward) / DEGREE;
     for (int i = -50; i <= 50; i += 25)
         for (int j = -50; j <= 50; j += 20) {
             double as_cut = vec3_dot(camera_ray(&cut, 50 + i, 50 + j), camera_ray(&cut, 20, 70));

@@ -25,7 +25,7 @@ enum { WIDTH = 12, HEIGHT = 9 };
 /* A wavy sheet one unit away, whose mask lacks the top left pixel and whose right third lies far behind. */
 typedef struct sheet {
     img depth, mask, normal, albedo, roughness;
-    pst_mesh_source source;
+    mesh_source source;
 } sheet;
 
 static void sheet_fill(sheet *s)
@@ -52,8 +52,8 @@ static void sheet_new(sheet *s, bool perspective)
     assert_int_equal(img_new(&s->albedo, WIDTH, HEIGHT, 3), OK);
     assert_int_equal(img_new(&s->roughness, WIDTH, HEIGHT, 1), OK);
     sheet_fill(s);
-    s->source = (pst_mesh_source){
-        &s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.perspective = perspective}, {0, 0}};
+    s->source =
+        (mesh_source){&s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.perspective = perspective}, {0, 0}};
     s->source.camera.focal = 10;
     s->source.camera.center_x = 6;
     s->source.camera.center_y = 4.5f;
@@ -104,7 +104,7 @@ static void every_format_is_read_back_as_the_same_surface(void **state)
     sheet s;
     sheet_new(&s, true);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(pst_mesh_write(scratch_path(names[i]), &s.source), OK);
+        assert_int_equal(mesh_write(scratch_path(names[i]), &s.source), OK);
         check_mesh(scratch_path(names[i]), i == 0, i > 0);
     }
     sheet_free(&s);
@@ -115,7 +115,7 @@ static void an_obj_names_its_material_and_texture(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, false);
-    assert_int_equal(pst_mesh_write(scratch_path("b.obj"), &s.source), OK);
+    assert_int_equal(mesh_write(scratch_path("b.obj"), &s.source), OK);
     char *text;
     size_t size;
     assert_int_equal(file_read(scratch_path("b.obj"), 1 << 20, &text, &size), OK);
@@ -139,7 +139,7 @@ static void a_glb_keeps_the_container_rules(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, true);
-    assert_int_equal(pst_mesh_write(scratch_path("c.glb"), &s.source), OK);
+    assert_int_equal(mesh_write(scratch_path("c.glb"), &s.source), OK);
     char *data;
     size_t size;
     assert_int_equal(file_read(scratch_path("c.glb"), 1 << 20, &data, &size), OK);
@@ -170,7 +170,7 @@ static void a_glb_has_the_roughness_in_green(void **state)
     sheet s;
     sheet_new(&s, true);
     s.source.albedo = s.source.normal = NULL; /* so that it is the only picture, and the last part */
-    assert_int_equal(pst_mesh_write(scratch_path("r.glb"), &s.source), OK);
+    assert_int_equal(mesh_write(scratch_path("r.glb"), &s.source), OK);
     char *data;
     size_t size, at = 0;
     assert_int_equal(file_read(scratch_path("r.glb"), 1 << 20, &data, &size), OK);
@@ -194,7 +194,7 @@ static void a_glb_of_pixels_is_shown_one_unit_large(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, false);
-    assert_int_equal(pst_mesh_write(scratch_path("p.glb"), &s.source), OK);
+    assert_int_equal(mesh_write(scratch_path("p.glb"), &s.source), OK);
     const struct aiScene *scene =
         aiImportFile(scratch_path("p.glb"), aiProcess_ValidateDataStructure | aiProcess_PreTransformVertices);
     assert_non_null(scene);
@@ -217,7 +217,7 @@ static void albedo_and_normals_may_be_missing(void **state)
     sheet_new(&s, true);
     s.source.albedo = s.source.normal = s.source.roughness = NULL;
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(pst_mesh_write(scratch_path(names[i]), &s.source), OK);
+        assert_int_equal(mesh_write(scratch_path(names[i]), &s.source), OK);
         check_mesh(scratch_path(names[i]), i == 0, i > 0);
     }
     assert_false(file_exists(scratch_path("d.png")));
@@ -232,9 +232,9 @@ static void a_texture_may_be_finer_than_the_shape(void **state)
     img fine = {0};
     assert_int_equal(img_resize(&s.albedo, 3 * WIDTH, 3 * HEIGHT, &fine), OK);
     s.source.albedo = &fine;
-    assert_int_equal(pst_mesh_write(scratch_path("fine.glb"), &s.source), OK);
+    assert_int_equal(mesh_write(scratch_path("fine.glb"), &s.source), OK);
     check_mesh(scratch_path("fine.glb"), false, true);
-    assert_int_equal(pst_mesh_write(scratch_path("fine.ply"), &s.source), MERLIN_WRONG_USE);
+    assert_int_equal(mesh_write(scratch_path("fine.ply"), &s.source), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("fine.ply")));
     img_free(&fine);
     sheet_free(&s);
@@ -245,11 +245,11 @@ static void what_cannot_be_a_mesh_is_refused(void **state)
     (void)state;
     sheet s;
     sheet_new(&s, true);
-    assert_int_equal(pst_mesh_write(scratch_path("e.stl"), &s.source), MERLIN_WRONG_USE);
-    assert_int_equal(pst_mesh_write("/proc/merlin.ply", &s.source), MERLIN_CANNOT_WRITE);
-    assert_int_equal(pst_mesh_write("/proc/merlin.glb", &s.source), MERLIN_CANNOT_WRITE);
+    assert_int_equal(mesh_write(scratch_path("e.stl"), &s.source), MERLIN_WRONG_USE);
+    assert_int_equal(mesh_write("/proc/merlin.ply", &s.source), MERLIN_CANNOT_WRITE);
+    assert_int_equal(mesh_write("/proc/merlin.glb", &s.source), MERLIN_CANNOT_WRITE);
     memset(s.mask.data, 0, sizeof(float) * WIDTH * HEIGHT);
-    assert_int_equal(pst_mesh_write(scratch_path("e.ply"), &s.source), MERLIN_BAD_INPUT);
+    assert_int_equal(mesh_write(scratch_path("e.ply"), &s.source), MERLIN_BAD_INPUT);
     assert_false(file_exists(scratch_path("e.ply")));
     sheet_free(&s);
 }

@@ -15,7 +15,7 @@ static void least_squares_is_exact_on_lambert(void **state)
         assert_true(mean_angle(&c, &s.normal) < 0.1);
         size_t middle = 24 * 48 + 24;
         /* x = 0.5 there */
-        float expected = 1.8f / BRDF_PI * (0.5f + 0.2f * sinf(0.1f));
+        float expected = 1.8f / PI * (0.5f + 0.2f * sinf(0.1f));
         assert_true(fabsf(s.albedo.data[middle * (size_t)channels] - expected) < 1e-3f);
         assert_true(s.residual.data[middle] < 1e-3f);
         pst_surface_free(&s);
@@ -93,7 +93,7 @@ static void intensities_may_be_in_any_unit(void **state)
         pst_surface s;
         assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
         assert_true(mean_angle(&c, &s.normal) < 0.1);
-        float expected = 1.8f / BRDF_PI * (0.5f + 0.2f * sinf(0.1f)); /* as above */
+        float expected = 1.8f / PI * (0.5f + 0.2f * sinf(0.1f)); /* as above */
         assert_true(fabsf(s.albedo.data[24 * 48 + 24] * unit - expected) < 1e-3f);
         pst_surface_free(&s);
     }

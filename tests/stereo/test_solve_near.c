@@ -28,7 +28,7 @@ static float led_radiance(const pst_light *led, vec3 at, vec3 n, float specular)
     float n_l = vec3_dot(n, l);
     if (n_l <= 0) return 0;
     float lobe = powf(fmaxf(-vec3_dot(l, led->direction), 0), led->lobe);
-    float f = 0.6f / BRDF_PI + (specular > 0 ? specular * brdf_specular(0.3f, n, l, v) : 0);
+    float f = 0.6f / PI + (specular > 0 ? specular * brdf_specular(0.3f, n, l, v) : 0);
     return f * n_l * lobe / vec3_dot(to, to);
 }
 

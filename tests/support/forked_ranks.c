@@ -41,7 +41,7 @@ static void send(const void *what, size_t bytes)
     meet();
 }
 
-static void gather(const void *mine, void *all, size_t bytes)
+static void all_gather(const void *mine, void *all, size_t bytes)
 {
     send(mine, bytes);
     for (int i = 0; i < self.count; i++)
@@ -49,7 +49,7 @@ static void gather(const void *mine, void *all, size_t bytes)
     meet();
 }
 
-static void exchange(const void *to, void *from, size_t bytes)
+static void all_to_all(const void *to, void *from, size_t bytes)
 {
     send(to, (size_t)self.count * bytes);
     for (int i = 0; i < self.count; i++)
@@ -57,7 +57,7 @@ static void exchange(const void *to, void *from, size_t bytes)
     meet();
 }
 
-static void share(void *what, size_t bytes)
+static void broadcast(void *what, size_t bytes)
 {
     send(what, bytes);
     memcpy(what, office->box[0], bytes);
@@ -84,7 +84,7 @@ int forked_run(int count, void (*body)(ranks *r, void *context), void *context)
     fflush(NULL);
     for (int i = 0; i < count; i++) {
         if (fork()) continue;
-        self = (ranks){count, i, gather, exchange, share, nothing, leave};
+        self = (ranks){count, i, all_gather, all_to_all, broadcast, nothing, leave};
         body(&self, context);
         _exit(0);
     }

@@ -71,7 +71,7 @@ static inline float relief_radiance(const relief *r, float albedo, vec3 n, vec3 
     if (n_l <= 0) return 0;
     float lobe = r->specular > 0 ? r->specular * brdf_specular(r->roughness, n, l, v) : 0;
     float matte = r->facets > 0 ? relief_rough(r->facets, n, l) : 1;
-    return (matte * albedo / BRDF_PI + lobe) * n_l;
+    return (matte * albedo / PI + lobe) * n_l;
 }
 
 /* Count directions within about 70 degrees of the camera, on a spiral. */

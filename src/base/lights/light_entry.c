@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads one light of a list: its numbers, its name, and what should be known of how they were understood. */
+/* Reads one light of a list: its numbers, its name, and notes on how they were interpreted. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/lights/light_table.h"
+#include "base/lights/light_parser.h"
 
-static const double LARGEST = 1e6; /* a kilometre of millimetres, squared well within a float */
+/* Largest coordinate that is accepted: a kilometre in millimetres, whose square is well within a float. */
+static const double LARGEST = 1e6;
 static const double BRIGHTEST = 1e12;
 
-void light_table_note(light_table *t, const char *format, ...)
+void light_parser_note(light_parser *t, const char *format, ...)
 {
     char *note = t->list->note;
     size_t length = strlen(note);
@@ -24,7 +25,7 @@ void light_table_note(light_table *t, const char *format, ...)
     va_end(words);
 }
 
-static status take_number(const light_table *t, const light_words *w, size_t k, float *out)
+static status take_number(const light_parser *t, const light_entry *w, size_t k, float *out)
 {
     const text_word *word = w->number[k];
     int length = word->length < 40 ? (int)word->length : 40;
@@ -40,13 +41,13 @@ static status take_number(const light_table *t, const light_words *w, size_t k, 
     return OK;
 }
 
-static status take_name(const light_words *w, char **out)
+static status take_name(const light_entry *w, char **out)
 {
     *out = strndup(w->name ? w->name : "", w->name ? w->name_length : 0);
     return *out ? OK : fail(MERLIN_NO_MEMORY, "no memory for a name");
 }
 
-status light_table_add(light_table *t, const light_words *w)
+status light_parser_add(light_parser *t, const light_entry *w)
 {
     light_list *list = t->list;
     float v[6] = {0, 0, 0, 1, 1, 1};
@@ -64,7 +65,7 @@ status light_table_add(light_table *t, const light_words *w)
     return s;
 }
 
-bool light_table_is_file(const char *name, size_t length)
+bool light_parser_is_file_name(const char *name, size_t length)
 {
     enum { LONGEST_ENDING = 5 };
     size_t letters = 0;

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Columns of a list of lights by the names in its header, as spreadsheets and programs write one. */
+/* Columns of a list of lights named by a header line, as spreadsheets and programs write it. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/lights/light_table.h"
+#include "base/lights/light_parser.h"
 
 enum { MOST_COLUMNS = 64, LONGEST_NAME = 31 };
-static const double DEGREE = 0.017453292519943295;
 
 typedef enum column {
     UNKNOWN,
@@ -22,13 +21,13 @@ typedef enum column {
     COLUMN_AZIMUTH,
     COLUMN_ELEVATION,
     COLUMN_DISTANCE,
-    COLUMN_ANGLE, /* theta, phi and the like, which some count from the axis, some from the plane */
+    COLUMN_ANGLE, /* theta, phi and the like, counted from the axis by some programs and from the plane by others */
     COLUMN_INDEX,
     COLUMN_NAME,
     COLUMNS
 } column;
 
-/* A comma, a tab or a semicolon begins a field, if there are any; else each word is one. */
+/* A field of a row: delimited by commas, tabs or semicolons if the row has any, else one word. */
 typedef struct field {
     const text_word *first;
     const char *at;
@@ -36,7 +35,7 @@ typedef struct field {
 } field;
 
 typedef struct header {
-    size_t count, place[COLUMNS], known[COLUMNS]; /* known: how many columns are of this kind */
+    size_t count, place[COLUMNS], known[COLUMNS]; /* known: number of columns of each kind */
     bool degrees, radians;
     field field[MOST_COLUMNS];
     column kind[MOST_COLUMNS];
@@ -49,7 +48,7 @@ static bool has_fields(const text_row *r)
     return false;
 }
 
-/* Up to MOST_COLUMNS fields; returns how many there are. */
+/* Splits a row into at most MOST_COLUMNS fields; returns how many there are. */
 static size_t find_fields(const text_row *r, field *out)
 {
     bool fields = has_fields(r);
@@ -76,7 +75,7 @@ static bool is_one_of(const char *word, const char *words)
     return false;
 }
 
-/* "x", "lx", "Light X", "dir_y" or "x_pos". */
+/* Recognizes the name of a coordinate: "x", "lx", "Light X", "dir_y" or "x_pos". */
 static column axis_of(const char *word)
 {
     static const char before[] = "l d n p v s light dir pos direction position led lightdir lightpos lamp vec normal",
@@ -114,7 +113,8 @@ static column kind_of(const char *word)
     return axis_of(word);
 }
 
-/* Letters alone, small ones; a unit in brackets or behind a blank is looked at apart. */
+/* Classifies a column by its name, in lower case and without anything but letters; a unit, in brackets or after a
+ * space, is read separately. */
 static column take_field(header *h, const field *f)
 {
     char word[LONGEST_NAME + 1], unit[LONGEST_NAME + 1];
@@ -156,7 +156,7 @@ static void read_header(const text_row *r, header *h)
 
 /* ---- rows ---- */
 
-static bool have_its_columns(const light_table *t, const header *h)
+static bool have_its_columns(const light_parser *t, const header *h)
 {
     field fields[MOST_COLUMNS];
     for (size_t i = 0; i < t->count; i++)
@@ -164,14 +164,14 @@ static bool have_its_columns(const light_table *t, const header *h)
     return true;
 }
 
-/* NULL unless the field is one word. */
+/* Returns the field's word, or NULL unless the field is one word. */
 static const text_word *number_in(const field *f)
 {
     return f->length == f->first->length ? f->first : NULL;
 }
 
-static status take_words(const light_table *t, const header *h, const text_row *r, const column *wanted, size_t count,
-                         light_words *w)
+static status take_words(const light_parser *t, const header *h, const text_row *r, const column *wanted, size_t count,
+                         light_entry *w)
 {
     field fields[MOST_COLUMNS];
     find_fields(r, fields);
@@ -191,8 +191,8 @@ static status take_words(const light_table *t, const header *h, const text_row *
     return OK;
 }
 
-/* From x toward y, and from their plane toward the camera. */
-static status turn_angles(const light_table *t, const header *h, bool far, light_list *list)
+/* Turns angles into directions: azimuth from x toward y, elevation from their plane toward the camera. */
+static status turn_angles(const light_parser *t, const header *h, bool far, light_list *list)
 {
     bool large = false;
     for (size_t i = 0; i < list->count; i++)
@@ -202,7 +202,7 @@ static status turn_angles(const light_table *t, const header *h, bool far, light
     if (!h->radians && !h->degrees)
         return fail(MERLIN_BAD_INPUT, "%s: its header names angles, but no unit; write \"azimuth deg, elevation deg\"",
                     t->where);
-    double unit = h->degrees ? DEGREE : 1;
+    double unit = h->degrees ? M_PI / 180 : 1;
     for (size_t i = 0; i < list->count; i++) {
         vec3 *v = &list->at[i];
         double azimuth = (double)v->x * unit, elevation = (double)v->y * unit, distance = far ? (double)v->z : 1;
@@ -215,7 +215,7 @@ static status turn_angles(const light_table *t, const header *h, bool far, light
     return OK;
 }
 
-static status add_rows(light_table *t, const header *h)
+static status add_rows(light_parser *t, const header *h)
 {
     bool angles = h->known[COLUMN_X] == 0, far = angles && h->known[COLUMN_DISTANCE];
     column wanted[6] = {COLUMN_X, COLUMN_Y, COLUMN_Z};
@@ -232,9 +232,9 @@ static status add_rows(light_table *t, const header *h)
     }
     status s = OK;
     for (size_t i = 0; i < t->count && s == OK; i++) {
-        light_words w = {0};
+        light_entry w = {0};
         s = take_words(t, h, &t->row[i], wanted, count, &w);
-        if (s == OK) s = light_table_add(t, &w);
+        if (s == OK) s = light_parser_add(t, &w);
     }
     return s == OK && angles ? turn_angles(t, h, far, t->list) : s;
 }
@@ -250,16 +250,16 @@ static bool is_used(const header *h, size_t i)
     return !angle || !h->known[COLUMN_X];
 }
 
-static void note_others(light_table *t, const header *h)
+static void note_others(light_parser *t, const header *h)
 {
     for (size_t i = 0; i < h->count; i++) {
         if (!is_used(h, i))
-            light_table_note(t, "its column \"%.*s\" is not used",
-                             (int)(h->field[i].length < 40 ? h->field[i].length : 40), h->field[i].at);
+            light_parser_note(t, "its column \"%.*s\" is not used",
+                              (int)(h->field[i].length < 40 ? h->field[i].length : 40), h->field[i].at);
     }
 }
 
-/* Tells whether the columns may be told without the header, which then is a title. */
+/* Tells whether the columns may also be recognized without the header, which is then a title. */
 static bool may_be_title(const header *h)
 {
     bool angles = h->known[COLUMN_AZIMUTH] || h->known[COLUMN_ELEVATION] || h->known[COLUMN_ANGLE];
@@ -269,7 +269,7 @@ static bool may_be_title(const header *h)
     return axes ? in_order : !angles;
 }
 
-status light_table_by_header(light_table *t, bool *done)
+status light_parser_by_header(light_parser *t, bool *done)
 {
     header h;
     read_header(t->header, &h);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads lists of lights: the lines before the lights, and the list as a whole; base/lights/light_table.h has its
- * columns. */
+/* Reads lists of lights: the lines before the lights, and the list as a whole. The columns are read by the functions of
+ * base/lights/light_parser.h. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/lights/light_table.h"
+#include "base/lights/light_parser.h"
 
 enum { FILE_MAX_SIZE = 1 << 22 };
 
-/* ---- what stands before the lights ---- */
+/* ---- lines before the lights ---- */
 
 static bool is_whole(const text_word *w)
 {
@@ -24,7 +24,8 @@ static bool is_number_like(const text_word *w)
     return w->kind != TEXT_WORD;
 }
 
-/* Words, among which whole numbers may be that count something, but no light's numbers and no picture's name. */
+/* Tells whether a row is a heading: words, and perhaps whole numbers that count something, but neither a light's
+ * numbers nor a picture's name. */
 static bool is_heading(const text_row *r)
 {
     const text_word *w = r->word;
@@ -33,13 +34,13 @@ static bool is_heading(const text_row *r)
     if (n > 3 && is_number_like(&w[n - 1]) && is_number_like(&w[n - 2]) && is_number_like(&w[n - 3])) return false;
     for (size_t i = 0; i < n; i++) {
         if (is_number_like(&w[i]) && !is_whole(&w[i])) return false;
-        if (light_table_is_file(w[i].at, w[i].length)) return false;
+        if (light_parser_is_file_name(w[i].at, w[i].length)) return false;
     }
     return true;
 }
 
-/* A line that holds one whole number alone is the count of an .lp file. */
-static status take_count(light_table *t, const text_row *r)
+/* Takes a line with a single whole number as the count of an .lp file. */
+static status take_count(light_parser *t, const text_row *r)
 {
     const text_word *w = r->word;
     int length = w->length < 40 ? (int)w->length : 40;
@@ -53,8 +54,8 @@ static status take_count(light_table *t, const text_row *r)
     return OK;
 }
 
-/* Skips title, count, names of columns and comments; what is left are lights. */
-static status take_head(light_table *t)
+/* Skips title, count, column names and comments, so that only lights are left. */
+static status take_head(light_parser *t)
 {
     for (; t->count; t->row++, t->count--) {
         const text_row *r = t->row;
@@ -70,9 +71,9 @@ static status take_head(light_table *t)
     return OK;
 }
 
-/* ---- all of them ---- */
+/* ---- the whole list ---- */
 
-/* Room for all that a list may have, for they are few. */
+/* Allocates the arrays for `count` lights, optional ones too, as lists are short. */
 static status make_room(light_list *list, size_t count)
 {
     list->at = calloc(count, sizeof *list->at);
@@ -90,7 +91,7 @@ static bool has_names(const light_list *list)
     return false;
 }
 
-static status check_names(const light_table *t)
+static status check_names(const light_parser *t)
 {
     const light_list *list = t->list;
     for (size_t i = 0; i < list->count; i++)
@@ -115,7 +116,7 @@ static void forget_names(light_list *list)
     list->name = NULL;
 }
 
-static status check_directions(const light_table *t)
+static status check_directions(const light_parser *t)
 {
     const light_list *list = t->list;
     for (size_t i = 0; i < list->count; i++)
@@ -124,8 +125,9 @@ static status check_directions(const light_table *t)
     return OK;
 }
 
-/* Names the last one, which may be where the file was cut. */
-static status check_count(const light_table *t)
+/* Compares the number of lights with the announced count; the message names the last light, where the file may have
+ * been cut. */
+static status check_count(const light_parser *t)
 {
     const light_list *list = t->list;
     if (t->announced == 0 || (size_t)t->announced == list->count) return OK;
@@ -135,13 +137,13 @@ static status check_count(const light_table *t)
                 *name ? ", the last one for " : "", name);
 }
 
-static status take_lights(light_table *t)
+static status take_lights(light_parser *t)
 {
     light_list *list = t->list;
     bool done = false;
     status s = make_room(list, t->count > 3 ? t->count : LIGHT_LIST_MAX);
-    if (s == OK && t->header) s = light_table_by_header(t, &done);
-    if (s == OK && !done) s = light_table_by_place(t);
+    if (s == OK && t->header) s = light_parser_by_header(t, &done);
+    if (s == OK && !done) s = light_parser_by_place(t);
     if (s != OK) return s;
     if (are_equally_strong(list)) {
         free(list->intensity);
@@ -156,8 +158,8 @@ static status take_lights(light_table *t)
     return s == OK ? check_count(t) : s;
 }
 
-/* Lines that are comments alone have no place among the lights. */
-static status without_comments(const light_table *t, text_row **out)
+/* Copies the rows, leaving out lines that are only comments. */
+static status without_comments(const light_parser *t, text_row **out)
 {
     text_row *kept = malloc((t->count + 1) * sizeof *kept);
     if (!kept) return fail(MERLIN_NO_MEMORY, "no memory for %s", t->where);
@@ -170,7 +172,7 @@ static status without_comments(const light_table *t, text_row **out)
 
 static status take_rows(const text_rows *rows, const char *where, light_list *out)
 {
-    light_table t = {.where = where, .row = rows->row, .count = rows->count, .list = out};
+    light_parser t = {.where = where, .row = rows->row, .count = rows->count, .list = out};
     status s = take_head(&t);
     if (s == OK && t.count == 0) s = fail(MERLIN_BAD_INPUT, "%s: no lights in it (expected x y z a line)", where);
     text_row *kept = NULL;

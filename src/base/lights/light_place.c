@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Columns of a list of lights without names: told by where words and numbers stand, and by what the numbers are. */
+/* Columns of a list of lights without a header: recognized by where words and numbers stand, and by the numbers'
+ * values. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#include "base/lights/light_table.h"
+#include "base/lights/light_parser.h"
 
 enum { MOST_WORDS = 7 };
-/* The error of unit directions' lengths, as they are rounded. */
+/* tolerance of a unit direction's length, for rounded directions */
 static const double unit_tolerance = 0.02;
 
-/* A row's numbers: the last words, or where a name comes last the first ones. */
+/* The numbers of a row: its last words, or its first ones if a name follows them. */
 typedef struct run {
     size_t first, count;
     bool name_behind;
@@ -40,15 +41,15 @@ static bool is_all_numbers(const text_row *r)
     return numbers.count == r->count;
 }
 
-static bool are_all_numbers(const light_table *t)
+static bool are_all_numbers(const light_parser *t)
 {
     for (size_t i = 0; i < t->count; i++)
         if (!is_all_numbers(&t->row[i])) return false;
     return true;
 }
 
-/* Names the first word that should have been a number, if that is all that is wrong. */
-static status refuse_row(const light_table *t, const text_row *r)
+/* Refuses a row, naming the first word that should have been a number if that is all that is wrong. */
+static status refuse_row(const light_parser *t, const text_row *r)
 {
     for (size_t i = 1; i < r->count && r->count <= MOST_WORDS; i++) {
         const text_word *w = &r->word[i];
@@ -66,14 +67,14 @@ static status refuse_row(const light_table *t, const text_row *r)
                 r->count == 1 ? "" : "s");
 }
 
-/* ---- lights in columns ---- */
+/* ---- one light a column ---- */
 
 static double length_of(const text_word *const at[3])
 {
     return sqrt(at[0]->value * at[0]->value + at[1]->value * at[1]->value + at[2]->value * at[2]->value);
 }
 
-static bool has_unit_rows(const light_table *t)
+static bool has_unit_rows(const light_parser *t)
 {
     for (size_t i = 0; i < t->count; i++) {
         const text_word *w = t->row[i].word;
@@ -82,8 +83,8 @@ static bool has_unit_rows(const light_table *t)
     return true;
 }
 
-/* Three rows of n words each. */
-static bool has_unit_columns(const light_table *t, size_t first, size_t n)
+/* Tells whether three rows of n words hold unit vectors, one a column. */
+static bool has_unit_columns(const light_parser *t, size_t first, size_t n)
 {
     for (size_t k = first; k < first + n; k++) {
         const text_word *const at[3] = {&t->row[0].word[k], &t->row[1].word[k], &t->row[2].word[k]};
@@ -98,7 +99,7 @@ static bool is_axis(const text_word *w, char axis)
            tolower((unsigned char)w->at[w->length - 1]) == axis;
 }
 
-static status add_columns(light_table *t, size_t first)
+static status add_columns(light_parser *t, size_t first)
 {
     const text_row *r = t->row;
     size_t n = r[0].count - first;
@@ -106,8 +107,8 @@ static status add_columns(light_table *t, size_t first)
         return fail(MERLIN_BAD_INPUT, "%s: %zu lights are more than %d", t->where, n, LIGHT_LIST_MAX);
     status s = OK;
     for (size_t k = first; k < first + n && s == OK; k++) {
-        light_words w = {.number = {&r[0].word[k], &r[1].word[k], &r[2].word[k]}, .count = 3, .line = r[0].line};
-        s = light_table_add(t, &w);
+        light_entry w = {.number = {&r[0].word[k], &r[1].word[k], &r[2].word[k]}, .count = 3, .line = r[0].line};
+        s = light_parser_add(t, &w);
     }
     return s;
 }
@@ -117,8 +118,8 @@ static bool is_whole_of(const text_word *w, double value)
     return w->kind == TEXT_NUMBER && w->value == value;
 }
 
-/* Tells whether a column of the rows' numbers counts the lights from 0 or 1 in any order. */
-static bool is_index(const light_table *t, size_t column)
+/* Tells whether a column numbers the lights from 0 or 1, in any order. */
+static bool is_index(const light_parser *t, size_t column)
 {
     bool zero = false, sound = t->count > 1;
     bool *seen = calloc(t->count + 1, sizeof *seen);
@@ -136,8 +137,9 @@ static bool is_index(const light_table *t, size_t column)
     return sound;
 }
 
-/* x, y and z are a line each, for a light in each column. Three lights with strengths look the same: lengths tell. */
-static status by_columns(light_table *t, bool *done)
+/* Reads x, y and z from a line each, one light a column. Three lights with intensities look the same; unit lengths tell
+ * which it is. */
+static status by_columns(light_parser *t, bool *done)
 {
     const text_row *r = t->row;
     *done = false;
@@ -166,17 +168,17 @@ static status by_columns(light_table *t, bool *done)
     return add_columns(t, 0);
 }
 
-/* ---- a light a line ---- */
+/* ---- one light a line ---- */
 
 static int by_text(const void *a, const void *b)
 {
-    const light_words *one = a, *other = b;
+    const light_entry *one = a, *other = b;
     size_t least = one->name_length < other->name_length ? one->name_length : other->name_length;
     int order = memcmp(one->name, other->name, least);
     return order ? order : (one->name_length > other->name_length) - (one->name_length < other->name_length);
 }
 
-static void set_name(light_words *w, const text_row *r, size_t first, size_t end)
+static void set_name(light_entry *w, const text_row *r, size_t first, size_t end)
 {
     if (first == end) return;
     const text_word *last = &r->word[end - 1];
@@ -184,10 +186,10 @@ static void set_name(light_words *w, const text_row *r, size_t first, size_t end
     w->name_length = (size_t)(last->at + last->length - w->name);
 }
 
-/* Finds whether no two rows have the same name before their numbers. */
-static status have_distinct_names(const light_table *t, bool *distinct)
+/* Sets *distinct to whether no two rows have the same name before their numbers. */
+static status have_distinct_names(const light_parser *t, bool *distinct)
 {
-    light_words *all = calloc(t->count, sizeof *all);
+    light_entry *all = calloc(t->count, sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu names", t->count);
     for (size_t i = 0; i < t->count; i++)
         set_name(&all[i], &t->row[i], 0, run_of(&t->row[i]).first);
@@ -199,9 +201,9 @@ static status have_distinct_names(const light_table *t, bool *distinct)
     return OK;
 }
 
-/* Tells whether what stands before the numbers is parted from them by more than blanks, or ends as a file, in all rows.
- */
-static bool are_names_apart(const light_table *t)
+/* Tells whether in all rows the name before the numbers is separated from them by more than spaces, or ends in an
+ * extension. */
+static bool are_names_apart(const light_parser *t)
 {
     for (size_t i = 0; i < t->count; i++) {
         const text_row *r = &t->row[i];
@@ -209,21 +211,21 @@ static bool are_names_apart(const light_table *t)
         if (numbers.name_behind) continue;
         if (numbers.first == 0) return false;
         const text_word *last = &r->word[numbers.first - 1];
-        if (!r->word[numbers.first].apart && !light_table_is_file(last->at, last->length)) return false;
+        if (!r->word[numbers.first].apart && !light_parser_is_file_name(last->at, last->length)) return false;
     }
     return true;
 }
 
-/* The columns of all rows: how many numbers are a light's, and how many before them are not. */
+/* The columns that all rows share: how many numbers belong to a light, and how many before them do not. */
 typedef struct columns {
     size_t numbers, before;
-    bool named;        /* those before belong to the name */
-    bool index_behind; /* one behind them is the name */
+    bool named;        /* those before are part of the name */
+    bool index_behind; /* the one after them is the name */
 } columns;
 
-/* Tells whether rows of four numbers are names that are whole numbers, of which no two are the same, before directions:
- * 15.png may be "15". */
-static bool are_named_units(const light_table *t)
+/* Tells whether rows of four numbers are distinct whole numbers before unit directions: 15.png may be listed as "15".
+ */
+static bool are_named_units(const light_parser *t)
 {
     for (size_t i = 0; i < t->count; i++) {
         const text_word *w = t->row[i].word;
@@ -235,8 +237,8 @@ static bool are_named_units(const light_table *t)
     return t->count > 1 && !has_unit_rows(t);
 }
 
-/* Without words: x y z, strengths, and a column that counts or is a picture's name. */
-static status of_numbers(const light_table *t, size_t n, columns *out)
+/* Finds the columns of rows of numbers only: x y z, intensities, and a column that counts or names the picture. */
+static status of_numbers(const light_parser *t, size_t n, columns *out)
 {
     bool known = n == 3 || (t->announced > 0 && n == 6);
     bool index = !known && n > 3 && (t->announced > 0 || is_index(t, 0) || are_named_units(t));
@@ -247,8 +249,8 @@ static status of_numbers(const light_table *t, size_t n, columns *out)
     return OK;
 }
 
-/* "Light 1 0 0 1": what is a name's number is no column. */
-static status of_words(const light_table *t, size_t n, columns *out)
+/* Finds the columns of rows with words: in "Light 1 0 0 1" the 1 belongs to the name. */
+static status of_words(const light_parser *t, size_t n, columns *out)
 {
     bool apart = run_of(&t->row[0]).name_behind || are_names_apart(t), distinct = true;
     status s = apart ? OK : have_distinct_names(t, &distinct);
@@ -262,15 +264,15 @@ static status of_words(const light_table *t, size_t n, columns *out)
     return OK;
 }
 
-static status refuse_other_columns(const light_table *t, const text_row *r)
+static status refuse_other_columns(const light_parser *t, const text_row *r)
 {
     if (r->count < 3 || run_of(r).count < 3) return refuse_row(t, r);
     return fail(MERLIN_BAD_INPUT, "%s:%d: %zu words, where the first light has %zu; expected x y z", t->where, r->line,
                 r->count, t->row[0].count);
 }
 
-/* Rows whose names end in numbers have other counts of them: the last three are x y z. */
-static status of_unlike_rows(const light_table *t, columns *out)
+/* Finds the columns of rows of different lengths, whose names contain numbers: the last three are x y z. */
+static status of_unlike_rows(const light_parser *t, columns *out)
 {
     *out = (columns){3, 0, true, false};
     for (size_t i = 0; i < t->count; i++) {
@@ -279,13 +281,13 @@ static status of_unlike_rows(const light_table *t, columns *out)
         if (numbers.count < 3) return refuse_row(t, r);
         if (numbers.count == 3) continue;
         const text_word *before = numbers.first ? &r->word[numbers.first - 1] : NULL;
-        bool named = before && !light_table_is_file(before->at, before->length);
+        bool named = before && !light_parser_is_file_name(before->at, before->length);
         if (numbers.name_behind || !(named || t->announced > 0)) return refuse_other_columns(t, r);
     }
     return OK;
 }
 
-static status find_columns(const light_table *t, columns *out)
+static status find_columns(const light_parser *t, columns *out)
 {
     size_t n = run_of(&t->row[0]).count;
     bool alike = true, numbers = are_all_numbers(t);
@@ -301,17 +303,17 @@ static status find_columns(const light_table *t, columns *out)
     return numbers ? of_numbers(t, n, out) : of_words(t, n, out);
 }
 
-/* Where a light's own numbers begin. */
+/* Returns the index of a row's first number that belongs to the light. */
 static size_t first_number(const text_row *r, const columns *c)
 {
     run numbers = run_of(r);
     return c->index_behind ? numbers.first : numbers.first + (numbers.count - c->numbers);
 }
 
-static status add_row(light_table *t, const text_row *r, const columns *c)
+static status add_row(light_parser *t, const text_row *r, const columns *c)
 {
     run numbers = run_of(r);
-    light_words w = {.count = c->numbers, .line = r->line};
+    light_entry w = {.count = c->numbers, .line = r->line};
     size_t first = first_number(r, c);
     if (c->index_behind)
         set_name(&w, r, first + c->numbers, r->count);
@@ -321,17 +323,17 @@ static status add_row(light_table *t, const text_row *r, const columns *c)
         set_name(&w, r, 0, c->named ? first : numbers.first);
     for (size_t k = 0; k < c->numbers; k++)
         w.number[k] = &r->word[first + k];
-    return light_table_add(t, &w);
+    return light_parser_add(t, &w);
 }
 
-/* Tells whether a whole number, a comma and digits, as 0,25 is written, stand there. */
+/* Tells whether a word is a whole number, a comma and digits, as 0,25 is written. */
 static bool is_pair(const text_word *w)
 {
     return w[1].at == w[0].at + w[0].length + 1 && w[1].at[-1] == ',' && isdigit((unsigned char)*w[1].at) &&
            !memchr(w[0].at, '.', w[0].length) && !memchr(w[1].at, '.', w[1].length);
 }
 
-/* 0,6,0,0,0,8: three decimal commas of a direction. */
+/* Tells whether six numbers such as 0,6,0,0,0,8 may be a direction with decimal commas. */
 static bool are_pairs(const text_word *w)
 {
     double sum = 0;
@@ -343,8 +345,8 @@ static bool are_pairs(const text_word *w)
     return fabs(sqrt(sum) - 1) < unit_tolerance;
 }
 
-/* Refuses what has commas and blanks as they come, and six numbers that may be three. */
-static status check_strengths(const light_table *t, const columns *c)
+/* Refuses rows that mix commas and spaces inconsistently, and six numbers that may be three with decimal commas. */
+static status check_strengths(const light_parser *t, const columns *c)
 {
     bool pairs = c->numbers == 6;
     for (size_t i = 0; i < t->count; i++) {
@@ -360,13 +362,13 @@ static status check_strengths(const light_table *t, const columns *c)
                 t->where, t->row[0].line);
 }
 
-static void doubt_three(light_table *t)
+static void doubt_three(light_parser *t)
 {
     if (t->count == 3 && t->row[0].count == 3 && has_unit_columns(t, 0, 3) && !has_unit_rows(t))
-        light_table_note(t, "its 3 columns have length 1 and its lines have not: a light is a line, x y z");
+        light_parser_note(t, "its 3 columns have length 1 and its lines have not: a light is a line, x y z");
 }
 
-status light_table_by_place(light_table *t)
+status light_parser_by_place(light_parser *t)
 {
     bool done;
     status s = by_columns(t, &done);
@@ -378,8 +380,8 @@ status light_table_by_place(light_table *t)
         s = add_row(t, &t->row[i], &c);
     if (s != OK) return s;
     if (c.numbers > 3)
-        light_table_note(t, "what stands behind x y z was taken for the strength%s of the lights",
-                         c.numbers > 4 ? "s in red, green and blue" : "");
+        light_parser_note(t, "what stands behind x y z was taken for the strength%s of the lights",
+                          c.numbers > 4 ? "s in red, green and blue" : "");
     if (are_all_numbers(t)) doubt_three(t);
     return OK;
 }

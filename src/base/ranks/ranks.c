@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Floats of a piece: large enough that the network carries it at its full rate, small beside a model. */
+/* floats in a piece: large enough for the network's full rate, small beside a model */
 enum { PIECE = 1 << 17 };
 
 int ranks_count(const ranks *r)
@@ -22,9 +22,9 @@ void ranks_close(ranks *r)
     if (r) r->close();
 }
 
-void ranks_abandon(ranks *r)
+void ranks_abort(ranks *r)
 {
-    if (r) r->abandon();
+    if (r) r->abort_all();
 }
 
 static bool is_alone(const ranks *r)
@@ -37,7 +37,7 @@ status ranks_sum(const ranks *r, double *values, size_t count)
     if (is_alone(r)) return OK;
     double *all = malloc((size_t)r->count * count * sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu sums of %d ranks", count, r->count);
-    r->gather(values, all, count * sizeof *values);
+    r->all_gather(values, all, count * sizeof *values);
     for (size_t i = 0; i < count; i++) {
         values[i] = 0;
         for (size_t k = 0; k < (size_t)r->count; k++)
@@ -47,7 +47,7 @@ status ranks_sum(const ranks *r, double *values, size_t count)
     return OK;
 }
 
-/* The same piece of every rank's values becomes their sum. */
+/* Sums the same piece of every rank's values, in double and in the ranks' order. */
 static void add_up(const float *from, int count, size_t piece, float *sum)
 {
     for (size_t i = 0; i < piece; i++) {
@@ -58,19 +58,19 @@ static void add_up(const float *from, int count, size_t piece, float *sum)
     }
 }
 
-/* As many values as there are ranks times `piece`; room for as many, and a piece. */
+/* Sums `piece` values times the number of ranks; room must hold as many and one more piece. */
 static void sum_round(const ranks *r, float *values, size_t piece, float *room)
 {
     float *sum = room + (size_t)r->count * piece;
-    r->exchange(values, room, piece * sizeof *values);
+    r->all_to_all(values, room, piece * sizeof *values);
     add_up(room, r->count, piece, sum);
-    r->gather(sum, values, piece * sizeof *values);
+    r->all_gather(sum, values, piece * sizeof *values);
 }
 
-/* What is left over by whole pieces: every rank adds all of it up. */
+/* Sums what does not fill whole pieces: every rank adds up all of it. */
 static void sum_rest(const ranks *r, float *values, size_t count, float *room)
 {
-    r->gather(values, room, count * sizeof *values);
+    r->all_gather(values, room, count * sizeof *values);
     add_up(room, r->count, count, values);
 }
 
@@ -91,20 +91,20 @@ status ranks_sum_floats(const ranks *r, float *values, size_t count)
     return OK;
 }
 
-void ranks_share(const ranks *r, void *what, size_t bytes)
+void ranks_broadcast(const ranks *r, void *what, size_t bytes)
 {
-    if (!is_alone(r)) r->share(what, bytes);
+    if (!is_alone(r)) r->broadcast(what, bytes);
 }
 
 status ranks_agree(const ranks *r, status s)
 {
     if (is_alone(r)) return s;
     int mine = (int)s, *all = malloc((size_t)r->count * sizeof *all), first = 0;
-    if (!all) { /* the others wait in vain */
-        r->abandon();
+    if (!all) { /* the others would wait forever */
+        r->abort_all();
         return fail(MERLIN_NO_MEMORY, "no memory to hear from %d ranks", r->count);
     }
-    r->gather(&mine, all, sizeof mine);
+    r->all_gather(&mine, all, sizeof mine);
     while (first < r->count && all[first] == (int)OK)
         first++;
     free(all);

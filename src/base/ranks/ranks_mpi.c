@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds the plug-in that speaks MPI, which nothing else of the program needs. */
+/* Loads the plug-in for MPI: only `train --mpi` needs it, so that the program is not linked with MPI. */
 #include <dlfcn.h>
 #include <limits.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ status ranks_open_mpi(ranks **out)
         return fail(MERLIN_DEVICE_FAILED, "there is no MPI: %s",
                     why ? why : "install openmpi-bin and libopenmpi-dev and build merlin again");
     }
-    /* dlsym gives functions as objects, which C does not turn into each other */
+    /* dlsym returns object pointers, and C has no conversion to function pointers */
     ranks *(*begin)(void);
     void *function = dlsym(plugin, "merlin_ranks_begin");
     memcpy(&begin, &function, sizeof begin);

@@ -20,7 +20,7 @@ static char *put_whole(char *to, uint64_t whole, int least_digits)
     return to;
 }
 
-/* What %g writes with an exponent, and what is no number. */
+/* Writes what %g would write with an exponent, and values that are not finite. */
 static char *put_rare(char *to, double value, int digits)
 {
     char text[DECIMAL_ROOM + 8];
@@ -36,7 +36,7 @@ char *decimal_put(char *to, double value, int digits)
     double size = fabs(value);
     if (size == 0) return put_whole(to, 0, 1);
     if (!(size >= 1e-4 && size < power[digits] - 0.5)) return put_rare(to, value, digits);
-    int decimals = digits - 1; /* below 10; each digit more before the point is one less behind it */
+    int decimals = digits - 1; /* below 10; each more digit before the point is one less after it */
     while (decimals > 0 && size >= power[digits - decimals])
         decimals--;
     for (int zeros = 0; size * power[zeros] < 1; zeros++)

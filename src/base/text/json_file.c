@@ -10,9 +10,9 @@
 
 enum { MAX_BYTES = 1 << 20 };
 
-/* A file on the way from the first one, which nobody named. */
+/* A file on the path from the one that was asked for to the one being read. */
 typedef struct link {
-    const char *path, *key; /* key: by which its parent names it */
+    const char *path, *key; /* key: under which its parent names it */
     const struct link *parent;
 } link;
 
@@ -57,7 +57,7 @@ static status open_file(const link *at, json_object **out)
     return s == OK ? check_once(*out, (*out)->root) : s;
 }
 
-/* Moves into over what base has and over lacks. */
+/* Adds to `over` what only `base` has; objects that both have are merged. */
 static void merge(cJSON *base, cJSON *over)
 {
     cJSON *next;
@@ -65,7 +65,8 @@ static void merge(cJSON *base, cJSON *over)
         next = item->next;
         cJSON *own = cJSON_GetObjectItemCaseSensitive(over, item->string);
         if (!own)
-            cJSON_AddItemToArray(over, cJSON_DetachItemViaPointer(base, item)); /* as an object's, it keeps its name */
+            cJSON_AddItemToArray(
+                over, cJSON_DetachItemViaPointer(base, item)); /* it keeps its name when it returns to the object */
         else if (cJSON_IsObject(own) && cJSON_IsObject(item))
             merge(item, own);
     }
@@ -73,7 +74,7 @@ static void merge(cJSON *base, cJSON *over)
 
 static status load(const link *at, const char *part, json_object **out);
 
-/* The file whose path stands in item of the file at `at`. */
+/* Reads the file whose path is in `item` of the file at `at`. */
 static status load_named(const link *at, const cJSON *item, const char *part, json_object **out)
 {
     const char *name = item->valuestring;
@@ -86,7 +87,7 @@ static status load_named(const link *at, const cJSON *item, const char *part, js
     return s;
 }
 
-/* Puts a file's object in the place of its path. *named: there was one. */
+/* Replaces a path under `part` by that file's object. *named: there was one. */
 static status put_part(const link *at, const json_object *o, const char *part, bool *named)
 {
     const cJSON *item = part ? cJSON_GetObjectItemCaseSensitive(o->root, part) : NULL;
@@ -102,7 +103,7 @@ static status put_part(const link *at, const json_object *o, const char *part, b
     return s;
 }
 
-/* own_part: the file names its own, and wants nothing of the base's. */
+/* Merges the base file. own_part: the file names a part of its own and takes none from the base. */
 static status put_base(const link *at, const json_object *o, const char *part, bool own_part)
 {
     cJSON *item = cJSON_DetachItemFromObjectCaseSensitive(o->root, "base");

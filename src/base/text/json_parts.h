@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Layout of a json_object, for those who put one together. */
+/* Layout of a json_object, for the functions that create one. */
 #ifndef MERLIN_BASE_TEXT_JSON_PARTS_H
 #define MERLIN_BASE_TEXT_JSON_PARTS_H
 

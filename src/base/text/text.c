@@ -41,7 +41,7 @@ static uint32_t unit_at(const unsigned char *b, encoding e)
     return e == BIG_ENDIAN_16 ? (uint32_t)b[0] << 8 | b[1] : (uint32_t)b[1] << 8 | b[0];
 }
 
-/* An odd byte at the end is left out, as the half of nothing. */
+/* Decodes UTF-16 to UTF-8. An odd last byte is ignored. */
 static size_t decode_units(const unsigned char *b, size_t size, encoding e, char *to)
 {
     const char *begin = to;
@@ -59,10 +59,10 @@ static size_t decode_units(const unsigned char *b, size_t size, encoding e, char
     return (size_t)(to - begin);
 }
 
-/* Control-Z, with which DOS and what learned from it end a text. */
+/* Control-Z, with which DOS and some later programs end a text. */
 enum { END_OF_TEXT = 0x1a };
 
-/* Rewrites in place, which only shortens. */
+/* Normalizes line ends and some characters in place, which only shortens the text; refuses zero bytes. */
 static status make_plain(char *text, size_t size, const char *where)
 {
     static const char minus[] = "\xe2\x88\x92", blank[] = "\xc2\xa0";

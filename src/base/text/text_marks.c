@@ -20,8 +20,8 @@ static bool stands_between(char c)
     return text_is_blank(c) || strchr(",;:=()[]{}", c);
 }
 
-/* The sign that ends the quotation which begins at `at`; NULL if none begins there: what an apostrophe does in a name
- * is no quotation. Two signs inside stand for one. */
+/* Returns the character that ends the quotation which begins at `at`; NULL if none begins there: an apostrophe inside a
+ * name does not begin one. Inside, two double quotes stand for one. */
 static const char *quotation_end(const char *line, const char *at, const char *stop)
 {
     if ((*at != '"' && *at != '\'') || (at > line && !stands_between(at[-1]))) return NULL;
@@ -36,7 +36,8 @@ static const char *quotation_end(const char *line, const char *at, const char *s
     return NULL;
 }
 
-/* In a name these signs are no comment; a line of a spreadsheet that begins with semicolons has nothing in it. */
+/* Tells whether a comment begins here: inside a name these characters do not begin one, and a spreadsheet's line that
+ * begins with semicolons is just empty. */
 static bool begins_comment(const char *first, const char *at, const char *stop)
 {
     if (at > first && at[-1] != ' ' && at[-1] != '\t') return false;
@@ -67,7 +68,7 @@ static void mark_line(const char *line, const char *stop, unsigned char *marks)
 
 typedef struct bracket {
     size_t at;
-    bool around; /* others */
+    bool around; /* contains other brackets */
 } bracket;
 
 typedef struct brackets {
@@ -78,7 +79,7 @@ typedef struct brackets {
     int depth;
 } brackets;
 
-/* Tells whether a bracket may stand for itself there, instead of in a name such as "IMG (2).jpg". */
+/* Tells whether a bracket is punctuation, instead of part of a name such as "IMG (2).jpg". */
 static bool stands_alone(const brackets *b, size_t open, size_t close)
 {
     char before = open > 0 ? b->text[open - 1] : ' ', after = close + 1 < b->size ? b->text[close + 1] : ' ';
@@ -114,7 +115,7 @@ static void close_bracket(brackets *b, size_t at)
         b->open[i].around = true;
 }
 
-/* One in a name may have no end: what is open longest is forgotten first. */
+/* Opens a bracket. One in a name may never be closed, so that the oldest open one is dropped when there is no room. */
 static void open_bracket(brackets *b, size_t at)
 {
     if (b->depth == DEEPEST) memmove(b->open, b->open + 1, (size_t)--b->depth * sizeof *b->open);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the signs of a table of numbers mean where they stand: comments, quotes, and brackets round rows and round all.
- * A part of base/text/text_rows.h. */
+/* The meaning of punctuation in a table of numbers: comments, quotes, brackets around rows and around the table. A part
+ * of base/text/text_rows.h. */
 #ifndef MERLIN_BASE_TEXT_TEXT_MARKS_H
 #define MERLIN_BASE_TEXT_TEXT_MARKS_H
 
@@ -9,16 +9,16 @@
 
 typedef enum text_mark {
     MARK_NONE,
-    MARK_COMMENT,  /* any sign of a comment */
-    MARK_QUOTE,    /* the sign that begins or ends a quotation */
-    MARK_QUOTED,   /* any sign inside one */
-    MARK_OPEN,     /* a bracket round others */
-    MARK_CLOSE,    /* its end */
-    MARK_OPEN_ROW, /* a bracket with numbers in it and no other bracket */
-    MARK_CLOSE_ROW /* its end */
+    MARK_COMMENT,  /* any character of a comment */
+    MARK_QUOTE,    /* the quote that begins or ends a quotation */
+    MARK_QUOTED,   /* any character inside one */
+    MARK_OPEN,     /* opens a bracket that contains others */
+    MARK_CLOSE,    /* closes it */
+    MARK_OPEN_ROW, /* opens a bracket that contains numbers and no other bracket */
+    MARK_CLOSE_ROW /* closes it */
 } text_mark;
 
-/* Marks the size signs of a decoded text; marks must be as many MARK_NONE. */
+/* Marks the `size` characters of a decoded text; marks must be as many MARK_NONE. */
 void text_mark_all(const char *text, size_t size, unsigned char *marks);
 
 static inline bool text_is_blank(char c)

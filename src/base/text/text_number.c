@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A number as a word of a table has it: decimal, whatever the locale, with an exponent of e or d. */
+/* Parses a word of a table as a number: decimal, independent of the locale, with an exponent of e or d. */
 #include "base/text/text_number.h"
 
 #include <ctype.h>
@@ -21,7 +21,7 @@ static size_t digits(const char *c)
     return n;
 }
 
-/* What C writes behind a float is left out. */
+/* Tells whether a word is a decimal number; removes the f that C writes after a float. */
 static bool is_decimal(char *word)
 {
     char *c = word + (*word == '+' || *word == '-');
@@ -43,7 +43,7 @@ static bool is_decimal(char *word)
     return *c == 0;
 }
 
-/* As C, Python, MATLAB and spreadsheets write them. */
+/* Tells whether a word is a named value such as nan or inf, as C, Python, MATLAB and spreadsheets write them. */
 static bool is_named(const char *word)
 {
     static const char *const names[] = {"nan", "inf", "infinity", "nan(ind)", "1.#ind", "1.#inf", "1.#qnan"};

@@ -9,10 +9,10 @@
 typedef enum text_kind {
     TEXT_WORD,
     TEXT_NUMBER,
-    TEXT_NO_NUMBER /* "nan", "inf" and what no float holds */
+    TEXT_NO_NUMBER /* "nan", "inf" and what exceeds a float */
 } text_kind;
 
-/* A word's number, in which a comma may be the decimal one. */
+/* Classifies a word; *value is its number. With `comma`, a comma may be the decimal point. */
 text_kind text_number(const char *word, size_t length, bool comma, double *value);
 
 #endif

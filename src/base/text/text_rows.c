@@ -14,12 +14,12 @@ typedef struct scanner {
     const char *text, *where;
     unsigned char *marks;
     size_t size;
-    size_t begin; /* of the row */
-    int line;     /* of that sign */
-    int depth;    /* brackets that are open */
-    bool inside;  /* the innermost is round a row */
-    bool parts;   /* semicolons in it part rows */
-    bool call;    /* "array(" stood before: what follows the brackets is none of the table's */
+    size_t begin; /* first character of the row */
+    int line;     /* line of that character */
+    int depth;    /* number of open brackets */
+    bool inside;  /* the innermost bracket encloses a row */
+    bool parts;   /* semicolons in it separate rows */
+    bool call;    /* "array(" preceded the table: text after its brackets is not part of it */
     text_rows *rows;
     size_t words, word_room, row_room;
 } scanner;
@@ -46,7 +46,7 @@ static bool parts_words(const scanner *s, size_t i)
     return mark != MARK_NONE || text_is_blank(s->text[i]) || s->text[i] == ';';
 }
 
-/* Returns whether a dash stands there that begins an item of a list, as in YAML; before a number it may be a minus. */
+/* Tells whether there is a dash that begins a list item, as in YAML; before a number it is taken for a minus. */
 static bool is_item(const scanner *s, size_t i, size_t end)
 {
     if (s->text[i] != '-' || s->marks[i] != MARK_NONE) return false;
@@ -55,7 +55,7 @@ static bool is_item(const scanner *s, size_t i, size_t end)
     return i < end && s->marks[i] == MARK_OPEN_ROW;
 }
 
-/* The words that blanks, tabs, semicolons, brackets and quotes part, of the signs from i to end. */
+/* Splits the characters from i to end into words at spaces, tabs, semicolons, brackets and quotes. */
 static status take_words(scanner *s, size_t i, size_t end)
 {
     bool apart = true;
@@ -88,7 +88,7 @@ static bool is_quoted(const scanner *s, const text_word *w)
     return s->marks[w->at - s->text] == MARK_QUOTED;
 }
 
-/* Leaves the commas around a word out; that is empty of commas alone. */
+/* Removes commas around a word; a word of commas alone becomes empty. */
 static text_word without_commas(const text_word *word)
 {
     text_word w = *word;
@@ -101,12 +101,12 @@ static text_word without_commas(const text_word *word)
     return w;
 }
 
-/* Kinds of commas in a row's numbers. */
+/* Where commas occur in a row's numbers. */
 typedef struct comma_places {
-    bool inner, outer; /* between digits; behind a number */
+    bool inner, outer; /* inner: between digits; outer: after a number */
 } comma_places;
 
-/* A whole number, or one with a comma between digits. */
+/* Tells whether a word is a whole number, or one with a comma between digits. */
 static bool may_have_decimal_comma(const scanner *s, const text_word *word, comma_places *has)
 {
     if (is_quoted(s, word)) return word->kind == TEXT_NUMBER;
@@ -121,8 +121,8 @@ static bool may_have_decimal_comma(const scanner *s, const text_word *word, comm
     return true;
 }
 
-/* Programs that speak German or French write 0,5 0,25 0,75 or 0,5;0,25;0,75: half as many numbers as there are if
- * every comma parted words. The numbers stand at the row's end or at its beginning. */
+/* Tells whether a row has decimal commas, as German or French programs write: 0,5 0,25 0,75 or 0,5;0,25;0,75, half as
+ * many numbers as if every comma separated words. The numbers are at the row's end or at its beginning. */
 static bool has_decimal_commas(const scanner *s, size_t first, bool fields)
 {
     comma_places has = {false, false}, ahead = {false, false};
@@ -158,7 +158,7 @@ static void keep_commas(scanner *s, size_t first)
     s->words = kept;
 }
 
-/* Adds what commas part of one word; *apart: one stood before it, then behind it. */
+/* Splits one word at its commas; *apart: a comma came before it, and afterwards whether one follows. */
 static status split(scanner *s, const text_word *from, bool *apart)
 {
     status result = OK;
@@ -203,7 +203,7 @@ static status split_at_commas(scanner *s, size_t first)
 
 /* ---- rows ---- */
 
-/* "Light 1:" and "L =" are named without these signs, which part fields. */
+/* Removes trailing ':' and '=' of names such as "Light 1:" and "L =". */
 static void strip_signs(scanner *s, size_t first)
 {
     size_t kept = first;
@@ -223,7 +223,7 @@ static void strip_signs(scanner *s, size_t first)
     s->words = kept;
 }
 
-/* Tells whether commas part some of the row's numbers and blanks alone others. */
+/* Tells whether commas separate some of the row's numbers and only spaces others. */
 static bool is_mixed(const text_word *w, size_t count)
 {
     bool commas = false, blanks = false;
@@ -274,7 +274,7 @@ static status add_row(scanner *s, size_t first, bool comment, bool mixed)
     return OK;
 }
 
-/* The signs from begin on are a row, unless there is no word among them. */
+/* Adds the characters from s->begin to end as a row, unless they contain no word. */
 static status take_row(scanner *s, size_t end, bool comment)
 {
     size_t first = s->words;
@@ -294,7 +294,7 @@ static status take_row(scanner *s, size_t end, bool comment)
     return add_row(s, first, comment, !decimal && is_mixed(s->rows->word + first, s->words - first));
 }
 
-/* Ends the row before a sign; the next one begins there. */
+/* Ends the current row before `end`, where the next one begins. */
 static status end_row(scanner *s, size_t end)
 {
     status result = s->call && s->depth == 0 ? OK : take_row(s, end, false);
@@ -303,7 +303,7 @@ static status end_row(scanner *s, size_t end)
     return result;
 }
 
-/* A comment that is all of the line which ends here. */
+/* Adds a comment that fills the whole line as a row of its own. */
 static status take_comment(scanner *s, size_t end)
 {
     size_t first = end;
@@ -315,15 +315,15 @@ static status take_comment(scanner *s, size_t end)
     while (first < end && strchr("#%/;", s->text[first]))
         first++;
     memset(s->marks + first, MARK_NONE, end - first);
-    s->begin = first; /* on the same line */
+    s->begin = first; /* still the same line */
     status result = take_row(s, end, true);
     s->begin = end;
     return result;
 }
 
-/* ---- where rows end ---- */
+/* ---- the ends of rows ---- */
 
-/* In [0 0 1; 0 1 0] they do, in (0,5; 0; 0,8) they do not. */
+/* Tells whether semicolons separate rows: they do in [0 0 1; 0 1 0], not in (0,5; 0; 0,8). */
 static bool semicolons_part_rows(const scanner *s, size_t open)
 {
     int commas = 0, words = 0;
@@ -347,7 +347,7 @@ static bool opens_again(const scanner *s, size_t i)
     return false;
 }
 
-/* Skips what stands before "= [[" or "array([[", the table's name. */
+/* Opens a bracket; skips the table's name before "= [[" or "array([[". */
 static void open_bracket(scanner *s, size_t i)
 {
     size_t before = i;
@@ -364,7 +364,7 @@ static void open_bracket(scanner *s, size_t i)
     s->parts = s->inside && semicolons_part_rows(s, i);
 }
 
-/* A name may stand behind the brackets of a row that is in no other ones. */
+/* Closes a bracket; a name may follow the brackets of a row that is not enclosed by others. */
 static status close_bracket(scanner *s, size_t i)
 {
     status result = OK;

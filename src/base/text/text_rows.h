@@ -7,12 +7,12 @@
  *         if (rows.row[i].count && rows.row[i].word[0].kind == TEXT_NUMBER) use(rows.row[i].word[0].value);
  *     text_rows_free(&rows);
  *
- * Any encoding that text_decode knows. Blanks, tabs, commas and semicolons part words, also several, also at a line's
- * end. A comma is a decimal one where blanks, tabs or semicolons part the numbers, or in quotations. Quotations are
- * words, whatever is in them. Rows may stand in brackets, and all of them in others, as programs print matrices; then a
- * row is what is in the inner ones, or in [ ] ends with a semicolon. Comments begin with #, % or // at the beginning of
- * a line or behind a blank, or with a semicolon at the beginning of one; a comment that is all of a line is a row of
- * its own, for it may name columns. Empty lines are none. */
+ * Any encoding that text_decode knows. Words are separated by spaces, tabs, commas and semicolons, also several, also
+ * at a line's end. A comma is a decimal point where spaces, tabs or semicolons separate the numbers, and in quotations.
+ * A quotation is one word, whatever it contains. Rows may be in brackets, and the table in outer ones, as programs
+ * print matrices; then a row is what the inner brackets enclose, or in [ ] ends with a semicolon. Comments begin with
+ * #, % or // at the beginning of a line or after a space, or with a semicolon at the beginning of one; a comment that
+ * fills its line is a row of its own, as it may name columns. Empty lines are skipped. */
 #ifndef MERLIN_BASE_TEXT_TEXT_ROWS_H
 #define MERLIN_BASE_TEXT_TEXT_ROWS_H
 
@@ -23,19 +23,19 @@
 #include "base/text/text_number.h"
 
 typedef struct text_word {
-    const char *at; /* in the text, without quotes and what parts words; no zero behind it */
+    const char *at; /* points into the text, without quotes and separators; not zero-terminated */
     size_t length;
     text_kind kind;
-    double value; /* of a number */
-    bool apart;   /* a line's beginning, a comma, a semicolon or a tab stands before it: it begins a field */
+    double value; /* value of a number */
+    bool apart;   /* a new field: the word follows a line's beginning, a comma, a semicolon or a tab */
 } text_word;
 
 typedef struct text_row {
     text_word *word;
-    size_t count; /* above 0 */
-    int line;     /* from 1 on */
+    size_t count; /* at least 1 */
+    int line;     /* line number, from 1 */
     bool comment;
-    bool mixed; /* commas part some of its numbers, and blanks alone others */
+    bool mixed; /* commas separate some of its numbers, only spaces others */
 } text_row;
 
 typedef struct text_rows {
@@ -45,8 +45,8 @@ typedef struct text_rows {
     size_t count;
 } text_rows;
 
-/* Refuses what is no text, words of more than 1023 bytes and commas that may be either; messages carry `where` and the
- * line's number. */
+/* Parses a table. Refuses binary data, words of more than 1023 bytes and ambiguous commas; messages carry `where` and
+ * the line's number. */
 status text_rows_parse(const char *bytes, size_t size, const char *where, text_rows *out);
 void text_rows_free(text_rows *rows);
 

@@ -44,7 +44,7 @@ static void print_lp(FILE *f, const void *context)
 static double field_of_view(const merlin_maps *maps)
 {
     const double right = (double)maps->slant[0], up = (double)maps->slant[1];
-    double wide = maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV, forward = sqrt(1 - right * right - up * up);
+    double wide = maps->fov > 0 ? (double)maps->fov : (double)CAMERA_FOV, forward = sqrt(1 - right * right - up * up);
     double half = tan(wide / 2 * M_PI / 180) / forward * maps->mask.width / maps->crop.side;
     return 2 * atan(half) * 180 / M_PI;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/file.h"
+#include "base/number.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/surface/crop.h"
 #include "image/exr/exr.h"
@@ -16,7 +17,7 @@
 
 enum { FRAME = 256 };
 /* Radiance of a white matte surface that faces a lamp at distance 1. */
-static const float WHITE = LIGHT_POWER / BRDF_PI;
+static const float WHITE = LIGHT_POWER / PI;
 /* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
 static const float nearest = 0.25f, farthest = 20;
 
@@ -68,7 +69,7 @@ static status normalize_albedo(merlin_maps *maps)
     qsort(brightest, count, sizeof *brightest, compare_floats);
     float bright = count ? brightest[(size_t)(BRIGHT_PART * (float)(count - 1))] : MOST_BRIGHT;
     free(brightest);
-    float scale = fminf(fmaxf(bright, LEAST_BRIGHT), MOST_BRIGHT) / bright;
+    float scale = clamp(bright, LEAST_BRIGHT, MOST_BRIGHT) / bright;
     for (size_t i = 0; i < 3 * pixels && scale != 1; i++)
         albedo[i] *= scale;
     return OK;
@@ -118,7 +119,7 @@ static status place(merlin_maps *maps, float focal)
     maps->crop.x = c.x;
     maps->crop.y = c.y;
     maps->crop.side = c.side;
-    float pitch = camera_pixel_size(&(camera){.width = c.side, .height = c.side, .fov = MODEL_FOV});
+    float pitch = camera_pixel_size(&(camera){.width = c.side, .height = c.side, .fov = CAMERA_FOV});
     s = place_depth(maps, focal, pitch);
     if (s == OK) s = normalize_albedo(maps);
     if (s != OK) return s;

@@ -113,8 +113,8 @@ static status write_overview(const stereo_result *r, const char *path)
 
 static status write_mesh(const stereo_result *r, const char *path)
 {
-    pst_mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera, {0, 0}};
-    return pst_mesh_write(path, &source);
+    mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera, {0, 0}};
+    return mesh_write(path, &source);
 }
 
 static status write_report(const cJSON *report, const char *path)

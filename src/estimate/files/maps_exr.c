@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
 #include "base/half.h"
-#include "base/public.h"
 #include "estimate/files/maps_examine.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/photo/network.h"
@@ -292,7 +292,7 @@ void maps_tidy(merlin_maps *maps)
     surface all = {maps->albedo, maps->normal, maps->roughness, maps->depth, maps->mask, .matte = false};
     surface_tidy(&all);
     img photo = maps->photo;
-    img_blacken_impossible(&photo);
+    img_zero_invalid(&photo);
 }
 
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)

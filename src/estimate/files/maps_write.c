@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
 #include "base/parallel.h"
-#include "base/public.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/files/overview.h"

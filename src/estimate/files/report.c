@@ -103,7 +103,7 @@ static void put_environment(cJSON *root, const merlin_maps *maps)
 static void put_lens(cJSON *root, const merlin_maps *maps)
 {
     cJSON_AddStringToObject(root, "lens", maps->fov > 0 ? "known" : "assumed");
-    cJSON_AddNumberToObject(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)SURFACE_FOV);
+    cJSON_AddNumberToObject(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)CAMERA_FOV);
     cJSON *slant = cJSON_AddArrayToObject(root, "slant");
     for (int i = 0; i < 2; i++)
         cJSON_AddItemToArray(slant, cJSON_CreateNumber((double)maps->slant[i]));

@@ -8,7 +8,7 @@
 
 /* The level that is cut up: 64 × 64 cells of three degrees. */
 enum { LEVEL = 3, SIDE = ENV_MAP_SIDE >> LEVEL, HALVINGS = 8 };
-static const float WHOLE = 4 * OCTAHEDRON_PI;
+static const float WHOLE = 4 * PI;
 
 /* Cells from here to before there. */
 typedef struct part {

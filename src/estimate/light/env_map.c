@@ -11,7 +11,6 @@
 #include "optics/octahedron.h"
 #include "optics/sh.h"
 
-static const float pi = 3.14159265358979f;
 enum { WIDEST_MAP = 2 * ENV_MAP_SIDE };
 
 /* ---- the octahedron -------------------------------------------------------------------------------------------- */
@@ -65,12 +64,12 @@ static void collect(const collection *to, vec3 d, const float *radiance, float a
 /* Every texel of the map is cut into so many pieces a side that none is larger than a third of a cell. */
 static void collect_row(const collection *to, const img *map, int y)
 {
-    float cell = sqrtf(4 * pi) / (float)to->sum->width;
-    int down = (int)ceilf(3 * pi / ((float)map->height * cell));
+    float cell = sqrtf(4 * PI) / (float)to->sum->width;
+    int down = (int)ceilf(3 * PI / ((float)map->height * cell));
     for (int i = 0; i < down; i++) {
         float v = ((float)y + ((float)i + 0.5f) / (float)down) / (float)map->height;
         float angle = latlong_solid_angle(y * down + i, map->width, map->height * down);
-        int across = (int)ceilf(3 * 2 * pi * sinf(pi * v) / ((float)map->width * cell));
+        int across = (int)ceilf(3 * 2 * PI * sinf(PI * v) / ((float)map->width * cell));
         for (int x = 0; x < map->width; x++)
             for (int k = 0; k < across; k++) {
                 float u = ((float)x + ((float)k + 0.5f) / (float)across) / (float)map->width;
@@ -129,7 +128,7 @@ status env_map_new(img *latlong, env_map *out)
     *out = (env_map){.cosine = 1};
     img map = {0};
     if (latlong->channels != 3) return fail(MERLIN_WRONG_USE, "an environment map needs 3 channels");
-    img_blacken_impossible(latlong);
+    img_zero_invalid(latlong);
     /* no wider than what the octahedron resolves */
     int width = latlong->width < WIDEST_MAP ? latlong->width : WIDEST_MAP;
     int height = latlong->height < WIDEST_MAP / 2 ? latlong->height : WIDEST_MAP / 2;
@@ -157,7 +156,7 @@ void env_map_free(env_map *e)
 
 void env_map_turn(env_map *e, float degrees)
 {
-    float angle = degrees * pi / 180, c = cosf(angle), s = sinf(angle);
+    float angle = degrees * PI / 180, c = cosf(angle), s = sinf(angle);
     /* ahead is -z: (0, 0, -1) goes to (1, 0, 0) at 90 degrees */
     const float matrix[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
     sh_turn(e->sh, matrix);
@@ -180,12 +179,12 @@ void env_map_scale(env_map *e, float factor)
 float env_map_mean(const env_map *e)
 {
     /* band 0 is the mean times the root of the sphere's area */
-    return color_luminance(e->sh[0]) / sqrtf(4 * pi);
+    return color_luminance(e->sh[0]) / sqrtf(4 * PI);
 }
 
 vec3 env_map_lookup(const env_map *e, vec3 d, float solid_angle)
 {
-    const float finest = 4 * pi / ((float)ENV_MAP_SIDE * (float)ENV_MAP_SIDE);
+    const float finest = 4 * PI / ((float)ENV_MAP_SIDE * (float)ENV_MAP_SIDE);
     vec3 unturned = vec3_make(e->cosine * d.x + e->sine * d.z, d.y, e->cosine * d.z - e->sine * d.x);
     float x, y, level = 0.5f * log2f(fmaxf(solid_angle, finest) / finest);
     octahedron_place(unturned, &x, &y);

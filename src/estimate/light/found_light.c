@@ -83,7 +83,7 @@ static status picture_of_rest(const merlin_found_light *light, img *out)
 
 static vec3 turned(vec3 d, float degrees)
 {
-    const float a = degrees * CAMERA_RADIAN, c = cosf(a), s = sinf(a);
+    const float a = degrees * DEGREE, c = cosf(a), s = sinf(a);
     return vec3_make(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
 }
 

@@ -8,7 +8,7 @@
 #ifndef MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 #define MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "estimate/light/env_map.h"
 #include "estimate/surface/surface.h"
 #include "merlin/merlin.h"

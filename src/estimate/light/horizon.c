@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "base/parallel.h"
 #include "optics/camera.h"
 
@@ -268,7 +269,7 @@ float horizon_sees(const horizon_view *at, vec3 direction, float solid_angle)
     float edge = at->cosine[below] + between * (at->cosine[above] - at->cosine[below]);
     /* of cosines, that many are as wide as so many angles */
     float width = sqrtf((BORDER * BORDER + solid_angle) * (x * x + y * y)) + 1e-6f;
-    float seen = fminf(fmaxf((z - edge) / width + 0.5f, 0), 1);
+    float seen = clamp((z - edge) / width + 0.5f, 0, 1);
     if (seen >= 1) return 1;
     float behind = open_behind(at, below, z) * (1 - between) + open_behind(at, above, z) * between;
     return seen + (1 - seen) * behind;

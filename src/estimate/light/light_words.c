@@ -14,7 +14,7 @@ enum { LAMP_WORDS = 96 }; /* leaves room for what else there is */
 static void lamp_words(const merlin_found_light *light, char words[LAMP_WORDS])
 {
     const float right = light->lamp[0], up = light->lamp[1], aside = hypotf(right, up);
-    const int degrees = (int)lrintf(atan2f(aside, light->lamp[2]) / CAMERA_RADIAN);
+    const int degrees = (int)lrintf(atan2f(aside, light->lamp[2]) / DEGREE);
     const bool upright = fabsf(up) > 0.38f * aside, sideways = fabsf(right) > 0.38f * aside; /* sine of 22.5 degrees */
     const char *vertical = up > 0 ? sideways ? "upper " : "above" : sideways ? "lower " : "below";
     if (degrees < 5)

@@ -7,7 +7,7 @@
 #ifndef MERLIN_ESTIMATE_LIGHT_LIGHT_WORDS_H
 #define MERLIN_ESTIMATE_LIGHT_LIGHT_WORDS_H
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "merlin/merlin.h"
 
 enum { LIGHT_WORDS = 128 };

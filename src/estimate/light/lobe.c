@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/number.h"
 #include "optics/brdf.h"
 
 /* What a sample averages over, in parts of the solid angle that it stands for: neighbours that overlap leave no pattern
@@ -18,7 +19,7 @@ void lobe_over(const env_map *env, const horizon *hidden, lobe_sampler *out)
         float turn = 0, half = 0.5f;
         for (unsigned bits = i; bits; bits >>= 1, half *= 0.5f)
             turn += bits & 1 ? half : 0;
-        float phi = 2 * BRDF_PI * (turn + 0.5f / LOBE_SAMPLES);
+        float phi = 2 * PI * (turn + 0.5f / LOBE_SAMPLES);
         out->places[i] = (lobe_place){((float)i + 0.5f) / LOBE_SAMPLES, cosf(phi), sinf(phi)};
     }
 }
@@ -33,7 +34,7 @@ static vec3 sample(const lobe_sampler *s, const lobe_point *p, const horizon_vie
     vec3 h = brdf_to_world(vec3_make(sine * at->cosine, sine * at->sine, n_h), p->normal);
     float v_h = vec3_dot(p->view, h);
     vec3 l = vec3_fma(vec3_scale(p->view, -1), 2 * v_h, h);
-    float n_l = vec3_dot(p->normal, l), n_v = brdf_clamp(vec3_dot(p->normal, p->view), 0, 1);
+    float n_l = vec3_dot(p->normal, l), n_v = clamp(vec3_dot(p->normal, p->view), 0, 1);
     if (v_h <= 0 || n_l <= 0) return black;
     float density = brdf_distribution(alpha2, n_h) * n_h / (4 * v_h);
     float weight = brdf_fresnel(fminf(v_h, 1)) * brdf_visibility(k, fminf(n_l, 1), n_v) * 4 * n_l * v_h / n_h;

@@ -111,7 +111,7 @@ static void corners_at(block *b, const tile *t, int knot, vec3 out[4])
 /* In radians, of mirror directions: the lobe's, and what the map resolves. */
 static float width_of_lobe(float roughness)
 {
-    const float texel2 = 4 * BRDF_PI / (ENV_MAP_SIDE * ENV_MAP_SIDE);
+    const float texel2 = 4 * PI / (ENV_MAP_SIDE * ENV_MAP_SIDE);
     return sqrtf(4 * brdf_alpha2(roughness) + texel2);
 }
 

@@ -70,7 +70,7 @@ static void add(job *j)
 static vec3 shade_ambient(const job *j, const pixel *p)
 {
     vec3 e = sh_irradiance(j->sh, p->normal);
-    return vec3_scale(vec3_mul(p->albedo, vec3_make(fmaxf(e.x, 0), fmaxf(e.y, 0), fmaxf(e.z, 0))), 1 / BRDF_PI);
+    return vec3_scale(vec3_mul(p->albedo, vec3_make(fmaxf(e.x, 0), fmaxf(e.y, 0), fmaxf(e.z, 0))), 1 / PI);
 }
 
 void surface_add_ambient(const surface *s, const float sh[9][3], img *image)
@@ -142,7 +142,7 @@ static status add_bounce(const surface *s, const float sh[9][3], img *seen)
         const float *sum = nearby.data + 4 * i, open[3] = {e.x, e.y, e.z};
         for (size_t c = 0; c < 3; c++) {
             float *share = &seen->data[3 * i + c];
-            *share += (1 - *share) * share_of(sum[c] * BRDF_PI, sum[3] * open[c]);
+            *share += (1 - *share) * share_of(sum[c] * PI, sum[3] * open[c]);
         }
     }
     img_free(&nearby);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
+
 enum { FEW = 16, FEWEST = 4, ROUNDS = 2, COLORS = 3, BLOCK = 256, STEP = 2 };
 /* Least variance, so that one flat colour is no needle: the noise of a dark photograph. */
 static const double LEAST_VARIANCE = 2e-4;
@@ -11,17 +13,6 @@ static const double LEAST_VARIANCE = 2e-4;
 static const float FARTHEST = 6;
 /* Encoded by a square root, three times the light. */
 static const float MOST_SHADOW = 1.75f;
-
-/* The C library's take NaN into account, and loops of them stay scalar. */
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
 
 /* Sums over some pixels. */
 typedef struct moments {
@@ -98,7 +89,7 @@ static inline void distances(const gaussian *g, const mixture_pixels *p, size_t 
         uv += u * v;
         vv += v * v;
     }
-    float gain = smaller(larger(-uv / larger(uu, 1e-12f), 1), MOST_SHADOW);
+    float gain = min_of(max_of(-uv / max_of(uu, 1e-12f), 1), MOST_SHADOW);
     *as_is = uu + 2 * uv + vv;
     *brightened = gain * (gain * uu + 2 * uv) + vv;
 }
@@ -107,7 +98,7 @@ static float gaussian_cost(const gaussian *g, const mixture_pixels *p, size_t i)
 {
     float as_is, brightened;
     distances(g, p, i, &as_is, &brightened);
-    return 0.5f * smaller(as_is, FARTHEST * FARTHEST) + g->offset;
+    return 0.5f * min_of(as_is, FARTHEST * FARTHEST) + g->offset;
 }
 
 /* ---- learning ---- */
@@ -214,9 +205,9 @@ void mixture_costs(const mixture *m, const mixture_pixels *pixels, float shadow,
             for (size_t i = begin; i < end; i++) {
                 float as_is, brightened;
                 distances(g, pixels, i, &as_is, &brightened);
-                float least = smaller(as_is, FARTHEST * FARTHEST);
-                least = smaller(least, brightened + 2 * shadow);
-                cost[i] = smaller(cost[i], 0.5f * least + g->offset);
+                float least = min_of(as_is, FARTHEST * FARTHEST);
+                least = min_of(least, brightened + 2 * shadow);
+                cost[i] = min_of(cost[i], 0.5f * least + g->offset);
             }
         }
     }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "estimate/object/object_holes.h"
 #include "estimate/object/object_regions.h"
 
@@ -92,7 +93,7 @@ static status open_holes(growth *g)
 static int32_t by_place(const growth *g, size_t i)
 {
     float odds = g->hole[i] ? -MOST_BY_PLACE : g->ground->prior[i];
-    return (int32_t)(UNIT * fminf(fmaxf(odds, -MOST_BY_PLACE), MOST_BY_PLACE));
+    return (int32_t)(UNIT * clamp(odds, -MOST_BY_PLACE, MOST_BY_PLACE));
 }
 
 static status cut(growth *g)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "estimate/object/object_search.h"
 #include "image/resize.h"
 
@@ -115,7 +116,7 @@ static status enlarge(const outline *o, const img *photo, float exposure, img *m
         s = img_copy(mask, &small);
     img_free(&small);
     for (size_t i = 0; s == OK && i < img_value_count(mask); i++)
-        mask->data[i] = fminf(fmaxf((mask->data[i] - 0.3f) / 0.4f, 0), 1);
+        mask->data[i] = clamp((mask->data[i] - 0.3f) / 0.4f, 0, 1);
     return s;
 }
 

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/number.h"
+
 static const float LARGEST_AREA = 0.9f;
 
 /* A logistic regression, fitted to the candidates of 600 composites (merlin-lab eval masks): samples 0 to 119 of seed
@@ -29,7 +31,7 @@ float object_quality(const object_cues *c)
         {c->centre, 0.18444f},
         {fminf(c->away, 1), 0.010513f},
         {fminf(c->near, 0.5f), -14.963f},
-        {fminf(fmaxf(c->plain, -14), 0), 0.91532f},
+        {clamp(c->plain, -14, 0), 0.91532f},
         {c->dark, 0.49023f},
         {c->agree, 1.1875f},
         {c->agree * c->agree, 2.063f},

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "estimate/object/border_distance.h"
 #include "estimate/object/object_quality.h"
 
@@ -204,7 +205,7 @@ static status grow_by_hint(object_search *s, const img *photo, const merlin_hint
     static const float radii[] = {0.06f, 0.12f, 0.2f};
     status st = OK;
     for (size_t i = 0; i < s->view.count; i++)
-        s->prior[i] = fminf(fmaxf(s->prior[i], -MOST_BESIDE_HINT), MOST_BESIDE_HINT);
+        s->prior[i] = clamp(s->prior[i], -MOST_BESIDE_HINT, MOST_BESIDE_HINT);
     s->hinted = s->count;
     for (int i = 0; i < 3 && s->wanted && st == OK; i++) {
         start_around(s, radii[i]);

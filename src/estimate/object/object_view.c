@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "estimate/surface/exposure.h"
 #include "image/resize.h"
 
@@ -57,7 +58,7 @@ status object_view_new(const img *photo, int side, float exposure, object_view *
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < 3; k++) {
             float *value = &out->color.data[3 * i + k];
-            *value = sqrtf(fminf(fmaxf(exposure * *value, 0), 1));
+            *value = sqrtf(clamp(exposure * *value, 0, 1));
             out->pixels.value[k][i] = *value;
         }
         size_t row = i / (size_t)out->width;

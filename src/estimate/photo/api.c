@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
-#include "base/public.h"
 #include "estimate/object/mask.h"
 #include "image/read/read.h"
 #include "image/write/write.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "base/status.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/progress.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/relight_env.h"
@@ -215,7 +216,7 @@ static status add_detail(network *n, work *w, int side, float gain)
 static void expose_picture(img *picture, float white)
 {
     for (size_t i = 0; i < img_value_count(picture); i++)
-        if (picture->data[i] != 0) picture->data[i] = fminf(fmaxf(picture->data[i] / white, 0), 1);
+        if (picture->data[i] != 0) picture->data[i] = clamp(picture->data[i] / white, 0, 1);
 }
 
 /* The maps at the crop's own resolution, and what they look like under the photograph's light. */

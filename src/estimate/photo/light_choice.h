@@ -8,7 +8,7 @@
 #ifndef MERLIN_ESTIMATE_PHOTO_LIGHT_CHOICE_H
 #define MERLIN_ESTIMATE_PHOTO_LIGHT_CHOICE_H
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "estimate/photo/network.h"
 #include "merlin/merlin.h"
 

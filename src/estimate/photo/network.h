@@ -53,13 +53,13 @@ void network_release_maps(network *n);
 /* Seconds spent on making programs since the last call. */
 double network_take_compile_seconds(network *n);
 
-/* how: of the square; the maps are for its lens, that of SURFACE_FOV where it is not known. photo: 3 channels, radiance
+/* how: of the square; the maps are for its lens, that of CAMERA_FOV where it is not known. photo: 3 channels, radiance
  * (exposure.h), zero outside the mask, which is 0 or 1. The mean of what the network says of its first `views`
  * orientations (1 to 8, optics/orientation.h). stop (may be NULL) is asked between them. */
 status network_estimate(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                         network_estimation *out);
 /* The same before anything is made of it: normals of several views are their sum, not unit, maps hold anything outside
- * the mask, and depth is that of a lens of SURFACE_FOV, or relief for any lens (sight.h). */
+ * the mask, and depth is that of a lens of CAMERA_FOV, or relief for any lens (sight.h). */
 status network_see(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),
                    network_estimation *out);
 /* Tells what lit the photograph alone, as network_estimate's first view does: MERLIN_WRONG_USE unless it is a model of

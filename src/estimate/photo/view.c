@@ -61,7 +61,7 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
 
 void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size)
 {
-    camera_lens lens = how && how->lens.fov > 0 ? how->lens : (camera_lens){.fov = SURFACE_FOV};
+    camera_lens lens = how && how->lens.fov > 0 ? how->lens : (camera_lens){.fov = CAMERA_FOV};
     float slant[3] = {lens.slant.right, lens.slant.up, 0};
     orientation_turn(view, slant);
     lens.slant = (camera_slant){slant[0], slant[1]};

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "estimate/relight/stage.h"
 #include "image/read/read.h"
 #include "merlin/merlin.h"

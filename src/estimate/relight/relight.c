@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/number.h"
 #include "estimate/light/bounce.h"
 #include "estimate/light/relight_env.h"
 #include "estimate/relight/stage.h"
@@ -17,17 +18,12 @@ static void multiply_mask(img *image, const img *mask)
         if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
 }
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 /* From twice as many points a side as the caster has, as long as the picture shows them. */
 static status cast_shadows(const stage *s, const lamp *light, img *full, img *low)
 {
     bool flash = !light->distant && vec3_dot(light->at, light->at) < 1e-12f;
     if (flash) return OK; /* the camera sees nothing that its flash does not */
-    int side = least(full->width, least(2 * s->caster.depth.width, SHADOW_SIDE));
+    int side = min_int(full->width, min_int(2 * s->caster.depth.width, SHADOW_SIDE));
     img seen = {0};
     status result = shadow_cast_lamp(&s->caster, light, side, side, &seen);
     if (result != OK) return result;
@@ -95,7 +91,7 @@ static status add_indirect(network *n, const stage *s, const img *low, const img
 static void expose(img *radiance, float white)
 {
     for (size_t i = 0; i < img_value_count(radiance); i++)
-        if (radiance->data[i] != 0) radiance->data[i] = fminf(fmaxf(radiance->data[i] / white, 0), 1);
+        if (radiance->data[i] != 0) radiance->data[i] = clamp(radiance->data[i] / white, 0, 1);
 }
 
 static status light_by_lamp(network *n, const stage *s, const lamp *light, img *full, img *low)

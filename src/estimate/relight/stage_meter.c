@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "estimate/light/relight_env.h"
 #include "estimate/relight/stage.h"
 
@@ -21,7 +22,7 @@ static void note(histogram *h, const img *radiance, const img *mask)
     for (size_t i = 0; i < img_value_count(radiance); i++) {
         if (mask->data[i / 3] < 0.5f) continue;
         float place = (log2f(fmaxf(radiance->data[i], 1e-12f)) + STOPS) * BINS_BY_STOP;
-        h->bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        h->bins[(int)clamp(place, 0, BINS - 1)]++;
         h->count++;
     }
 }
@@ -64,7 +65,7 @@ static float white_facing(const lamp *l)
 {
     vec3 way = vec3_sub(l->at, vec3_make(0, 0, -1));
     float squared = l->distant ? 1 : fmaxf(vec3_dot(way, way), LIGHT_MIN_DISTANCE2);
-    return LIGHT_POWER / BRDF_PI * fmaxf(fmaxf(l->tint.x, l->tint.y), l->tint.z) / squared;
+    return LIGHT_POWER / PI * fmaxf(fmaxf(l->tint.x, l->tint.y), l->tint.z) / squared;
 }
 
 status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white)

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/number.h"
 #include "image/color.h"
 
 enum { BINS = 1536 };
@@ -19,7 +20,7 @@ static float bright_luminance(const img *color, const img *mask)
     for (size_t i = 0; i < pixels; i++) {
         if (!(mask->data[i] >= 0.5f)) continue;
         float place = (log2f(fmaxf(color_luminance(color->data + 3 * i), 1e-9f)) - LOWEST_STOP) * BINS_PER_STOP;
-        bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        bins[(int)clamp(place, 0, BINS - 1)]++;
         count++;
     }
     size_t below = 0, wanted = (size_t)(PERCENTILE * (float)count);

@@ -24,7 +24,7 @@ sight sight_of(float fov, float focal_35mm, int width, int height, crop_square c
     double right = (crop.x + crop.side / 2.0 - width / 2.0) / focal,
            up = (height / 2.0 - crop.y - crop.side / 2.0) / focal;
     double far = sqrt(1 + right * right + up * up); /* of the crop's middle, where the plane is 1 away */
-    float wide = (float)(2 * atan(crop.side / (2 * focal * far)) / (double)CAMERA_RADIAN);
+    float wide = (float)(2 * atan(crop.side / (2 * focal * far)) / (double)DEGREE);
     if (!(wide >= NARROWEST && wide <= WIDEST)) return how;
     how.lens = (camera_lens){wide, {(float)(right / far), (float)(up / far)}};
     return how;
@@ -41,7 +41,7 @@ static vec3 turn(vec3 v, vec3 a, vec3 b)
 void sight_turn_normals(camera_lens lens, const img *mask, img *normal)
 {
     if (!(lens.fov > 0)) return;
-    const camera_lens usual = {.fov = SURFACE_FOV};
+    const camera_lens usual = {.fov = CAMERA_FOV};
     const camera taken = camera_through(usual, mask->width, mask->height),
                  meant = camera_through(lens, mask->width, mask->height);
     for (int y = 0; y < mask->height; y++) {
@@ -56,7 +56,7 @@ void sight_turn_normals(camera_lens lens, const img *mask, img *normal)
 void sight_take_relief(camera_lens lens, const img *mask, img *depth)
 {
     if (!(lens.fov > 0)) return;
-    const float scale = camera_tangent(lens.fov) / camera_tangent(SURFACE_FOV);
+    const float scale = camera_tangent(lens.fov) / camera_tangent(CAMERA_FOV);
     for (size_t i = 0; i < img_value_count(depth); i++)
         if (mask->data[i] > 0) depth->data[i] = 1 + (depth->data[i] - 1) * scale;
 }

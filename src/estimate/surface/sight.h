@@ -20,7 +20,7 @@ typedef struct sight {
  * by the focal length in mm that gives the same on 36 × 24 mm; either may be 0. What cannot be is not known. */
 sight sight_of(float fov, float focal_35mm, int width, int height, crop_square crop);
 
-/* A model that knows a lens of SURFACE_FOV alone takes every pixel to be seen along that lens's line of sight. A
+/* A model that knows a lens of CAMERA_FOV alone takes every pixel to be seen along that lens's line of sight. A
  * flash's light comes along the true one, and what is seen by it is how a surface is turned against it: its normals are
  * turned from the one to the other. normal: 3 channels; mask: where it is above 0. */
 void sight_turn_normals(camera_lens lens, const img *mask, img *normal);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/inline.h"
+#include "base/number.h"
 #include "base/parallel.h"
 #include "estimate/surface/exposure.h"
 #include "estimate/surface/fill.h"
@@ -35,12 +36,6 @@ void surface_free(surface *s)
     img_free(&s->roughness);
     img_free(&s->depth);
     img_free(&s->mask);
-}
-
-/* NaN becomes low. */
-static float clamp(float x, float low, float high)
-{
-    return x > low ? (x < high ? x : high) : low;
 }
 
 static void tidy_normal(float n[3])

@@ -19,9 +19,6 @@
 #include "optics/camera.h"
 #include "optics/light.h"
 
-/* Degrees; what a surface is seen by whose lens is not known. */
-#define SURFACE_FOV 60.0f
-
 typedef struct surface {
     img albedo;       /* 3 */
     img normal;       /* 3 */
@@ -29,12 +26,12 @@ typedef struct surface {
     img depth;        /* 1 */
     img mask;         /* 1, coverage */
     bool matte;       /* lamps light its diffuse part alone */
-    camera_lens lens; /* fov 0: SURFACE_FOV, no slant */
+    camera_lens lens; /* fov 0: CAMERA_FOV, no slant */
 } surface;
 
 static inline camera_lens surface_lens(const surface *s)
 {
-    return s->lens.fov > 0 ? s->lens : (camera_lens){.fov = SURFACE_FOV};
+    return s->lens.fov > 0 ? s->lens : (camera_lens){.fov = CAMERA_FOV};
 }
 
 /* The camera that sees the maps. */

@@ -8,8 +8,8 @@
 #include "image/metadata/box_file.h"
 #include "image/metadata/exif.h"
 #include "image/metadata/profile.h"
-#include "image/start.h"
 #include "image/vips_library.h"
+#include "image/vips_start.h"
 
 /* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be
  * written as the last argument: in which order arguments are computed is the compiler's choice. */

@@ -88,7 +88,7 @@ static bool is_mask(const img_folder *f, const img_folder_file *file)
 {
     if (!file->is_picture || !mask_name_has_word(file->name)) return false;
     if (mask_name_is_whole(file->name) || mask_name_is_sure(file->name) || has_photo(f, file)) return true;
-    return mask_name_is_likely(file->name) && mask_looks_like_one(file->path);
+    return mask_name_is_likely(file->name) && mask_is_two_valued(file->path);
 }
 
 status img_folder_read(const char *folder, img_folder *out)

@@ -17,7 +17,7 @@
 
 #include "base/skipped.h"
 #include "base/status.h"
-#include "image/formats/kind.h"
+#include "image/formats/img_format.h"
 
 typedef struct img_folder_file {
     char *path;       /* joined to the folder */

@@ -11,7 +11,7 @@ static const float NEAR = 0.1f;
 /* Others at most, a share of the rarer of the two: a photograph of an object before black or white has far more. */
 static const double MOST_BETWEEN = 0.25;
 
-bool mask_looks_like_one(const char *path)
+bool mask_is_two_valued(const char *path)
 {
     img grey;
     if (img_read_grey(path, &grey) != OK) return false;

@@ -6,6 +6,6 @@
 #include <stdbool.h>
 
 /* Tells whether a picture has two values and little between them; false for what cannot be read. */
-bool mask_looks_like_one(const char *path);
+bool mask_is_two_valued(const char *path);
 
 #endif

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 /* Different values that are told apart, and places for them in a table of hashes. */
 enum { MOST_VALUES = 256, SLOTS = 1024, MOST_CHANNELS = 3 };
 
@@ -186,7 +188,7 @@ static status spread(const img *values, float low, float high, img *mask)
     size_t pixels = (size_t)values->width * (size_t)values->height, n = (size_t)values->channels;
     for (size_t i = 0; i < pixels && s == OK; i++) {
         float v = brightness_of(values->data + i * n, values->channels);
-        mask->data[i] = fminf(fmaxf((v - low) / (high - low), 0), 1);
+        mask->data[i] = clamp((v - low) / (high - low), 0, 1);
     }
     return s;
 }
@@ -214,7 +216,7 @@ typedef struct groups {
 static size_t bin_of(const img *values, size_t pixel)
 {
     float v = brightness_of(values->data + pixel * (size_t)values->channels, values->channels);
-    return (size_t)(fminf(fmaxf(v, 0), 1) * (BINS - 1) + 0.5f);
+    return (size_t)(clamp(v, 0, 1) * (BINS - 1) + 0.5f);
 }
 
 /* The two groups whose means are farthest apart for their sizes (Otsu 1979). */

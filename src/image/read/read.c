@@ -11,7 +11,8 @@
 
 #include "base/file.h"
 #include "base/messages.h"
-#include "image/formats/kind.h"
+#include "base/number.h"
+#include "image/formats/img_format.h"
 #include "image/formats/picture_rows.h"
 #include "image/plain/picture_plain.h"
 #include "image/read/mask_values.h"
@@ -64,9 +65,9 @@ static status look_with_decoder(const char *path, picture_kind kind, picture_hea
 
 static status look_into(const char *path, picture_kind kind, picture_head *head)
 {
-    messages_hush();
+    messages_mute();
     status s = look_with_decoder(path, kind, head);
-    messages_unhush();
+    messages_unmute();
     return s;
 }
 
@@ -121,9 +122,9 @@ static status decode_pixels(const char *path, picture_kind kind, picture_colour 
 
 static status read_pixels(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
 {
-    messages_hush();
+    messages_mute();
     status s = decode_pixels(path, kind, how, color, alpha);
-    messages_unhush();
+    messages_unmute();
     return s;
 }
 
@@ -141,7 +142,7 @@ static void clamp_unit(img *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
     for (size_t i = 0; i < count; i++)
-        image->data[i] = fminf(fmaxf(image->data[i], 0), 1);
+        image->data[i] = clamp(image->data[i], 0, 1);
 }
 
 static status grey_to_color(img *image)

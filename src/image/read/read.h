@@ -19,10 +19,10 @@
 /* All that are read. */
 #define IMAGE_ENDINGS ".png", ".tif", ".tiff", ".webp", ".avif", ".exr", ".hdr", IMAGE_CAMERA_ENDINGS, IMAGE_RAW_ENDINGS
 
-/* Every format that img_is_picture (image/formats/kind.h) knows. color gets 3 channels. If alpha is not NULL it gets 1
- * channel in [0, 1] where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise; colour
- * then is not times alpha, whatever the file's kind. Refuses non-images, truncated files, more than 512 million pixels
- * and values that are NaN or infinite, in one clear line. */
+/* Every format that img_is_picture (image/formats/img_format.h) knows. color gets 3 channels. If alpha is not NULL it
+ * gets 1 channel in [0, 1] where the file has an alpha channel (EXR: "A", else "mask.A"), and stays empty otherwise;
+ * colour then is not times alpha, whatever the file's kind. Refuses non-images, truncated files, more than 512 million
+ * pixels and values that are NaN or infinite, in one clear line. */
 status img_read(const char *path, img *color, img *alpha);
 /* The size that it is read at, from the file's head alone, the longer side perhaps as height: before an orientation is
  * applied. */

@@ -6,8 +6,8 @@
 
 #include "base/file.h"
 #include "image/color.h"
-#include "image/start.h"
 #include "image/vips_library.h"
+#include "image/vips_start.h"
 
 static size_t frame_bytes(const img_animation *a)
 {

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "image/color.h"
-#include "image/start.h"
 #include "image/vips_library.h"
+#include "image/vips_start.h"
 #include "image/write/codes.h"
 
 status canvas_new(canvas *out, int width, int height)

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "image/resize.h"
 #include "image/write/canvas.h"
@@ -139,7 +140,7 @@ status figure_depth(const img *depth, const img *mask, img *out)
     for (size_t i = 0; i < pixels; i++) {
         float cover = mask ? mask->data[i] : 1;
         if (!(cover > 0) || !isfinite(depth->data[i])) continue;
-        float t = fminf(fmaxf((far - depth->data[i]) * scale, 0), 1);
+        float t = clamp((far - depth->data[i]) * scale, 0, 1);
         float shown = srgb_decode(cover * (0.15f + 0.85f * t));
         for (size_t c = 0; c < 3; c++)
             out->data[3 * i + c] = shown;

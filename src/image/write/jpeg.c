@@ -110,7 +110,7 @@ static bool decompress(const bytes *from, int width, uint8_t *rgb)
     return true;
 }
 
-status img_jpeg_spoil(uint8_t *rgb, int width, int height, const img_jpeg *how)
+status img_jpeg_round_trip(uint8_t *rgb, int width, int height, const img_jpeg *how)
 {
     bytes between = {0};
     bool done = compress(rgb, width, height, how, &between) && decompress(&between, width, rgb);

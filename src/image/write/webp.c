@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "image/start.h"
 #include "image/vips_library.h"
+#include "image/vips_start.h"
 #include "image/write/write.h"
 
 static int save(const uint8_t *codes, const img *image, void **data, size_t *size)

@@ -12,7 +12,7 @@
 
 static status measure_copy(const bench_options *o, bench_report *out)
 {
-    return bench_copy_rate(bench_patience_of(o->quick), &out->copy_rate);
+    return bench_copy_rate(bench_budget_of(o->quick), &out->copy_rate);
 }
 
 static status measure_network(const bench_options *o, const char *weights, const nn_options *options, double peak,
@@ -21,7 +21,7 @@ static status measure_network(const bench_options *o, const char *weights, const
     bench_program w;
     bench_reset_resident();
     status s = bench_program_new(weights, options, &w);
-    if (s == OK) s = bench_time(bench_program_run, &w, bench_patience_of(o->quick), &out->seconds);
+    if (s == OK) s = bench_time(bench_program_run, &w, bench_budget_of(o->quick), &out->seconds);
     if (s == OK) {
         nn_cost cost = nn_program_cost(w.program);
         out->flops = cost.forward_flops + (w.adam ? cost.backward_flops : 0);
@@ -88,7 +88,7 @@ static status measure_estimate(const bench_options *o, bench_report *out)
 
 static status measure_relight(const bench_options *o, bench_report *out)
 {
-    return bench_relight(o->weights, bench_patience_of(o->quick), &out->relight);
+    return bench_relight(o->weights, bench_budget_of(o->quick), &out->relight);
 }
 
 static status read_name(const bench_options *o, bench_report *out)

@@ -11,7 +11,7 @@ enum { PICTURE = 256 };
 /* The maps of a ball of radius 0.4 about (0, 0, -1.2), with rings of two colours. */
 static void draw_ball(surface *maps)
 {
-    camera view = {.width = PICTURE, .height = PICTURE, .fov = SURFACE_FOV};
+    camera view = {.width = PICTURE, .height = PICTURE, .fov = CAMERA_FOV};
     vec3 centre = {0, 0, -1.2f};
     for (int y = 0; y < PICTURE; y++) {
         for (int x = 0; x < PICTURE; x++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/bench/bench_relight.h"
 
-#include "base/public.h"
+#include "base/api_needs.h"
 #include "lab/bench/bench_ball.h"
 #include "merlin/merlin.h"
 
@@ -42,7 +42,7 @@ static status estimate_ball(relight_work *w)
     return s;
 }
 
-status bench_relight(const char *weights, bench_patience patience, bench_relighting *out)
+status bench_relight(const char *weights, bench_budget patience, bench_relighting *out)
 {
     relight_work w = {0};
     status s = merlin_model_open(weights, &w.model);

@@ -12,6 +12,6 @@ typedef struct bench_relighting {
     double light_seconds[BENCH_WAYS]; /* for each light on it */
 } bench_relighting;
 
-status bench_relight(const char *weights, bench_patience patience, bench_relighting *out);
+status bench_relight(const char *weights, bench_budget patience, bench_relighting *out);
 
 #endif

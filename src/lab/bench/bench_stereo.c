@@ -82,7 +82,7 @@ static status measure(const bench_stereo_options *o, const bench_stereo_report *
     out->input_bytes = (size_t)c.count * (size_t)c.width * (size_t)c.height * (size_t)c.channels * sizeof *c.picture[0];
     bench_reset_resident();
     size_t before = bench_peak_resident();
-    if (s == OK) s = bench_time(solve, &c, bench_patience_of(o->quick), &out->seconds);
+    if (s == OK) s = bench_time(solve, &c, bench_budget_of(o->quick), &out->seconds);
     size_t most = bench_peak_resident();
     out->working_bytes = before && most > before ? most - before : 0;
     pst_capture_free(&c);
@@ -96,7 +96,7 @@ status bench_stereo(const bench_stereo_options *options, bench_stereo_report *ou
     out->height = options->quick ? 864 : 3000;
     progress p;
     progress_begin(&p, "measuring", "stages", 0, 1 + BENCH_STEREO_RUNS, options->quiet);
-    status s = bench_copy_rate(bench_patience_of(options->quick), &out->copy_rate);
+    status s = bench_copy_rate(bench_budget_of(options->quick), &out->copy_rate);
     for (int i = 0; i < BENCH_STEREO_RUNS && s == OK; i++) {
         progress_update(&p, (size_t)i + 1, "least squares");
         out->run[i] = cases[i];

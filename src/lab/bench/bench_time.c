@@ -10,12 +10,12 @@
 
 enum { MAX_RUNS = 64, COPY_BYTES = 256 << 20 };
 
-bench_patience bench_patience_of(bool quick)
+bench_budget bench_budget_of(bool quick)
 {
-    return quick ? (bench_patience){3, 0.5} : (bench_patience){9, 4};
+    return quick ? (bench_budget){3, 0.5} : (bench_budget){9, 4};
 }
 
-status bench_time(bench_work work, void *context, bench_patience p, double *seconds)
+status bench_time(bench_work work, void *context, bench_budget p, double *seconds)
 {
     double times[MAX_RUNS];
     int runs = 0;
@@ -48,7 +48,7 @@ static status copy_all(void *context)
     return OK;
 }
 
-status bench_copy_rate(bench_patience p, double *rate)
+status bench_copy_rate(bench_budget p, double *rate)
 {
     copy_work c = {malloc(COPY_BYTES), malloc(COPY_BYTES)};
     double seconds = 0;

@@ -2,7 +2,7 @@
 /* How the bench measures time, and the rate of copying that it holds others against.
  *
  *     double seconds;
- *     status s = bench_time(run_it, &work, bench_patience_of(quick), &seconds);      the median of several runs
+ *     status s = bench_time(run_it, &work, bench_budget_of(quick), &seconds);      the median of several runs
  */
 #ifndef MERLIN_LAB_BENCH_BENCH_TIME_H
 #define MERLIN_LAB_BENCH_BENCH_TIME_H
@@ -12,19 +12,19 @@
 #include "base/status.h"
 
 /* How long to measure: at least `least` runs, then on until `seconds` have passed. */
-typedef struct bench_patience {
+typedef struct bench_budget {
     int least;
     double seconds;
-} bench_patience;
+} bench_budget;
 
-bench_patience bench_patience_of(bool quick);
+bench_budget bench_budget_of(bool quick);
 
 typedef status (*bench_work)(void *context);
 
 /* Median seconds of one call, after one that is not counted. */
-status bench_time(bench_work work, void *context, bench_patience p, double *seconds);
+status bench_time(bench_work work, void *context, bench_budget p, double *seconds);
 
 /* Bytes read and written a second by memcpy on all threads. */
-status bench_copy_rate(bench_patience p, double *rate);
+status bench_copy_rate(bench_budget p, double *rate);
 
 #endif

@@ -16,7 +16,7 @@
 #include "lab/bench/bench.h"
 #include "lab/bench/bench_layers.h"
 #include "lab/bench/bench_stereo.h"
-#include "lab/cli/commands.h"
+#include "lab/cli/lab_commands.h"
 #include "lab/train/checkpoint.h"
 #include "model/model.h"
 
@@ -77,7 +77,7 @@ static status write_random_weights(const char *config_path, const char *path)
     if (s == OK) s = model_build(&config, MODEL_WHOLE, &g);
     if (s == OK) s = nn_params_new(g, 1, &params);
     if (s == OK && !(json = model_config_write(&config))) s = fail(MERLIN_NO_MEMORY, "no memory for a configuration");
-    trn_provenance none = {.config = json, .training = "{}", .note = "random weights of merlin-lab bench"};
+    train_provenance none = {.config = json, .training = "{}", .note = "random weights of merlin-lab bench"};
     if (s == OK) s = train_export(path, params, &none);
     free(json);
     nn_params_free(params);

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
-#include "base/public.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"

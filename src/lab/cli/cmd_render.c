@@ -10,7 +10,7 @@
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "lab/cli/commands.h"
+#include "lab/cli/lab_commands.h"
 #include "lab/render/generate.h"
 
 static const char help[] =

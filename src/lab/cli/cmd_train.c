@@ -7,7 +7,7 @@
 #include "command/cli.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "lab/cli/commands.h"
+#include "lab/cli/lab_commands.h"
 #include "lab/train/train.h"
 
 static const char help[] =
@@ -33,7 +33,7 @@ static const char help[] =
 enum { MOST_SHARED = 8 };
 
 typedef struct request {
-    trn_options options;
+    train_options options;
     const char *shared[MOST_SHARED + 1]; /* ended by NULL */
     bool help, mpi;
 } request;
@@ -51,7 +51,7 @@ static status take_shared(const char *name, void *into)
 
 static status parse(int argc, char **argv, request *r)
 {
-    trn_options *o = &r->options;
+    train_options *o = &r->options;
     const cli_option options[] = {
         {"data", 'd', .text = &o->data},
         {"output", 'o', .folder = &o->output},
@@ -88,13 +88,13 @@ static status find_weights(const char **name, char **path)
 
 static status train(request *r)
 {
-    trn_options *o = &r->options;
+    train_options *o = &r->options;
     char *init = NULL, *shared[MOST_SHARED] = {0};
     status s = o->init ? find_weights(&o->init, &init) : OK;
     for (size_t i = 0; s == OK && r->shared[i]; i++)
         s = find_weights(&r->shared[i], &shared[i]);
     if (s == OK) s = check_named("configuration", o->config);
-    if (s == OK) s = trn_train(o);
+    if (s == OK) s = train_run(o);
     free(init);
     for (size_t i = 0; i < MOST_SHARED; i++)
         free(shared[i]);
@@ -111,7 +111,7 @@ static int end(ranks *together, status s)
     if (all_know)
         ranks_close(together);
     else
-        ranks_abandon(together);
+        ranks_abort(together);
     return code;
 }
 

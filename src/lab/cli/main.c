@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin-lab: how the models of merlin are made and measured. */
 #include "command/program.h"
-#include "lab/cli/commands.h"
+#include "lab/cli/lab_commands.h"
 
 static const cli_command commands[] = {
     {"render", "make training data", cmd_render},

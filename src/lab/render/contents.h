@@ -8,7 +8,7 @@
 #ifndef MERLIN_LAB_RENDER_CONTENTS_H
 #define MERLIN_LAB_RENDER_CONTENTS_H
 
-#include "lab/render/options.h"
+#include "lab/render/render_options.h"
 
 /* Describes the mesh and the folders that the options name, these by names and bytes of all files that are read, in any
  * order. Empty where they name none; MERLIN_BAD_INPUT for what cannot be read. */

@@ -5,13 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "lab/render/sky.h"
 #include "optics/brdf.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
-
-static const float pi = 3.14159265358979f;
 
 /* The place of a unit direction in the map, in texels. */
 static void place_of(const environment *env, vec3 d, float *x, float *y)
@@ -25,7 +24,7 @@ static void place_of(const environment *env, vec3 d, float *x, float *y)
 /* Solid angle of a texel of row y: latlong_solid_angle, from the stored cosines. */
 static float texel_solid_angle(const environment *env, int y)
 {
-    return (env->cosines[y] - env->cosines[y + 1]) * 2 * pi / (float)env->map.width;
+    return (env->cosines[y] - env->cosines[y + 1]) * 2 * PI / (float)env->map.width;
 }
 
 static float mean_luminance(const environment *env)
@@ -38,7 +37,7 @@ static float mean_luminance(const environment *env)
             row += color_luminance(img_at(map, x, y));
         sum += row * texel_solid_angle(env, y);
     }
-    return (float)(sum / (4 * 3.14159265358979));
+    return (float)(sum / (4 * M_PI));
 }
 
 /* Divides a cumulative sum by its last value; the last entry becomes 1 exactly. */
@@ -92,7 +91,7 @@ static status finish(environment *env, float exposure)
         return fail(MERLIN_NO_MEMORY, "out of memory for an environment map");
     }
     for (size_t y = 0; y <= h; y++)
-        env->cosines[y] = cosf(pi * (float)y / (float)h);
+        env->cosines[y] = cosf(PI * (float)y / (float)h);
     float mean = mean_luminance(env), scale = mean > 0 ? exposure / mean : 0;
     for (size_t i = 0; i < 3 * w * h; i++)
         env->map.data[i] *= scale;
@@ -148,7 +147,7 @@ static neighbours around(const environment *env, float x, float y)
 {
     int w = env->map.width, h = env->map.height;
     x -= 0.5f;
-    y = fminf((float)h - 1, fmaxf(0, y - 0.5f));
+    y = clamp(y - 0.5f, 0, (float)h - 1);
     int x0 = (int)floorf(x), y0 = (int)y;
     float fx = x - (float)x0, fy = y - (float)y0;
     int left = x0 < 0 ? x0 + w : x0 < w ? x0 : x0 - w;
@@ -192,7 +191,7 @@ static float tents_pdf(const environment *env, const neighbours *n, float y)
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++)
             probability += n->share[j][i] * texel_probability(env, n->x[i], n->y[j]);
-    return probability * w * h / (2 * pi * pi * fmaxf(1e-6f, sinf(pi * y / h)));
+    return probability * w * h / (2 * PI * PI * fmaxf(1e-6f, sinf(PI * y / h)));
 }
 
 /* Where texels are drawn within their borders. */
@@ -291,6 +290,6 @@ void environment_sample(const environment *env, const float u1[LANES], const flo
     }
     for (int i = 0; i < count; i++) {
         out->pdf[i] = texel_pdf(env, across.interval[i], down.interval[i]);
-        lanes_put(&out->radiance, i, radiance_at(env, x[i], acosf(y[i]) / pi * (float)h));
+        lanes_put(&out->radiance, i, radiance_at(env, x[i], acosf(y[i]) / PI * (float)h));
     }
 }

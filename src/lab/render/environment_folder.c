@@ -13,11 +13,11 @@ static status read_map(const char *path, img *out)
     img full = {0};
     status s = img_read_latlong(path, &full);
     if (s != OK) return s;
-    img_blacken_impossible(&full);
+    img_zero_invalid(&full);
     s = img_resize(&full, ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, out);
     img_free(&full);
     if (s != OK) return fail_in(s, "cannot use %s as an environment", path);
-    img_blacken_impossible(out);
+    img_zero_invalid(out);
     return OK;
 }
 

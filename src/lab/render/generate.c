@@ -15,15 +15,16 @@
 #include "lab/render/streams.h"
 #include "lab/scene/material/texture.h"
 #include "lab/scene/object/model_folder.h"
+#include "optics/camera.h"
 
 /* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
 typedef struct run {
     const render_options *options;
     trace_device *device;
     environment_folder maps;
-    scn_textures textures;
-    scn_model *model;  /* NULL: procedural objects, or */
-    scn_models models; /* these for a share of them */
+    scene_textures textures;
+    scene_model *model;  /* NULL: procedural objects, or */
+    scene_models models; /* these for a share of them */
     render_stats *stats;
     progress bar;
     status failed;
@@ -33,7 +34,7 @@ typedef struct run {
 /* Returns what the command takes without options; docs/notes/paths.md has what eight paths cost. */
 render_options render_options_default(void)
 {
-    return (render_options){.image = {.size = 128, .fov = 60, .strata = 4, .paths = 8}, .environment = true};
+    return (render_options){.image = {.size = 128, .fov = CAMERA_FOV, .strata = 4, .paths = 8}, .environment = true};
 }
 
 static status make_environment(const run *r, uint64_t index, environment *out)
@@ -54,25 +55,25 @@ static image_settings lens_of(const render_options *o, uint64_t index)
 {
     image_settings image = o->image;
     rng r = rng_at(o->seed, index, STREAM_LENS);
-    float wide = rng_uniform(&r), far = rng_uniform(&r), angle = 6.2831853f * rng_uniform(&r);
+    float wide = rng_uniform(&r), far = rng_uniform(&r), angle = 2 * PI * rng_uniform(&r);
     if (o->widest_fov > 0) image.fov *= powf(o->widest_fov / image.fov, wide);
     float most = fminf(o->off_axis, fmaxf(HALF_FRAME - image.fov / 2, 0));
     if (most > 0) image.slant = camera_tilt(far * most * cosf(angle), far * most * sinf(angle));
     return image;
 }
 
-static status make_object(const run *r, uint64_t index, float fov, scn_object *out)
+static status make_object(const run *r, uint64_t index, float fov, scene_object *out)
 {
     const render_options *o = r->options;
     const float share = o->mesh_share > 0 ? o->mesh_share : 0.5f;
     status s;
     if (r->model)
-        s = scn_object_from_model(r->model, o->seed, index, fov, out);
-    else if (r->models.count && scn_models_chosen(o->seed, index, share))
-        s = scn_object_from_models(&r->models, o->seed, index, fov, out);
+        s = scene_object_from_model(r->model, o->seed, index, fov, out);
+    else if (r->models.count && scene_models_chosen(o->seed, index, share))
+        s = scene_object_from_models(&r->models, o->seed, index, fov, out);
     else
-        s = scn_object_generate(o->seed, index, fov, out);
-    if (s == OK && r->textures.count) scn_object_wear(out, &r->textures, o->seed, index);
+        s = scene_object_generate(o->seed, index, fov, out);
+    if (s == OK && r->textures.count) scene_object_apply_textures(out, &r->textures, o->seed, index);
     return s;
 }
 
@@ -88,16 +89,16 @@ static double expected_rays(const render_options *o)
 static status make_sample_under(const run *r, uint64_t index, const environment *env, sample *out, uint64_t *rays)
 {
     const render_options *o = r->options;
-    scn_object object;
+    scene_object object;
     trace_scene scene = {0};
     const image_settings image = lens_of(o, index);
     status s = make_object(r, index, image.fov, &object);
     if (s != OK) return s;
-    s = trace_scene_new(r->device, &object, scn_surfaces_eval, expected_rays(o), &scene);
+    s = trace_scene_new(r->device, &object, scene_surfaces_eval, expected_rays(o), &scene);
     if (s == OK) s = render_image(&scene, &image, o->seed, index, env->map.data ? env : NULL, out);
     *rays = scene.rays;
     trace_scene_free(&scene);
-    scn_object_free(&object);
+    scene_object_free(&object);
     return s;
 }
 
@@ -297,9 +298,9 @@ static status check_options(const render_options *o)
 
 static void close_run(run *r)
 {
-    scn_model_free(r->model);
-    scn_models_free(&r->models);
-    scn_textures_free(&r->textures);
+    scene_model_free(r->model);
+    scene_models_free(&r->models);
+    scene_textures_free(&r->textures);
     environment_folder_free(&r->maps);
     trace_device_free(r->device);
 }
@@ -311,9 +312,9 @@ static status open_run(const render_options *o, run *r)
     if (s == OK) s = trace_device_new(&r->device);
     if (s == OK && o->environment && o->environment_folder)
         s = environment_folder_read(o->environment_folder, &r->maps);
-    if (s == OK && o->material_folder) s = scn_textures_read(o->material_folder, &r->textures);
-    if (s == OK && o->mesh) s = scn_model_read(o->mesh, &r->model);
-    if (s == OK && o->mesh_folder) s = scn_models_read(o->mesh_folder, &r->models);
+    if (s == OK && o->material_folder) s = scene_textures_read(o->material_folder, &r->textures);
+    if (s == OK && o->mesh) s = scene_model_read(o->mesh, &r->model);
+    if (s == OK && o->mesh_folder) s = scene_models_read(o->mesh_folder, &r->models);
     if (s != OK) close_run(r);
     return s;
 }
@@ -321,11 +322,11 @@ static status open_run(const render_options *o, run *r)
 /* Tries the mesh before the folder is claimed for it: a wrong name shall not stand in the way of the right one. */
 static status check_mesh(const run *r)
 {
-    scn_object object;
+    scene_object object;
     if (!r->model) return OK;
     const uint64_t first = r->options->first;
     status s = make_object(r, first, lens_of(r->options, first).fov, &object);
-    if (s == OK) scn_object_free(&object);
+    if (s == OK) scene_object_free(&object);
     return s;
 }
 

@@ -17,7 +17,7 @@
 #include <stddef.h>
 
 #include "base/skipped.h"
-#include "lab/render/options.h"
+#include "lab/render/render_options.h"
 
 typedef struct render_stats {
     size_t rendered, kept; /* kept: were there already */

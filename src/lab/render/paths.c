@@ -3,27 +3,28 @@
 
 #include <string.h>
 
+#include "base/number.h"
 #include "optics/brdf.h"
 
 static const vec3 black = {0, 0, 0};
 
 /* f and the density of scatter at l. */
-static vec3 reflect_density(const trace_scene *scene, const scn_surface *at, vec3 l, vec3 view, real *pdf)
+static vec3 reflect_density(const trace_scene *scene, const scene_surface *at, vec3 l, vec3 view, real *pdf)
 {
     if (!scene->diffuse_only) return brdf_eval_pdf(at->albedo, at->roughness, at->normal, l, view, pdf);
-    *pdf = brdf_clamp(vec3_dot(at->normal, l), 0, 1) / BRDF_PI;
-    return vec3_scale(at->albedo, 1 / BRDF_PI);
+    *pdf = clamp(vec3_dot(at->normal, l), 0, 1) / PI;
+    return vec3_scale(at->albedo, 1 / PI);
 }
 
 /* Both normals must face l: the shading normal for the BRDF, the true one lest light pass through the surface. */
-static bool faces(const scn_surface *at, vec3 l)
+static bool faces(const scene_surface *at, vec3 l)
 {
     return vec3_dot(at->normal, l) > 0 && vec3_dot(at->geometric_normal, l) > 0;
 }
 
 /* Draws the next direction and multiplies throughput by f cosθ / pdf; false if the path ends. */
-static bool scatter(const trace_scene *scene, const scn_surface *at, vec3 view, path_start start, real choice, vec3 *l,
-                    real *pdf, vec3 *throughput)
+static bool scatter(const trace_scene *scene, const scene_surface *at, vec3 view, path_start start, real choice,
+                    vec3 *l, real *pdf, vec3 *throughput)
 {
     if (scene->diffuse_only)
         *l = brdf_sample_cosine(at->normal, start.u1, start.u2);
@@ -86,12 +87,13 @@ static vec3 place_of_part(const point_light *light, int part, vec3 seen_from)
     uint32_t bits = scramble(seen_from);
     real u1 = ((real)(part & 1) + (real)(bits & 0xffff) / 0x10000) / 2;
     real u2 = ((real)(part >> 1) + (real)(bits >> 16) / 0x10000) / 2;
-    real radius = sqrt(u1), angle = 2 * BRDF_PI * u2;
+    real radius = sqrt(u1), angle = 2 * PI * u2;
     vec3 place = vec3_fma(light->position, radius * cos(angle), light->across[0]);
     return vec3_fma(place, radius * sin(angle), light->across[1]);
 }
 
-static void gather(const scn_surface *at, const vec3 *view, int count, const point_light *light, int part, shaded *out)
+static void gather(const scene_surface *at, const vec3 *view, int count, const point_light *light, int part,
+                   shaded *out)
 {
     for (int i = 0; i < LANES; i++) {
         int from = i < count ? i : 0;
@@ -113,8 +115,8 @@ ALWAYS_INLINE void shade_lanes(const shaded *s, real power, bool diffuse_only, l
         real distance2 = vec3_dot(to_light, to_light);
         vec3 l = vec3_scale(to_light, 1 / sqrt(distance2));
         real cosine = vec3_dot(n, l);
-        vec3 f = diffuse_only ? vec3_scale(albedo, 1 / BRDF_PI)
-                              : brdf_eval(albedo, s->roughness[i], n, l, lanes_at(&s->view, i));
+        vec3 f =
+            diffuse_only ? vec3_scale(albedo, 1 / PI) : brdf_eval(albedo, s->roughness[i], n, l, lanes_at(&s->view, i));
         bool lit = (cosine > 0) & (distance2 >= (real)1e-6);
         real strength = power * cosine / distance2;
         lanes_put(out, i, vec3_make(lit ? f.x * strength : 0, lit ? f.y * strength : 0, lit ? f.z * strength : 0));
@@ -122,7 +124,7 @@ ALWAYS_INLINE void shade_lanes(const shaded *s, real power, bool diffuse_only, l
 }
 
 /* What up to LANES points get of one part of a lamp, nothing being in the way. */
-static void shade_part(const trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+static void shade_part(const trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                        const point_light *light, int part, shaded *s, lanes *lit)
 {
     real power = light->power / (real)parts_of(light);
@@ -134,7 +136,7 @@ static void shade_part(const trace_scene *scene, const scn_surface *at, const ve
 }
 
 /* Puts out what up to LANES points get from behind something. */
-static void cast_shadows(trace_scene *scene, const scn_surface *at, int count, const shaded *s, lanes *lit)
+static void cast_shadows(trace_scene *scene, const scene_surface *at, int count, const shaded *s, lanes *lit)
 {
     ray_packet rays;
     float far[LANES];
@@ -165,7 +167,7 @@ static void add_part(const lanes *lit, int count, int part, vec3 *sum)
 }
 
 /* Either of radiance and unshadowed may be NULL. */
-static void light_points(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+static void light_points(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                          const point_light *light, vec3 *radiance, vec3 *unshadowed)
 {
     shaded s;
@@ -182,20 +184,20 @@ static void light_points(trace_scene *scene, const scn_surface *at, const vec3 *
     }
 }
 
-void point_light_unshadowed(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+void point_light_unshadowed(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                             const point_light *light, vec3 *radiance)
 {
     light_points(scene, at, view, count, light, NULL, radiance);
 }
 
-void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+void point_light_direct(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                         const point_light *light, vec3 *radiance)
 {
     light_points(scene, at, view, count, light, radiance, NULL);
 }
 
-void point_light_both(trace_scene *scene, const scn_surface *at, const vec3 *view, int count, const point_light *light,
-                      vec3 *radiance, vec3 *unshadowed)
+void point_light_both(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
+                      const point_light *light, vec3 *radiance, vec3 *unshadowed)
 {
     light_points(scene, at, view, count, light, radiance, unshadowed);
 }
@@ -211,11 +213,11 @@ typedef struct arrivals {
     uint32_t index[WAVE]; /* of the path in its sequence */
     vec3 throughput[WAVE], view[WAVE];
     trace_hit hit[WAVE];
-    scn_surface at[WAVE];
+    scene_surface at[WAVE];
     vec3 direct[WAVE]; /* a point light's */
 } arrivals;
 
-static void arrive(arrivals *a, const bundle *b, int lane, const trace_hit *hit)
+static void arrive(arrivals *a, const path_packet *b, int lane, const trace_hit *hit)
 {
     int k = a->count++;
     a->pixel[k] = b->pixel[lane];
@@ -230,8 +232,8 @@ static void follow_point_light(trace_scene *scene, const arrivals *a, int k, con
                                const path_source *source, vec3 bounce[2])
 {
     vec3 throughput = a->throughput[k], l, back, third;
-    const scn_surface *from = &a->at[k];
-    scn_surface to;
+    const scene_surface *from = &a->at[k];
+    scene_surface to;
     real pdf;
     bounce[0] = vec3_add(bounce[0], clamp_path(vec3_mul(throughput, a->direct[k])));
     path_start start = sequence_at(source->sequence, SEQUENCE_SECOND, a->index[k]);
@@ -246,7 +248,7 @@ static void follow_point_light(trace_scene *scene, const arrivals *a, int k, con
 void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
                        const path_source *source, int paths, vec3 (*bounce)[2])
 {
-    bundle b;
+    path_packet b;
     trace_hit hits[TRACE_PACKET];
     arrivals a;
     for (int i = 0; i < count; i++)
@@ -254,8 +256,8 @@ void point_light_paths(trace_scene *scene, const path_points *pixels, int count,
     for (int done = 0; done < count * paths;) {
         a.count = 0;
         for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
-            bundle_begin(&b, pixels, count, paths, done);
-            bundle_scatter(&b, source->sequence, scene->diffuse_only);
+            path_packet_begin(&b, pixels, count, paths, done);
+            path_packet_scatter(&b, source->sequence, scene->diffuse_only);
             trace_packet(scene, &b.rays, hits);
             for (int i = 0; i < b.count; i++)
                 if (hits[i].distance >= 0) arrive(&a, &b, i, &hits[i]);
@@ -270,7 +272,7 @@ void point_light_paths(trace_scene *scene, const path_points *pixels, int count,
 /* ---- the environment ------------------------------------------------------------------------------------------- */
 
 /* The environment's light at one surface, by a direction drawn from the map. */
-static vec3 environment_direct(trace_scene *scene, const scn_surface *at, vec3 view, const environment *env,
+static vec3 environment_direct(trace_scene *scene, const scene_surface *at, vec3 view, const environment *env,
                                path_start u)
 {
     float u1[LANES] = {u.u1}, u2[LANES] = {u.u2};
@@ -299,7 +301,7 @@ static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, con
 {
     enum { MORE_SURFACES = 2 };
     vec3 sum = black, throughput = a->throughput[k], v = a->view[k], l;
-    scn_surface from = a->at[k], to;
+    scene_surface from = a->at[k], to;
     for (int left = MORE_SURFACES; left > 0; left--) {
         real pdf;
         vec3 direct = vec3_mul(throughput, environment_direct(scene, &from, v, env, random_start(r)));
@@ -316,14 +318,14 @@ static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, con
     return sum;
 }
 
-static void add(vec3 *radiance, const bundle *b, int lane, vec3 light)
+static void add(vec3 *radiance, const path_packet *b, int lane, vec3 light)
 {
     vec3 *sum = &radiance[b->pixel[lane]];
     *sum = vec3_add(*sum, vec3_mul(lanes_at(&b->throughput, lane), light));
 }
 
 /* The map's light at the first surfaces, by directions drawn from the map. */
-static void first_environment_direct(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+static void first_environment_direct(trace_scene *scene, path_packet *b, const environment *env, const sequence *q,
                                      vec3 *radiance)
 {
     float u1[LANES], u2[LANES];
@@ -338,19 +340,19 @@ static void first_environment_direct(trace_scene *scene, bundle *b, const enviro
     memcpy(b->rays.dx, drawn.direction.x, sizeof b->rays.dx);
     memcpy(b->rays.dy, drawn.direction.y, sizeof b->rays.dy);
     memcpy(b->rays.dz, drawn.direction.z, sizeof b->rays.dz);
-    bundle_reflect(b, drawn.pdf, scene->diffuse_only);
+    path_packet_reflect(b, drawn.pdf, scene->diffuse_only);
     trace_packet_free(scene, &b->rays, NULL);
     for (int i = 0; i < b->count; i++)
         if (b->rays.valid[i]) add(radiance, b, i, lanes_at(&drawn.radiance, i));
 }
 
 /* What the first surfaces get from the map; paths that meet another surface arrive there. */
-static void begin_environment_paths(trace_scene *scene, bundle *b, const environment *env, const sequence *q,
+static void begin_environment_paths(trace_scene *scene, path_packet *b, const environment *env, const sequence *q,
                                     vec3 *radiance, arrivals *a)
 {
     trace_hit hits[TRACE_PACKET];
     first_environment_direct(scene, b, env, q, radiance);
-    bundle_scatter(b, q, scene->diffuse_only);
+    path_packet_scatter(b, q, scene->diffuse_only);
     trace_packet(scene, &b->rays, hits);
     for (int i = 0; i < b->count; i++) {
         vec3 l = vec3_make(b->rays.dx[i], b->rays.dy[i], b->rays.dz[i]);
@@ -364,14 +366,14 @@ static void begin_environment_paths(trace_scene *scene, bundle *b, const environ
 void environment_paths(trace_scene *scene, const path_points *pixels, int count, const environment *env,
                        const path_source *source, int paths, vec3 *radiance)
 {
-    bundle b;
+    path_packet b;
     arrivals a;
     for (int i = 0; i < count; i++)
         radiance[i] = black;
     for (int done = 0; done < count * paths;) {
         a.count = 0;
         for (int end = done + WAVE; done < end && done < count * paths; done += TRACE_PACKET) {
-            bundle_begin(&b, pixels, count, paths, done);
+            path_packet_begin(&b, pixels, count, paths, done);
             begin_environment_paths(scene, &b, env, source->sequence, radiance, &a);
         }
         trace_surfaces_at(scene, a.hit, a.view, a.count, a.at);

@@ -7,8 +7,8 @@
 #define MERLIN_LAB_RENDER_PATHS_H
 
 #include "base/rng.h"
-#include "lab/render/bundle.h"
 #include "lab/render/environment.h"
+#include "lab/render/path_packet.h"
 #include "lab/render/sequence.h"
 #include "lab/render/trace.h"
 
@@ -33,14 +33,14 @@ typedef struct path_source {
 } path_source;
 
 /* Bounce 1: radiance of points toward their views, without looking for shadows. */
-void point_light_unshadowed(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+void point_light_unshadowed(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                             const point_light *light, vec3 *radiance);
 /* The same, less what other surfaces, or the surface's own back, keep of the lamp's parts. */
-void point_light_direct(trace_scene *scene, const scn_surface *at, const vec3 *view, int count,
+void point_light_direct(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                         const point_light *light, vec3 *radiance);
 /* Both at once, by the same parts: what arrives, and what would if nothing were in the way. */
-void point_light_both(trace_scene *scene, const scn_surface *at, const vec3 *view, int count, const point_light *light,
-                      vec3 *radiance, vec3 *unshadowed);
+void point_light_both(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
+                      const point_light *light, vec3 *radiance, vec3 *unshadowed);
 /* Bounces 2 and 3 for each of `count` pixels, the sums over so many paths each. */
 void point_light_paths(trace_scene *scene, const path_points *pixels, int count, const point_light *light,
                        const path_source *source, int paths, vec3 (*bounce)[2]);

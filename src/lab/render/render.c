@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/render/lamps.h"
+#include "lab/render/layer_filter.h"
 #include "lab/render/paths.h"
-#include "lab/render/smooth.h"
+#include "lab/render/sample_lamps.h"
 #include "lab/render/streams.h"
 #include "lab/render/visibility.h"
 #include "optics/light.h"
@@ -22,7 +22,7 @@ typedef struct layer_source {
 typedef struct pixel {
     int x, y, count;
     float coverage;
-    const scn_surface *at;
+    const scene_surface *at;
     const vec3 *view;
 } pixel;
 
@@ -33,7 +33,7 @@ typedef struct strip {
     pixel pixel[STRIP];
     trace_hit hit[STRIP * VISIBILITY_MAX_POINTS];
     vec3 view[STRIP * VISIBILITY_MAX_POINTS];
-    scn_surface at[STRIP * VISIBILITY_MAX_POINTS];
+    scene_surface at[STRIP * VISIBILITY_MAX_POINTS];
     /* by one point light, and if nothing were in its way */
     vec3 radiance[STRIP * VISIBILITY_MAX_POINTS], unshadowed[STRIP * VISIBILITY_MAX_POINTS];
 } strip;
@@ -262,17 +262,17 @@ static status make_layers(const image_settings *set, bool env, sample *out)
 }
 
 /* The environment casts shadows and is filtered less than what other surfaces send. */
-static status smooth_layers(sample *out)
+static status filter_layers(sample *out)
 {
     enum { INDIRECT_RADIUS = 3, ENVIRONMENT_RADIUS = 1 };
-    status s = smooth_layer(out, &out->indirect, INDIRECT_RADIUS);
-    if (s == OK && out->bounce2.data) s = smooth_layer(out, &out->bounce2, INDIRECT_RADIUS);
-    if (s == OK && out->bounce3.data) s = smooth_layer(out, &out->bounce3, INDIRECT_RADIUS);
-    if (s == OK && out->env.data) s = smooth_layer(out, &out->env, ENVIRONMENT_RADIUS);
+    status s = filter_layer(out, &out->indirect, INDIRECT_RADIUS);
+    if (s == OK && out->bounce2.data) s = filter_layer(out, &out->bounce2, INDIRECT_RADIUS);
+    if (s == OK && out->bounce3.data) s = filter_layer(out, &out->bounce3, INDIRECT_RADIUS);
+    if (s == OK && out->env.data) s = filter_layer(out, &out->env, ENVIRONMENT_RADIUS);
     for (int t = 0; s == OK && t < out->target_count; t++)
-        s = smooth_layer(out, &out->targets[t].indirect, INDIRECT_RADIUS);
+        s = filter_layer(out, &out->targets[t].indirect, INDIRECT_RADIUS);
     for (int i = 0; s == OK && i < out->lamp_count; i++)
-        s = smooth_layer(out, &out->lamps[i].indirect, INDIRECT_RADIUS);
+        s = filter_layer(out, &out->lamps[i].indirect, INDIRECT_RADIUS);
     return s;
 }
 
@@ -324,17 +324,17 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
     rng lamps = rng_at(seed, index, STREAM_LAMP_PLACES);
     for (int i = 0; i < settings->lamps; i++) {
         if (settings->lamp_angles > 0)
-            lamp_draw_at(&lamps, settings->lamp_angle[i], &out->lamps[i]);
+            sample_lamp_draw_at(&lamps, settings->lamp_angle[i], &out->lamps[i]);
         else
-            lamp_draw(&lamps, scene->object, &out->lamps[i]);
-        r.lamps[i] = lamp_light(&out->lamps[i]);
+            sample_lamp_draw(&lamps, scene->object, &out->lamps[i]);
+        r.lamps[i] = sample_lamp_light(&out->lamps[i]);
     }
     if (env) memcpy(out->sh, env->sh, sizeof out->sh);
     for (int y = 0; y < settings->size; y++)
         for (int x = 0; x < settings->size; x += STRIP)
             render_strip(&r, x, y);
     visibility_free(r.visibility);
-    s = smooth_layers(out);
+    s = filter_layers(out);
     if (s != OK) sample_free(out);
     return s;
 }

@@ -27,7 +27,7 @@ typedef struct image_settings {
     int targets;                        /* images under lights of the frontal hemisphere, at most SAMPLE_MAX_TARGETS */
     float lamp_angle[SAMPLE_MAX_LAMPS]; /* degrees; see lamp_angles */
     int lamp_angles; /* > 0: so many lamps, points as far as the camera, at these angles from the line to it */
-    int lamps;       /* images under lamps of any place and size (render/lamps.h), at most SAMPLE_MAX_LAMPS */
+    int lamps;       /* images under lamps of any place and size (render/sample_lamps.h), at most SAMPLE_MAX_LAMPS */
     bool bounces;    /* keep bounce 2 and bounce 3 apart as well */
 } image_settings;
 

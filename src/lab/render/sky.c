@@ -4,19 +4,13 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/number.h"
 #include "lab/scene/shape/noise.h"
 #include "optics/latlong.h"
 
 static vec3 grey(float value)
 {
     return vec3_make(value, value, value);
-}
-
-/* 0 at x = from, 1 at x = to, smooth between (Hermite); from may be the larger. */
-static float ramp(float from, float to, float x)
-{
-    float t = fminf(1, fmaxf(0, (x - from) / (to - from)));
-    return t * t * (3 - 2 * t);
 }
 
 /* A colour of this brightness, tinted between warm (-1) and cool (1). */
@@ -27,7 +21,7 @@ static vec3 tinted(float value, float coolness)
 
 static vec3 random_direction(rng *r, float lowest, float highest)
 {
-    float y = rng_range(r, lowest, highest), phi = rng_range(r, 0, 6.2831853f), s = sqrtf(1 - y * y);
+    float y = rng_range(r, lowest, highest), phi = rng_range(r, 0, 2 * PI), s = sqrtf(1 - y * y);
     return vec3_make(s * cosf(phi), y, s * sinf(phi));
 }
 
@@ -69,27 +63,27 @@ static vec3 outdoors_at(const outdoors *o, vec3 d)
     }
     vec3 sky = vec3_lerp(o->horizon, o->zenith, sqrtf(d.y));
     vec3 p = vec3_scale(d, o->cloud_scale / (d.y + 0.2f));
-    float cloud = ramp(-0.2f, 0.5f, noise_fbm(p, 4, o->seed) + o->cover - 0.5f);
+    float cloud = smooth_step(-0.2f, 0.5f, noise_fbm(p, 4, o->seed) + o->cover - 0.5f);
     sky = vec3_lerp(sky, o->cloud, 0.8f * cloud);
     float toward = vec3_dot(d, o->sun_direction);
     sky = vec3_add(sky, grey(o->glow * expf(12 * (toward - 1))));
-    return vec3_fma(sky, ramp(o->sun_edge, o->sun_core, toward) * (1 - 0.9f * cloud), o->sun);
+    return vec3_fma(sky, smooth_step(o->sun_edge, o->sun_core, toward) * (1 - 0.9f * cloud), o->sun);
 }
 
 /* ---- a room ---------------------------------------------------------------------------------------------------- */
 
 enum { ROOM_LAMPS = 4 };
 
-typedef struct lamp {
+typedef struct sky_lamp {
     int wall;                  /* 0..5: -x, +x, floor, ceiling, -z, +z */
     float x, y, width, height; /* rectangle on the wall, in the wall's half sizes */
     vec3 radiance;
-} lamp;
+} sky_lamp;
 
 typedef struct room {
     float half[3], eye[3];
     vec3 wall[6];
-    lamp lamps[ROOM_LAMPS];
+    sky_lamp lamps[ROOM_LAMPS];
     int lamp_count;
     uint32_t seed;
 } room;
@@ -111,7 +105,7 @@ static room random_room(rng *r)
     o.lamp_count = 1 + rng_below(r, ROOM_LAMPS);
     for (int i = 0; i < o.lamp_count; i++) {
         static const int places[] = {0, 1, 3, 3, 4, 5};
-        lamp *l = &o.lamps[i];
+        sky_lamp *l = &o.lamps[i];
         l->wall = places[rng_below(r, 6)];
         l->width = rng_range(r, 0.1f, 0.45f);
         l->height = rng_range(r, 0.1f, 0.45f);
@@ -140,7 +134,7 @@ static vec3 room_at(const room *o, vec3 d)
     float x = (o->eye[across] + nearest * direction[across]) / o->half[across];
     float y = (o->eye[up] + nearest * direction[up]) / o->half[up];
     for (int i = 0; i < o->lamp_count; i++) {
-        const lamp *l = &o->lamps[i];
+        const sky_lamp *l = &o->lamps[i];
         if (l->wall == wall && fabsf(x - l->x) < l->width && fabsf(y - l->y) < l->height) return l->radiance;
     }
     /* corners are darker, and things stand against the walls */
@@ -187,7 +181,8 @@ static vec3 studio_at(const studio *o, vec3 d)
         float toward = vec3_dot(d, o->direction[i]);
         if (toward <= 0.1f) continue;
         float x = fabsf(vec3_dot(d, o->right[i])) / toward, y = fabsf(vec3_dot(d, o->above[i])) / toward;
-        float inside = ramp(o->width[i], 0.85f * o->width[i], x) * ramp(o->height[i], 0.85f * o->height[i], y);
+        float inside =
+            smooth_step(o->width[i], 0.85f * o->width[i], x) * smooth_step(o->height[i], 0.85f * o->height[i], y);
         sum = vec3_fma(sum, inside, o->radiance[i]);
     }
     return sum;

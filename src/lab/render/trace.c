@@ -51,7 +51,7 @@ void trace_device_free(trace_device *device)
     free(device);
 }
 
-static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object *object, enum RTCBuildQuality quality)
+static status attach_triangles(RTCDevice device, RTCScene bvh, const scene_object *object, enum RTCBuildQuality quality)
 {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!geometry) return device_fail(device, "make a geometry");
@@ -79,7 +79,7 @@ static status attach_triangles(RTCDevice device, RTCScene bvh, const scn_object 
 /* Per triangle. Measured: the quick build saves 0.18 µs a triangle and costs some 15 ns a ray. */
 static const double few_rays = 12;
 
-status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface, double rays,
+status trace_scene_new(trace_device *device, const scene_object *object, trace_surface_function *surface, double rays,
                        trace_scene *out)
 {
     *out = (trace_scene){.object = object, .surface = surface};
@@ -129,7 +129,7 @@ void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, tr
     scene->rays += (uint64_t)count;
     for (int i = 0; i < count; i++) {
         bool met = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        hits[i].at = (scn_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+        hits[i].at = (scene_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
         hits[i].distance = met ? packet.ray.tfar[i] : -1.0f;
     }
 }
@@ -164,7 +164,7 @@ void trace_packet(trace_scene *scene, const ray_packet *rays, trace_hit hits[TRA
     embree_intersect16(valid, bvh_of(scene), &packet, EMBREE_INCOHERENT);
     for (int i = 0; i < TRACE_PACKET; i++) {
         bool met = rays->valid[i] && packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        hits[i].at = (scn_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+        hits[i].at = (scene_place){packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
         hits[i].distance = met ? packet.ray.tfar[i] : -1.0f;
     }
 }
@@ -187,7 +187,7 @@ static vec3 bend_toward(vec3 n, vec3 d, real least)
     return c < least ? vec3_normalize(vec3_fma(n, least - c, d)) : n;
 }
 
-static void face(scn_surface *s, vec3 view)
+static void face(scene_surface *s, vec3 view)
 {
     if (vec3_dot(s->geometric_normal, view) < 0) {
         s->geometric_normal = vec3_scale(s->geometric_normal, -1);
@@ -196,9 +196,9 @@ static void face(scn_surface *s, vec3 view)
     s->normal = bend_toward(s->normal, view, (real)0.03);
 }
 
-void trace_surfaces_at(const trace_scene *scene, const trace_hit *hits, const vec3 *view, int count, scn_surface *out)
+void trace_surfaces_at(const trace_scene *scene, const trace_hit *hits, const vec3 *view, int count, scene_surface *out)
 {
-    scn_place places[TRACE_PACKET];
+    scene_place places[TRACE_PACKET];
     for (int done = 0; done < count; done += TRACE_PACKET) {
         int abreast = count - done < TRACE_PACKET ? count - done : TRACE_PACKET;
         for (int i = 0; i < abreast; i++)
@@ -221,7 +221,7 @@ static struct RTCRay make_ray(vec3 origin, vec3 direction, float distance)
                            .mask = 0xffffffffu};
 }
 
-bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface *out)
+bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scene_surface *out)
 {
     struct RTCRayHit ray = {.ray = make_ray(origin, direction, FLT_MAX)};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;

@@ -4,8 +4,8 @@
  *     trace_device *device;
  *     status s = trace_device_new(&device);
  *     trace_scene scene;
- *     s = trace_scene_new(device, &object, scn_surfaces_eval, 1e6, &scene);
- *     scn_surface hit;
+ *     s = trace_scene_new(device, &object, scene_surfaces_eval, 1e6, &scene);
+ *     scene_surface hit;
  *     if (trace_surface(&scene, origin, direction, &hit)) ...
  *     trace_scene_free(&scene);
  *     trace_device_free(device);
@@ -23,11 +23,12 @@
 typedef struct trace_device trace_device;
 typedef struct trace_bvh trace_bvh;
 
-/* Looks up what rays see; scn_surfaces_eval for real objects, something simpler in tests with closed forms. */
-typedef void trace_surface_function(const scn_object *object, const scn_place *places, int count, scn_surface *out);
+/* Looks up what rays see; scene_surfaces_eval for real objects, something simpler in tests with closed forms. */
+typedef void trace_surface_function(const scene_object *object, const scene_place *places, int count,
+                                    scene_surface *out);
 
 typedef struct trace_scene {
-    const scn_object *object; /* borrowed */
+    const scene_object *object; /* borrowed */
     trace_surface_function *surface;
     trace_bvh *bvh;
     bool diffuse_only; /* leave the specular lobe out: tests against closed forms */
@@ -39,13 +40,13 @@ void trace_device_free(trace_device *device);
 
 /* Builds the hierarchy over the object's triangles. The object must outlive the scene. rays: about how many will be
  * traced; few do not repay the time that a better hierarchy takes. What they meet is the same. */
-status trace_scene_new(trace_device *device, const scn_object *object, trace_surface_function *surface, double rays,
+status trace_scene_new(trace_device *device, const scene_object *object, trace_surface_function *surface, double rays,
                        trace_scene *out);
 void trace_scene_free(trace_scene *scene);
 
 /* Where a ray met the object; distance below 0 if it did not. */
 typedef struct trace_hit {
-    scn_place at;
+    scene_place at;
     float distance;
 } trace_hit;
 
@@ -67,15 +68,16 @@ void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far);
 
 /* The surfaces at hits, each seen along -view (view: unit, from the surface to the eye): both normals turned to the
  * viewer's side, the shading normal bent until the viewer sees it at least grazing. */
-void trace_surfaces_at(const trace_scene *scene, const trace_hit *hits, const vec3 *view, int count, scn_surface *out);
+void trace_surfaces_at(const trace_scene *scene, const trace_hit *hits, const vec3 *view, int count,
+                       scene_surface *out);
 
 /* The first surface along a unit direction, ready for shading as above; false if there is none. */
-bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scn_surface *out);
+bool trace_surface(trace_scene *scene, vec3 origin, vec3 direction, scene_surface *out);
 /* Whether anything lies between the origin and distance. */
 bool trace_occluded(trace_scene *scene, vec3 origin, vec3 direction, float distance);
 
 /* Where rays leave a surface: a hair above it, so that they do not meet it again. */
-static inline vec3 trace_leave(const scn_surface *s)
+static inline vec3 trace_leave(const scene_surface *s)
 {
     return vec3_fma(s->position, (real)2e-5, s->geometric_normal);
 }

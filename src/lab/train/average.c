@@ -10,23 +10,23 @@
 /* Passing over the memory of all weights at every step would cost some per cent of training. */
 enum { STRIDE = 8 };
 
-struct trn_average {
+struct train_average {
     nn_params *params;
     double decay;
     float *values; /* the mean of each of the parameters' */
 };
 
-status trn_average_new(nn_params *params, double decay, trn_average **out)
+status train_average_new(nn_params *params, double decay, train_average **out)
 {
     size_t total = nn_params_values(params);
-    trn_average *a = calloc(1, sizeof *a);
+    train_average *a = calloc(1, sizeof *a);
     float *values = calloc(total + 1, sizeof *values);
     if (!a || !values) {
         free(a);
         free(values);
         return fail(MERLIN_NO_MEMORY, "no memory for the mean of %zu weights", total);
     }
-    *a = (trn_average){.params = params, .decay = decay, .values = values};
+    *a = (train_average){.params = params, .decay = decay, .values = values};
     for (size_t i = 0; i < nn_params_count(params); i++) {
         const nn_param *p = nn_params_at(params, i);
         memcpy(values + p->place, p->value, p->count * sizeof *values);
@@ -35,7 +35,7 @@ status trn_average_new(nn_params *params, double decay, trn_average **out)
     return OK;
 }
 
-void trn_average_free(trn_average *a)
+void train_average_free(train_average *a)
 {
     if (!a) return;
     free(a->values);
@@ -43,7 +43,7 @@ void trn_average_free(trn_average *a)
 }
 
 typedef struct blend {
-    trn_average *average;
+    train_average *average;
     float rate; /* of the new values */
 } blend;
 
@@ -56,7 +56,7 @@ static void blend_param(void *context, size_t i)
         mean[k] += b->rate * (p->value[k] - mean[k]);
 }
 
-void trn_average_add(trn_average *a, int64_t step, bool last)
+void train_average_add(train_average *a, int64_t step, bool last)
 {
     int64_t passed = step % STRIDE ? step % STRIDE : STRIDE;
     if (passed < STRIDE && !last) return;
@@ -65,7 +65,7 @@ void trn_average_add(trn_average *a, int64_t step, bool last)
     parallel_for(nn_params_count(a->params), blend_param, &b);
 }
 
-void trn_average_swap(trn_average *a)
+void train_average_swap(train_average *a)
 {
     for (size_t i = 0; i < nn_params_count(a->params); i++) {
         const nn_param *p = nn_params_at(a->params, i);
@@ -79,7 +79,7 @@ void trn_average_swap(trn_average *a)
     nn_params_touch(a->params);
 }
 
-float *trn_average_values(trn_average *a, size_t i)
+float *train_average_values(train_average *a, size_t i)
 {
     return a->values + nn_params_at(a->params, i)->place;
 }

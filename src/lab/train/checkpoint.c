@@ -15,15 +15,15 @@ enum { NAME = 128, PARTS = 4 };
 static const char *const part_names[PARTS] = {"", "adam.moment1.", "adam.moment2.", "average."};
 
 /* A parameter's value (which 0), one of its moments or its mean; NULL where there is none. */
-static float *part_of(const trn_learner *l, size_t i, int which)
+static float *part_of(const train_learner *l, size_t i, int which)
 {
     nn_param *p = nn_params_at(l->params, i);
     if (which == 0) return p->value;
-    if (which == 3) return l->average ? trn_average_values(l->average, i) : NULL;
+    if (which == 3) return l->average ? train_average_values(l->average, i) : NULL;
     return p->gradient ? nn_adam_moment(l->adam, i, which) : NULL;
 }
 
-static status collect(const trn_learner *learner, st_tensor *tensors, char (*names)[NAME], size_t *count)
+static status collect(const train_learner *learner, safetensors_tensor *tensors, char (*names)[NAME], size_t *count)
 {
     size_t n = 0;
     for (size_t i = 0; i < nn_params_count(learner->params); i++) {
@@ -33,8 +33,8 @@ static status collect(const trn_learner *learner, st_tensor *tensors, char (*nam
             if (!data) continue;
             if (snprintf(names[n], NAME, "%s%s", part_names[which], p->name) >= NAME)
                 return fail(MERLIN_WRONG_USE, "parameter name %s is too long for a checkpoint", p->name);
-            tensors[n] =
-                (st_tensor){.name = names[n], .type = ST_F32, .rank = p->rank, .count = p->count, .data = data};
+            tensors[n] = (safetensors_tensor){
+                .name = names[n], .type = SAFETENSORS_F32, .rank = p->rank, .count = p->count, .data = data};
             memcpy(tensors[n].shape, p->shape, sizeof p->shape);
             n++;
         }
@@ -44,7 +44,7 @@ static status collect(const trn_learner *learner, st_tensor *tensors, char (*nam
 }
 
 /* Hexadecimal floats lose nothing. */
-static void print_losses(const trn_losses *l, char *out, size_t size)
+static void print_losses(const train_losses *l, char *out, size_t size)
 {
     int n = snprintf(out, size, "%" PRId64 " %a", l->count, l->total);
     for (int i = 0; i < MODEL_LOSSES; i++)
@@ -57,7 +57,7 @@ static bool is_count(int64_t n)
     return n >= 0 && n <= INT_MAX;
 }
 
-static bool scan_losses(const char *text, trn_losses *l)
+static bool scan_losses(const char *text, train_losses *l)
 {
     char *end;
     l->count = strtoll(text, &end, 10);
@@ -69,8 +69,8 @@ static bool scan_losses(const char *text, trn_losses *l)
     return *end == 0 && end != text;
 }
 
-static status write_tensors(const char *path, const st_tensor *tensors, size_t count, const nn_adam *adam,
-                            const trn_state *state, const trn_identity *identity)
+static status write_tensors(const char *path, const safetensors_tensor *tensors, size_t count, const nn_adam *adam,
+                            const train_state *state, const train_identity *identity)
 {
     char counters[128], samples[32], processes[16], best[64], open[64 * (MODEL_LOSSES + 2)];
     snprintf(counters, sizeof counters, "%" PRId64 " %" PRId64 " %" PRId64, state->step, nn_adam_steps(adam),
@@ -83,14 +83,14 @@ static status write_tensors(const char *path, const st_tensor *tensors, size_t c
         {"checkpoint", "1"},  {"config", identity->model}, {"training", identity->training},
         {"samples", samples}, {"ranks", processes},        {"counters", counters},
         {"best", best},       {"open_losses", open}};
-    return st_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
+    return safetensors_write(path, tensors, count, metadata, sizeof metadata / sizeof *metadata);
 }
 
-status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
-                            const trn_identity *identity)
+status train_checkpoint_write(const char *path, const train_learner *learner, const train_state *state,
+                              const train_identity *identity)
 {
     size_t most = PARTS * nn_params_count(learner->params), count = 0;
-    st_tensor *tensors = calloc(most, sizeof *tensors);
+    safetensors_tensor *tensors = calloc(most, sizeof *tensors);
     char(*names)[NAME] = calloc(most, sizeof *names);
     status s = tensors && names ? OK : fail(MERLIN_NO_MEMORY, "out of memory writing %s", path);
     if (s == OK) s = collect(learner, tensors, names, &count);
@@ -146,18 +146,18 @@ static status must_have_ranks(const char *path, const char *found, int wanted)
                 before, before == 1 ? "process" : "ranks", wanted);
 }
 
-static status read_counters(const st_file *f, const char *path, nn_adam *adam, trn_state *state,
-                            const trn_identity *identity)
+static status read_counters(const safetensors_file *f, const char *path, nn_adam *adam, train_state *state,
+                            const train_identity *identity)
 {
     char samples[32];
     snprintf(samples, sizeof samples, "%zu", identity->samples);
-    status s = must_equal(path, "model configuration", st_metadata(f, "config"), identity->model);
-    if (s == OK) s = must_match(path, st_metadata(f, "training"), identity->training);
-    if (s == OK) s = must_equal(path, "number of samples", st_metadata(f, "samples"), samples);
-    if (s == OK) s = must_have_ranks(path, st_metadata(f, "ranks"), identity->ranks);
+    status s = must_equal(path, "model configuration", safetensors_metadata(f, "config"), identity->model);
+    if (s == OK) s = must_match(path, safetensors_metadata(f, "training"), identity->training);
+    if (s == OK) s = must_equal(path, "number of samples", safetensors_metadata(f, "samples"), samples);
+    if (s == OK) s = must_have_ranks(path, safetensors_metadata(f, "ranks"), identity->ranks);
     if (s != OK) return s;
-    const char *counters = st_metadata(f, "counters"), *open = st_metadata(f, "open_losses");
-    const char *best = st_metadata(f, "best");
+    const char *counters = safetensors_metadata(f, "counters"), *open = safetensors_metadata(f, "open_losses");
+    const char *best = safetensors_metadata(f, "best");
     int64_t steps = 0, skipped = 0;
     if (!counters || !open || !best || !scan_losses(open, &state->open) ||
         sscanf(counters, "%" SCNd64 " %" SCNd64 " %" SCNd64, &state->step, &steps, &skipped) != 3 ||
@@ -169,7 +169,7 @@ static status read_counters(const st_file *f, const char *path, nn_adam *adam, t
     return OK;
 }
 
-static status read_tensors(const st_file *f, const char *path, const trn_learner *learner)
+static status read_tensors(const safetensors_file *f, const char *path, const train_learner *learner)
 {
     for (size_t i = 0; i < nn_params_count(learner->params); i++) {
         const nn_param *p = nn_params_at(learner->params, i);
@@ -178,10 +178,10 @@ static status read_tensors(const st_file *f, const char *path, const trn_learner
             if (!to) continue;
             char name[NAME];
             snprintf(name, sizeof name, "%s%s", part_names[which], p->name);
-            const st_tensor *t = st_find(f, name);
-            if (!t || t->count != p->count || t->type != ST_F32)
+            const safetensors_tensor *t = safetensors_find(f, name);
+            if (!t || t->count != p->count || t->type != SAFETENSORS_F32)
                 return fail(MERLIN_BAD_INPUT, "%s lacks the tensor %s", path, name);
-            status s = st_to_float(t, to);
+            status s = safetensors_to_float(t, to);
             if (s != OK) return s;
         }
     }
@@ -189,27 +189,28 @@ static status read_tensors(const st_file *f, const char *path, const trn_learner
     return OK;
 }
 
-status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state, const trn_identity *identity)
+status train_checkpoint_read(const char *path, const train_learner *learner, train_state *state,
+                             const train_identity *identity)
 {
-    st_file *f;
-    status s = st_open(path, &f);
+    safetensors_file *f;
+    status s = safetensors_open(path, &f);
     if (s != OK) return s;
     s = read_counters(f, path, learner->adam, state, identity);
     if (s == OK) s = read_tensors(f, path, learner);
-    st_close(f);
+    safetensors_close(f);
     return s;
 }
 
-void trn_checkpoint_share(const ranks *together, const trn_learner *l, trn_state *state)
+void train_checkpoint_share(const ranks *together, const train_learner *l, train_state *state)
 {
     int64_t steps[] = {nn_adam_steps(l->adam), nn_adam_skipped(l->adam)};
     for (size_t i = 0; i < nn_params_count(l->params); i++)
         for (int which = 0; which < PARTS; which++) {
             float *values = part_of(l, i, which);
-            if (values) ranks_share(together, values, nn_params_at(l->params, i)->count * sizeof *values);
+            if (values) ranks_broadcast(together, values, nn_params_at(l->params, i)->count * sizeof *values);
         }
-    ranks_share(together, steps, sizeof steps);
-    ranks_share(together, state, sizeof *state);
+    ranks_broadcast(together, steps, sizeof steps);
+    ranks_broadcast(together, state, sizeof *state);
     nn_adam_set_steps(l->adam, steps[0], steps[1]);
     nn_params_touch(l->params);
 }

@@ -5,49 +5,49 @@
 #define MERLIN_LAB_TRAIN_CHECKPOINT_H
 
 #include "lab/train/average.h"
-#include "lab/train/config.h"
 #include "lab/train/curves.h"
+#include "lab/train/train_config.h"
 
-typedef struct trn_state {
+typedef struct train_state {
     int64_t step;
     double best; /* lowest validation loss so far */
-    trn_losses open;
-} trn_state;
+    train_losses open;
+} train_state;
 
 /* What must be the same for a run to go on: texts of the configuration, and the data set's size. */
-typedef struct trn_identity {
+typedef struct train_identity {
     const char *model, *training;
     size_t samples;
     int ranks; /* processes: other numbers add up otherwise */
-} trn_identity;
+} train_identity;
 
 /* What a step changes. */
-typedef struct trn_learner {
+typedef struct train_learner {
     nn_params *params;
     nn_adam *adam;
-    trn_average *average; /* may be NULL */
-} trn_learner;
+    train_average *average; /* may be NULL */
+} train_learner;
 
-status trn_checkpoint_write(const char *path, const trn_learner *learner, const trn_state *state,
-                            const trn_identity *identity);
+status train_checkpoint_write(const char *path, const train_learner *learner, const train_state *state,
+                              const train_identity *identity);
 /* Gives every rank what rank 0 has. */
-void trn_checkpoint_share(const ranks *together, const trn_learner *learner, trn_state *state);
+void train_checkpoint_share(const ranks *together, const train_learner *learner, train_state *state);
 /* Refuses a checkpoint of another data set, number of ranks or configuration, but for memory_gib and
  * checkpoint_minutes. */
-status trn_checkpoint_read(const char *path, const trn_learner *learner, trn_state *state,
-                           const trn_identity *identity);
+status train_checkpoint_read(const char *path, const train_learner *learner, train_state *state,
+                             const train_identity *identity);
 
-typedef struct trn_provenance {
+typedef struct train_provenance {
     const char *config; /* the model's, JSON */
     const char *training;
     const char *note; /* such as the commit; may be NULL */
     int64_t presentations, samples;
     int size, generator_version;
     double validation_loss; /* infinite: there was no validation, and the weights say nothing of it */
-} trn_provenance;
+} train_provenance;
 
 /* Weights for everybody (model_load): half floats, batch norm's statistics float32, with the model's configuration and
  * where they come from in the metadata. */
-status train_export(const char *path, nn_params *params, const trn_provenance *from);
+status train_export(const char *path, nn_params *params, const train_provenance *from);
 
 #endif

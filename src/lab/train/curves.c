@@ -15,7 +15,7 @@
 
 enum { MAX_CSV_BYTES = 1 << 28, FIRST_LOSS = 4, COLUMNS = FIRST_LOSS + 1 + MODEL_LOSSES };
 
-void trn_losses_add(trn_losses *l, const nn_program *p)
+void train_losses_add(train_losses *l, const nn_program *p)
 {
     l->total += (double)nn_total_loss(p);
     for (int i = 0; i < MODEL_LOSSES; i++)
@@ -31,7 +31,7 @@ static void write_header(FILE *f)
     fputc('\n', f);
 }
 
-status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l)
+status train_curve_append(const char *path, const train_curve_row *row, const train_losses *l)
 {
     FILE *f = fopen(path, "a");
     if (!f) return fail(MERLIN_CANNOT_WRITE, "cannot append to %s: %s", path, strerror(errno));
@@ -52,7 +52,7 @@ status trn_curve_append(const char *path, const trn_curve_row *row, const trn_lo
     return OK;
 }
 
-status trn_curve_keep(const char *path)
+status train_curve_keep(const char *path)
 {
     int file = open(path, O_RDONLY);
     if (file < 0) return errno == ENOENT ? OK : fail(MERLIN_CANNOT_WRITE, "cannot open %s: %s", path, strerror(errno));
@@ -61,7 +61,7 @@ status trn_curve_keep(const char *path)
     return good ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
 }
 
-status trn_curve_truncate(const char *path, int64_t step)
+status train_curve_truncate(const char *path, int64_t step)
 {
     if (!file_exists(path)) return OK;
     char *text = NULL;
@@ -133,7 +133,7 @@ static bool any_number(const float *x, int count)
     return false;
 }
 
-status trn_curve_chart(const char *training_csv, const char *validation_csv, const char *png)
+status train_curve_chart(const char *training_csv, const char *validation_csv, const char *png)
 {
     table training = {0}, validation = {0};
     status s = read_table(training_csv, &training);

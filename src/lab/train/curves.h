@@ -8,27 +8,27 @@
 #include "model/model.h"
 
 /* Sums since the last row: kept in checkpoints, so that a resumed run writes the same rows. */
-typedef struct trn_losses {
+typedef struct train_losses {
     double total, each[MODEL_LOSSES];
     int64_t count;
-} trn_losses;
+} train_losses;
 
 /* Adds a program's losses after nn_forward. */
-void trn_losses_add(trn_losses *l, const nn_program *p);
+void train_losses_add(train_losses *l, const nn_program *p);
 
-typedef struct trn_curve_row {
+typedef struct train_curve_row {
     int64_t step, presentations, skipped;
     double learning_rate;
-} trn_curve_row;
+} train_curve_row;
 
 /* Appends the means as one row; losses the model lacks are empty fields. An empty or new file
  * begins with a header. */
-status trn_curve_append(const char *path, const trn_curve_row *row, const trn_losses *l);
+status train_curve_append(const char *path, const train_curve_row *row, const train_losses *l);
 /* So that its rows are on the disk before a checkpoint that stands behind them. A missing file is fine. */
-status trn_curve_keep(const char *path);
+status train_curve_keep(const char *path);
 /* Drops rows behind the step, as if the run had ended there. A missing file is fine. */
-status trn_curve_truncate(const char *path, int64_t step);
+status train_curve_truncate(const char *path, int64_t step);
 /* Draws training and validation losses over presentations; nothing to draw is fine. */
-status trn_curve_chart(const char *training_csv, const char *validation_csv, const char *png);
+status train_curve_chart(const char *training_csv, const char *validation_csv, const char *png);
 
 #endif

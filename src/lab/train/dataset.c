@@ -10,6 +10,7 @@
 #include "base/half.h"
 #include "lab/render/sample.h"
 #include "model/model.h"
+#include "optics/light.h"
 #include "optics/orientation.h"
 
 enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
@@ -18,15 +19,15 @@ enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
 typedef struct packed {
     uint32_t count;
     int lamp_count;
-    trn_lamp lamp[TRN_LAMPS];
+    train_lamp lamp[TRAIN_LAMPS];
     float fov;
     camera_slant slant;
     float sh[9][3];
     uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × values halves */
 } packed;
 
-struct trn_dataset {
-    trn_dataset_options options;
+struct train_dataset {
+    train_dataset_options options;
     size_t values; /* a pixel, beside the lamps' */
     size_t count, memory_limit;
     char **paths;
@@ -35,10 +36,10 @@ struct trn_dataset {
     int generator_version;
 };
 
-status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out)
+status train_dataset_open(const char *folder, const train_dataset_options *options, train_dataset **out)
 {
     *out = NULL;
-    trn_dataset *d = calloc(1, sizeof *d);
+    train_dataset *d = calloc(1, sizeof *d);
     if (!d) return fail(MERLIN_NO_MEMORY, "out of memory opening %s", folder);
     d->options = *options;
     d->values = options->environment || options->lamps ? VALUES_WITH_ENVIRONMENT : VALUES;
@@ -50,14 +51,14 @@ status trn_dataset_open(const char *folder, const trn_dataset_options *options, 
     }
     if (s == OK) s = sample_read_version(d->paths[0], &d->generator_version);
     if (s != OK) {
-        trn_dataset_close(d);
+        train_dataset_close(d);
         return s;
     }
     *out = d;
     return OK;
 }
 
-void trn_dataset_close(trn_dataset *d)
+void train_dataset_close(train_dataset *d)
 {
     if (!d) return;
     if (d->kept)
@@ -68,12 +69,12 @@ void trn_dataset_close(trn_dataset *d)
     free(d);
 }
 
-size_t trn_dataset_count(const trn_dataset *d)
+size_t train_dataset_count(const train_dataset *d)
 {
     return d->count;
 }
 
-int trn_dataset_generator_version(const trn_dataset *d)
+int train_dataset_generator_version(const train_dataset *d)
 {
     return d->generator_version;
 }
@@ -85,9 +86,9 @@ static uint16_t *put3(uint16_t *to, const float *from)
     return to;
 }
 
-static size_t packed_bytes(const trn_dataset *d, size_t count, int lamps)
+static size_t packed_bytes(const train_dataset *d, size_t count, int lamps)
 {
-    return sizeof(packed) + count * (d->values + 2 + (size_t)lamps * TRN_LAMP_VALUES) * sizeof(uint16_t);
+    return sizeof(packed) + count * (d->values + 2 + (size_t)lamps * TRAIN_LAMP_VALUES) * sizeof(uint16_t);
 }
 
 /* All its light, and how much of the direct part is let through. */
@@ -105,18 +106,18 @@ static void describe(const sample *s, int lamps, packed *p)
 {
     p->lamp_count = lamps;
     for (int k = 0; k < lamps; k++)
-        p->lamp[k] = (trn_lamp){s->lamps[k].at, s->lamps[k].distant};
+        p->lamp[k] = (train_lamp){s->lamps[k].at, s->lamps[k].distant};
     p->fov = s->fov;
     p->slant = s->slant;
     memcpy(p->sh, s->sh, sizeof p->sh);
 }
 
-static packed *pack(const trn_dataset *d, const sample *s)
+static packed *pack(const train_dataset *d, const sample *s)
 {
     size_t count = 0, pixels = (size_t)s->mask.width * (size_t)s->mask.height;
     for (size_t i = 0; i < pixels; i++)
         count += s->mask.data[i] > 0;
-    const int most = s->lamp_count < TRN_LAMPS ? s->lamp_count : TRN_LAMPS, lamps = d->options.lamps ? most : 0;
+    const int most = s->lamp_count < TRAIN_LAMPS ? s->lamp_count : TRAIN_LAMPS, lamps = d->options.lamps ? most : 0;
     packed *p = calloc(1, packed_bytes(d, count, lamps));
     if (!p) return NULL;
     p->count = (uint32_t)count;
@@ -143,19 +144,19 @@ static packed *pack(const trn_dataset *d, const sample *s)
 /* The rendering layer knows one camera and one flash: to it, the shading of others is wrong everywhere. */
 static status check_optics(const char *path, const sample *s, bool any_lens)
 {
-    if (!any_lens && fabsf(s->fov - MODEL_FOV) > 0.01f)
+    if (!any_lens && fabsf(s->fov - CAMERA_FOV) > 0.01f)
         return fail(MERLIN_BAD_INPUT, "%s was rendered with a field of view of %g degrees, training wants %g", path,
-                    (double)s->fov, (double)MODEL_FOV);
-    if (fabsf(s->light_power - MODEL_LIGHT_POWER) > 0.001f * MODEL_LIGHT_POWER)
+                    (double)s->fov, (double)CAMERA_FOV);
+    if (fabsf(s->light_power - LIGHT_POWER) > 0.001f * LIGHT_POWER)
         return fail(MERLIN_BAD_INPUT, "%s was rendered with a light of power %g, training wants %g", path,
-                    (double)s->light_power, (double)MODEL_LIGHT_POWER);
+                    (double)s->light_power, (double)LIGHT_POWER);
     if (!(vec3_length(s->light) <= 0.001f))
         return fail(MERLIN_BAD_INPUT, "%s was rendered with its light at %g, %g, %g, training wants it at the camera",
                     path, (double)s->light.x, (double)s->light.y, (double)s->light.z);
     return OK;
 }
 
-static status read_layers(const trn_dataset *d, const char *path, sample *out)
+static status read_layers(const train_dataset *d, const char *path, sample *out)
 {
     if (!d->options.lamps)
         return d->options.environment ? sample_read_training_environment(path, out) : sample_read_training(path, out);
@@ -166,7 +167,7 @@ static status read_layers(const trn_dataset *d, const char *path, sample *out)
                 path);
 }
 
-static status read_packed(trn_dataset *d, size_t i, packed **out)
+static status read_packed(train_dataset *d, size_t i, packed **out)
 {
     sample one;
     int size = d->options.size;
@@ -186,7 +187,7 @@ static status read_packed(trn_dataset *d, size_t i, packed **out)
 }
 
 /* Keeps p if there is room. Returns true if the data set owns it now. */
-static bool keep(trn_dataset *d, size_t i, packed *p)
+static bool keep(train_dataset *d, size_t i, packed *p)
 {
     size_t bytes = packed_bytes(d, p->count, p->lamp_count);
     if (atomic_fetch_add(&d->memory_used, bytes) + bytes > d->memory_limit) {
@@ -206,7 +207,7 @@ static const uint16_t *get3(const uint16_t *from, float *to)
     return from;
 }
 
-static void clear(const trn_view *v)
+static void clear(const train_view *v)
 {
     size_t n = (size_t)v->size * (size_t)v->size;
     float *const three[] = {v->albedo, v->normal, v->direct, v->indirect};
@@ -214,15 +215,15 @@ static void clear(const trn_view *v)
     for (int i = 0; i < 4; i++)
         memset(three[i], 0, 3 * n * sizeof(float));
     if (v->env) memset(v->env, 0, 3 * n * sizeof(float));
-    if (v->lamps) memset(v->lamps, 0, TRN_LAMPS * TRN_LAMP_VALUES * n * sizeof(float));
+    if (v->lamps) memset(v->lamps, 0, TRAIN_LAMPS * TRAIN_LAMP_VALUES * n * sizeof(float));
     for (int i = 0; i < 3; i++)
         memset(one[i], 0, n * sizeof(float));
 }
 
 static const uint16_t *get_lamps(const uint16_t *from, int count, size_t pixels, float *pixel)
 {
-    for (int k = 0; k < count; k++, pixel += TRN_LAMP_VALUES * pixels)
-        for (int c = 0; c < TRN_LAMP_VALUES; c++)
+    for (int k = 0; k < count; k++, pixel += TRAIN_LAMP_VALUES * pixels)
+        for (int c = 0; c < TRAIN_LAMP_VALUES; c++)
             pixel[c] = half_to_float(*from++);
     return from;
 }
@@ -236,7 +237,7 @@ static void turn_vector(int orientation, vec3 *v)
 }
 
 /* What a sample with lamps has beside pictures. */
-static void unpack_lights(const packed *p, int orientation, trn_view *v)
+static void unpack_lights(const packed *p, int orientation, train_view *v)
 {
     vec3 slant = {p->slant.right, p->slant.up, 0};
     turn_vector(orientation, &slant);
@@ -248,7 +249,7 @@ static void unpack_lights(const packed *p, int orientation, trn_view *v)
     }
 }
 
-static void unpack(const packed *p, int orientation, trn_view *v)
+static void unpack(const packed *p, int orientation, train_view *v)
 {
     const size_t pixels = (size_t)v->size * (size_t)v->size;
     clear(v);
@@ -265,7 +266,7 @@ static void unpack(const packed *p, int orientation, trn_view *v)
         v->depth[i] = half_to_float(*value++);
         v->mask[i] = half_to_float(*value++);
         if (v->env) value = get3(value, v->env + 3 * i);
-        if (v->lamps) value = get_lamps(value, p->lamp_count, pixels, v->lamps + TRN_LAMP_VALUES * i);
+        if (v->lamps) value = get_lamps(value, p->lamp_count, pixels, v->lamps + TRAIN_LAMP_VALUES * i);
     }
     if (!v->sh) return;
     float sh[9][3];
@@ -274,7 +275,7 @@ static void unpack(const packed *p, int orientation, trn_view *v)
     memcpy(v->sh, sh, sizeof sh);
 }
 
-status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3])
+status train_dataset_sh(train_dataset *d, size_t i, int orientation, float sh[9][3])
 {
     const packed *p = d->kept[i];
     status s = OK;
@@ -286,7 +287,7 @@ status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3])
     return s;
 }
 
-status trn_dataset_get(trn_dataset *d, size_t i, int orientation, trn_view *out)
+status train_dataset_get(train_dataset *d, size_t i, int orientation, train_view *out)
 {
     packed *p = d->kept[i];
     bool owned = true;

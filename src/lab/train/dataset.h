@@ -2,11 +2,11 @@
 /* A folder of rendered samples as training sees it: read once, kept packed in memory, unpacked into a batch in any of
  * the eight orientations.
  *
- *     trn_dataset *d;
- *     status s = trn_dataset_open("data/train", &(trn_dataset_options){.size = 128, .memory_gib = 11}, &d);
- *     trn_view v = ...;                                    where in the batch it goes
- *     if (s == OK) s = trn_dataset_get(d, 17, 0, &v);
- *     trn_dataset_close(d);
+ *     train_dataset *d;
+ *     status s = train_dataset_open("data/train", &(train_dataset_options){.size = 128, .memory_gib = 11}, &d);
+ *     train_view v = ...;                                    where in the batch it goes
+ *     if (s == OK) s = train_dataset_get(d, 17, 0, &v);
+ *     train_dataset_close(d);
  *
  * Samples are files in order of their names. Only what lies inside the object's outline is kept, as the half floats of
  * the file, so that a sample from memory equals one from disk bit for bit. */
@@ -19,35 +19,36 @@
 #include "base/status.h"
 #include "optics/camera.h"
 
-typedef struct trn_dataset trn_dataset;
+typedef struct train_dataset train_dataset;
 
 /* What a lamp of a sample is like. */
-typedef struct trn_lamp {
+typedef struct train_lamp {
     vec3 at; /* as of sample_lamp */
     bool distant;
-} trn_lamp;
+} train_lamp;
 
-enum { TRN_LAMPS = 4, TRN_LAMP_VALUES = 4 };
+enum { TRAIN_LAMPS = 4, TRAIN_LAMP_VALUES = 4 };
 
 /* One sample's places in the batch, each size × size × channels floats, channels last. */
-typedef struct trn_view {
+typedef struct train_view {
     int size;
-    float *albedo;    /* 3, [0, 1] until trn_prepare turns it to [-1, 1] */
+    float *albedo;    /* 3, [0, 1] until train_prepare turns it to [-1, 1] */
     float *normal;    /* 3 */
     float *roughness; /* 1, like albedo */
     float *depth;     /* 1 */
-    float *mask;      /* 1, coverage until trn_prepare makes it 0 or 1 */
+    float *mask;      /* 1, coverage until train_prepare makes it 0 or 1 */
     float *direct;    /* 3 */
     float *indirect;  /* 3 */
     /* of a data set with environments, else NULL: */
     float *env; /* 3, the object under its environment alone */
-    float *sh;  /* 27 values: that environment; model_encode_sh of it after trn_prepare */
+    float *sh;  /* 27 values: that environment; model_encode_sh of it after train_prepare */
     /* of a data set with lamps, else NULL: */
-    float *lamps; /* TRN_LAMPS images of TRN_LAMP_VALUES: the object under each, bounces included, and its visibility */
-    trn_lamp lamp[TRN_LAMPS];
+    float *lamps; /* TRAIN_LAMPS images of TRAIN_LAMP_VALUES: the object under each, bounces included, and its
+                     visibility */
+    train_lamp lamp[TRAIN_LAMPS];
     int lamp_count;
     camera lens; /* size × size */
-    /* filled by trn_prepare */
+    /* filled by train_prepare */
     float *image, *reconstruction, *relit; /* 3 */
     float *loss_mask;                      /* 1 */
     float *light;                          /* 3 values */
@@ -57,25 +58,25 @@ typedef struct trn_view {
     float *sight, *lens_values;                /* MODEL_SIGHT; 3 values, as the model's inputs "sight" and "lens" */
     float *lights, *lamp_weight, *rest_weight; /* MODEL_LIGHTS values, 1 and 1 */
     float *visibility, *visibility_weight;     /* 1 */
-} trn_view;
+} train_view;
 
-typedef struct trn_dataset_options {
+typedef struct train_dataset_options {
     int size;          /* what every sample's width and height must be */
     double memory_gib; /* samples read are kept until they fill this */
     bool environment;  /* with the images under environments; samples without are refused */
     bool lamps;        /* with these and those under lamps, through any lens; samples without are refused */
-} trn_dataset_options;
+} train_dataset_options;
 
 /* Refuses an empty folder. */
-status trn_dataset_open(const char *folder, const trn_dataset_options *options, trn_dataset **out);
-void trn_dataset_close(trn_dataset *d);
-size_t trn_dataset_count(const trn_dataset *d);
+status train_dataset_open(const char *folder, const train_dataset_options *options, train_dataset **out);
+void train_dataset_close(train_dataset *d);
+size_t train_dataset_count(const train_dataset *d);
 /* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Refuses a sample of another
  * size, and of another camera (but for lamps) or flash than the model's. Safe to call from several threads. */
-status trn_dataset_get(trn_dataset *d, size_t i, int orientation, trn_view *out);
+status train_dataset_get(train_dataset *d, size_t i, int orientation, train_view *out);
 /* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
-status trn_dataset_sh(trn_dataset *d, size_t i, int orientation, float sh[9][3]);
+status train_dataset_sh(train_dataset *d, size_t i, int orientation, float sh[9][3]);
 /* Of the folder's first sample. */
-int trn_dataset_generator_version(const trn_dataset *d);
+int train_dataset_generator_version(const train_dataset *d);
 
 #endif

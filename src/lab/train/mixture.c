@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "optics/blackbody.h"
 #include "optics/light.h"
@@ -21,22 +22,22 @@ static vec3 scaled(vec3 color, float by)
     return vec3_scale(color, by);
 }
 
-static const float *lamp_pixel(const trn_view *v, int which, size_t i)
+static const float *lamp_pixel(const train_view *v, int which, size_t i)
 {
     const size_t pixels = (size_t)v->size * (size_t)v->size;
-    return v->lamps + TRN_LAMP_VALUES * ((size_t)which * pixels + i);
+    return v->lamps + TRAIN_LAMP_VALUES * ((size_t)which * pixels + i);
 }
 
 /* ---- the light ------------------------------------------------------------------------------------------------- */
 
 /* Mean luminance over the object of the flash, the surroundings and every lamp. */
 typedef struct means {
-    float flash, room, lamp[TRN_LAMPS];
+    float flash, room, lamp[TRAIN_LAMPS];
 } means;
 
-static means measure(const trn_view *v)
+static means measure(const train_view *v)
 {
-    double flash = 0, room = 0, lit[TRN_LAMPS] = {0}, count = 1e-6;
+    double flash = 0, room = 0, lit[TRAIN_LAMPS] = {0}, count = 1e-6;
     for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++) {
         if (v->mask[i] <= 0.5f) continue;
         count++;
@@ -65,7 +66,7 @@ static float draw_weight(rng *r)
 }
 
 /* What is lit, of all that could be: at least something. */
-static void draw_shares(const trn_view *v, rng *r, float *flash, float *room, float shares[TRN_LAMPS])
+static void draw_shares(const train_view *v, rng *r, float *flash, float *room, float shares[TRAIN_LAMPS])
 {
     float how_many = rng_uniform(r), with_flash = rng_uniform(r), with_room = rng_uniform(r);
     int lamps = how_many < 0.12f ? 0 : how_many < 0.75f ? 1 : 2, first = rng_below(r, v->lamp_count);
@@ -75,9 +76,9 @@ static void draw_shares(const trn_view *v, rng *r, float *flash, float *room, fl
         shares[(first + k) % v->lamp_count] = draw_weight(r);
 }
 
-static void draw_mixed(const trn_view *v, const means *m, rng *r, trn_mixture *out)
+static void draw_mixed(const train_view *v, const means *m, rng *r, train_mixture *out)
 {
-    float flash = 0, room = 0, shares[TRN_LAMPS] = {0};
+    float flash = 0, room = 0, shares[TRAIN_LAMPS] = {0};
     draw_shares(v, r, &flash, &room, shares);
     /* a lamp that hardly reaches what the camera sees is not made to by more power than the others have together */
     const float least = 0.1f * m->flash + 1e-6f;
@@ -93,7 +94,7 @@ static float luminance_of(vec3 v)
 }
 
 /* The luminance of all light together, by what it does to the picture. */
-static float amount_of(const trn_view *v, const means *m, const trn_mixture *of)
+static float amount_of(const train_view *v, const means *m, const train_mixture *of)
 {
     float all = luminance_of(of->flash) * m->flash + luminance_of(of->room) * m->room;
     for (int k = 0; k < v->lamp_count; k++)
@@ -102,13 +103,14 @@ static float amount_of(const trn_view *v, const means *m, const trn_mixture *of)
 }
 
 /* Of lamps behind an object alone the camera sees nothing: nobody keeps such a photograph. */
-static void ensure_light(const trn_view *v, const means *m, trn_mixture *out)
+static void ensure_light(const train_view *v, const means *m, train_mixture *out)
 {
-    if (amount_of(v, m, out) < 1e-3f * m->flash + 1e-6f) *out = (trn_mixture){.kind = TRN_FLASH, .flash = {1, 1, 1}};
+    if (amount_of(v, m, out) < 1e-3f * m->flash + 1e-6f)
+        *out = (train_mixture){.kind = TRAIN_FLASH, .flash = {1, 1, 1}};
 }
 
 /* Which lamp gives most light, and how sure anybody can be that it is there. */
-static void find_strongest(const trn_view *v, const means *m, trn_mixture *out)
+static void find_strongest(const train_view *v, const means *m, train_mixture *out)
 {
     const float all = amount_of(v, m, out);
     float most = 0;
@@ -124,7 +126,7 @@ static void find_strongest(const trn_view *v, const means *m, trn_mixture *out)
     if (out->presence <= 0) out->strongest = -1;
 }
 
-static vec3 mixed_at(const trn_view *v, const trn_mixture *m, size_t i)
+static vec3 mixed_at(const train_view *v, const train_mixture *m, size_t i)
 {
     vec3 flash = vec3_add(vec3_of(v->direct + 3 * i), vec3_of(v->indirect + 3 * i));
     vec3 sum = vec3_add(vec3_mul(m->flash, flash), vec3_mul(m->room, vec3_of(v->env + 3 * i)));
@@ -137,14 +139,14 @@ static vec3 mixed_at(const trn_view *v, const trn_mixture *m, size_t i)
 
 /* Radiance below which 95 of 100 of the object's pixels are, or the mean of all light where that is more: a lamp that
  * reaches a rim alone leaves 95 of 100 black, and black is nothing to expose by. */
-static float bright_part(const trn_view *v, const trn_mixture *m, float mean)
+static float bright_part(const train_view *v, const train_mixture *m, float mean)
 {
     enum { BINS = 512 };
     size_t bins[BINS] = {0}, count = 0, below = 0;
     for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++) {
         if (v->mask[i] <= 0.5f) continue;
         float place = (log2f(fmaxf(luminance_of(mixed_at(v, m, i)), 1e-9f)) + 30) * 8;
-        bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        bins[(int)clamp(place, 0, BINS - 1)]++;
         count++;
     }
     int bin = 0;
@@ -163,7 +165,7 @@ static void balance(vec3 light, float share, float gain[3])
 }
 
 /* The colour of all light together, weighed by what it does to the picture. */
-static vec3 color_of(const trn_view *v, const means *m, const trn_mixture *mix)
+static vec3 color_of(const train_view *v, const means *m, const train_mixture *mix)
 {
     vec3 room = vec3_make(v->sh[0], v->sh[1], v->sh[2]), sum = vec3_scale(mix->flash, m->flash);
     float bright = fmaxf(luminance_of(room), 1e-6f);
@@ -173,20 +175,20 @@ static vec3 color_of(const trn_view *v, const means *m, const trn_mixture *mix)
     return sum;
 }
 
-void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *out)
+void train_mixture_draw(const train_view *v, rng *r, train_camera *lens, train_mixture *out)
 {
     const means m = measure(v);
     float which = rng_uniform(r), target = expf(rng_range(r, DARKEST, BRIGHTEST)), share = rng_range(r, 0.5f, 1);
     bool known = rng_uniform(r) < 0.75f, told = rng_uniform(r) < 0.5f;
-    *out = (trn_mixture){.kind = which < 1.0f / 3 ? TRN_FLASH : which < 0.5f ? TRN_ROOM : TRN_MIXED};
-    if (out->kind == TRN_FLASH) out->flash = vec3_make(1, 1, 1);
-    if (out->kind == TRN_ROOM) out->room = vec3_make(1, 1, 1);
-    if (out->kind == TRN_MIXED) draw_mixed(v, &m, r, out);
+    *out = (train_mixture){.kind = which < 1.0f / 3 ? TRAIN_FLASH : which < 0.5f ? TRAIN_ROOM : TRAIN_MIXED};
+    if (out->kind == TRAIN_FLASH) out->flash = vec3_make(1, 1, 1);
+    if (out->kind == TRAIN_ROOM) out->room = vec3_make(1, 1, 1);
+    if (out->kind == TRAIN_MIXED) draw_mixed(v, &m, r, out);
     ensure_light(v, &m, out);
     find_strongest(v, &m, out);
     out->lens_known = known;
-    out->told_flash = told && out->kind == TRN_FLASH;
-    if (out->kind == TRN_FLASH) return; /* exposed as rendered: that is what tells dark objects from bright ones */
+    out->told_flash = told && out->kind == TRAIN_FLASH;
+    if (out->kind == TRAIN_FLASH) return; /* exposed as rendered: that is what tells dark objects from bright ones */
     balance(color_of(v, &m, out), share, lens->gain);
     float exposure = target * lens->white / bright_part(v, out, amount_of(v, &m, out));
     for (int c = 0; c < 3; c++)
@@ -195,18 +197,18 @@ void trn_mixture_draw(const trn_view *v, rng *r, trn_camera *lens, trn_mixture *
 
 /* ---- what the network is to say of it -------------------------------------------------------------------------- */
 
-static vec3 way_to(const trn_lamp *l)
+static vec3 way_to(const train_lamp *l)
 {
     return l->distant ? l->at : vec3_sub(l->at, vec3_make(0, 0, -1));
 }
 
 /* A lamp as what surrounds the object sends it: parallel light. */
-static void add_lamp(const trn_lamp *l, vec3 strength, float sh[9][3])
+static void add_lamp(const train_lamp *l, vec3 strength, float sh[9][3])
 {
     sh_accumulate(sh, vec3_normalize(way_to(l)), vec3_scale(strength, LIGHT_POWER));
 }
 
-static void put_rest(const trn_view *v, const trn_mixture *m, vec3 gain)
+static void put_rest(const train_view *v, const train_mixture *m, vec3 gain)
 {
     float sh[9][3], all = 0;
     const vec3 room = vec3_mul(m->room, gain);
@@ -224,7 +226,7 @@ static void put_rest(const trn_view *v, const trn_mixture *m, vec3 gain)
     v->rest_weight[0] = 1 / (1 + all); /* light on a dark object is strong, and its error the larger */
 }
 
-static void put_lights(const trn_view *v, const trn_mixture *m, const trn_camera *lens)
+static void put_lights(const train_view *v, const train_mixture *m, const train_camera *lens)
 {
     const vec3 gain = vec3_of(lens->gain), flash = vec3_mul(m->flash, gain);
     memset(v->lights, 0, MODEL_LIGHTS * sizeof *v->lights);
@@ -242,13 +244,13 @@ static void put_lights(const trn_view *v, const trn_mixture *m, const trn_camera
 }
 
 /* The strongest lamp's visibility counts where it would be seen, and where it matters. Maps are as unpacked. */
-static void put_visibility(const trn_view *v, const trn_mixture *m)
+static void put_visibility(const train_view *v, const train_mixture *m)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
     memset(v->visibility, 0, pixels * sizeof *v->visibility);
     memset(v->visibility_weight, 0, pixels * sizeof *v->visibility_weight);
     if (m->strongest < 0 || m->presence < 0.5f) return;
-    const trn_lamp *l = &v->lamp[m->strongest];
+    const train_lamp *l = &v->lamp[m->strongest];
     for (size_t i = 0; i < pixels; i++) {
         if (v->mask[i] < 0.999f) continue;
         int x = (int)(i % (size_t)v->size), y = (int)(i / (size_t)v->size);
@@ -259,7 +261,7 @@ static void put_visibility(const trn_view *v, const trn_mixture *m)
     }
 }
 
-static void put_sight(const trn_view *v, const trn_mixture *m)
+static void put_sight(const train_view *v, const train_mixture *m)
 {
     model_sight(m->lens_known ? &v->lens : NULL, m->told_flash, v->size, v->sight);
     v->lens_values[0] = camera_tangent(v->lens.fov);
@@ -268,23 +270,23 @@ static void put_sight(const trn_view *v, const trn_mixture *m)
 }
 
 /* Relief as nn_render counts it, of distance. */
-static void put_relief(const trn_view *v)
+static void put_relief(const train_view *v)
 {
-    float scale = camera_tangent(MODEL_FOV) / camera_tangent(v->lens.fov);
+    float scale = camera_tangent(CAMERA_FOV) / camera_tangent(v->lens.fov);
     for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++)
         if (v->mask[i] > 0) v->depth[i] = 1 + (v->depth[i] - 1) * scale;
 }
 
-status trn_prepare_any(const trn_view *v, const trn_mixture *m, const trn_camera *lens, vec3 target, rng *noise)
+status train_prepare_any(const train_view *v, const train_mixture *m, const train_camera *lens, vec3 target, rng *noise)
 {
     for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++)
         vec3_put(mixed_at(v, m, i), v->photo + 3 * i);
-    status s = trn_photograph(v, true, lens, noise);
+    status s = train_photograph(v, true, lens, noise);
     if (s != OK) return s;
     put_lights(v, m, lens);
     put_visibility(v, m);
     put_sight(v, m);
-    trn_finish(v, target);
+    train_finish(v, target);
     put_relief(v);
     return OK;
 }

@@ -20,10 +20,10 @@ static void rotation_about(int axis, float angle, float out[3][3])
     out[b][a] = sinf(angle);
 }
 
-trn_motion trn_motion_draw(const train_config *c, rng *r)
+train_motion train_motion_draw(const train_config *c, rng *r)
 {
-    float reach = (float)c->camera_turn * 0.017453293f, axis[3][3][3], both[3][3];
-    trn_motion m = {.turned = c->camera_turn > 0};
+    float reach = (float)c->camera_turn * DEGREE, axis[3][3][3], both[3][3];
+    train_motion m = {.turned = c->camera_turn > 0};
     for (int k = 0; k < 3; k++)
         rotation_about(k, reach * rng_range(r, -1, 1), axis[k]);
     for (int i = 0; i < 9; i++)
@@ -36,7 +36,7 @@ trn_motion trn_motion_draw(const train_config *c, rng *r)
     return m;
 }
 
-bool trn_motion_moves(const trn_motion *m)
+bool train_motion_moves(const train_motion *m)
 {
     return m->turned || m->distance != 1;
 }
@@ -57,7 +57,7 @@ typedef struct picture {
     float *memory;
 } picture;
 
-static status copy_picture(const trn_view *v, picture *out)
+static status copy_picture(const train_view *v, picture *out)
 {
     const layer all[MAX_LAYERS] = {
         {v->albedo, NULL, 3, true}, {v->normal, NULL, 3, true},  {v->roughness, NULL, 1, true},
@@ -132,7 +132,7 @@ static vec3 turned_back(const float m[3][3], vec3 v)
                      m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z);
 }
 
-static void turn_pixel(const trn_view *v, const picture *p, const camera *eye, const float turn[3][3], int x, int y)
+static void turn_pixel(const train_view *v, const picture *p, const camera *eye, const float turn[3][3], int x, int y)
 {
     size_t to = (size_t)y * (size_t)v->size + (size_t)x;
     float column, row;
@@ -147,7 +147,7 @@ static void turn_pixel(const trn_view *v, const picture *p, const camera *eye, c
     vec3_put(sample_normal(vec3_normalize(turned(turn, vec3_of(normal)))), normal);
 }
 
-static bool is_cut_off(const trn_view *v)
+static bool is_cut_off(const train_view *v)
 {
     size_t n = (size_t)v->size;
     float sum = 0;
@@ -156,12 +156,12 @@ static bool is_cut_off(const trn_view *v)
     return sum > 0;
 }
 
-static status turn_camera(const trn_view *v, const float turn[3][3])
+static status turn_camera(const train_view *v, const float turn[3][3])
 {
     picture p;
     status s = copy_picture(v, &p);
     if (s != OK) return s;
-    const camera eye = {.width = v->size, .height = v->size, .fov = MODEL_FOV};
+    const camera eye = {.width = v->size, .height = v->size, .fov = CAMERA_FOV};
     for (int y = 0; y < v->size; y++)
         for (int x = 0; x < v->size; x++)
             turn_pixel(v, &p, &eye, turn, x, y);
@@ -175,7 +175,7 @@ static status turn_camera(const trn_view *v, const float turn[3][3])
     return OK;
 }
 
-status trn_move(const trn_view *v, const trn_motion *m)
+status train_move(const train_view *v, const train_motion *m)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
     float falloff = 1 / (m->distance * m->distance);

@@ -7,29 +7,29 @@
  * the flash is 1/s² of what it was, bounces included. A crop, in contrast, is a longer lens, which the network's camera
  * of 60 degrees is not: to it, the object would be stretched sideways, with normals that its shading contradicts.
  *
- *     trn_motion m = trn_motion_draw(config, &rng);
- *     if (trn_motion_moves(&m)) status s = trn_move(&view, &m);      between trn_dataset_get and trn_prepare */
+ *     train_motion m = train_motion_draw(config, &rng);
+ *     if (train_motion_moves(&m)) status s = train_move(&view, &m);      between train_dataset_get and train_prepare */
 #ifndef MERLIN_LAB_TRAIN_MOTION_H
 #define MERLIN_LAB_TRAIN_MOTION_H
 
 #include <stdbool.h>
 
 #include "base/rng.h"
-#include "lab/train/config.h"
 #include "lab/train/dataset.h"
+#include "lab/train/train_config.h"
 
-typedef struct trn_motion {
+typedef struct train_motion {
     bool turned;
     float turn[3][3]; /* camera space before to after: a rotation */
     float distance;   /* times as far and as large */
-} trn_motion;
+} train_motion;
 
 /* Pan, tilt and roll each of at most camera_turn degrees; distance within distance_jitter. */
-trn_motion trn_motion_draw(const train_config *c, rng *r);
-bool trn_motion_moves(const trn_motion *m);
+train_motion train_motion_draw(const train_config *c, rng *r);
+bool train_motion_moves(const train_motion *m);
 
 /* Moves an unpacked sample. An object that the frame cuts off is not turned: nothing is known of what would come into
  * view. MERLIN_NO_MEMORY. */
-status trn_move(const trn_view *v, const trn_motion *m);
+status train_move(const train_view *v, const train_motion *m);
 
 #endif

@@ -5,20 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "model/model.h"
 
 /* Natural logarithm of the highest radiance a sensor takes without saturating. */
 static const float WHITE_RANGE = 0.9f;
 
-trn_camera trn_camera_perfect(void)
+train_camera train_camera_perfect(void)
 {
-    return (trn_camera){.gain = {1, 1, 1}, .white = 1, .gamma = 1};
+    return (train_camera){.gain = {1, 1, 1}, .white = 1, .gamma = 1};
 }
 
-trn_camera trn_camera_draw(const train_config *c, rng *r)
+train_camera train_camera_draw(const train_config *c, rng *r)
 {
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     float exposure = (float)c->exposure_jitter * rng_range(r, -1, 1);
     for (int k = 0; k < 3; k++)
         lens.gain[k] = expf(exposure + (float)c->colour_jitter * rng_range(r, -1, 1));
@@ -31,7 +32,7 @@ trn_camera trn_camera_draw(const train_config *c, rng *r)
 }
 
 /* Backgrounds are farther from the flash than the object and mostly dark in its light, but a white sheet is not. */
-static void draw_background(rng *r, trn_camera *lens)
+static void draw_background(rng *r, train_camera *lens)
 {
     enum { ENDS = 2 };
     for (int e = 0; e < ENDS; e++) {
@@ -39,12 +40,12 @@ static void draw_background(rng *r, trn_camera *lens)
         for (int c = 0; c < 3; c++)
             lens->behind[e][c] = light * rng_range(r, 0.5f, 1);
     }
-    float angle = 6.2831853f * rng_uniform(r);
+    float angle = 2 * PI * rng_uniform(r);
     lens->across[0] = cosf(angle);
     lens->across[1] = sinf(angle);
 }
 
-void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens)
+void train_camera_degrade(const train_config *c, rng *r, train_camera *lens)
 {
     lens->background = rng_uniform(r) < (float)c->background_leak;
     if (lens->background) draw_background(r, lens);
@@ -54,7 +55,7 @@ void trn_camera_spoil(const train_config *c, rng *r, trn_camera *lens)
     /* a photograph that was made smaller has lost most of what compression did to it: no very low qualities */
     lens->jpeg_settings.quality = 50 + rng_below(r, 46);
     lens->jpeg_settings.halved = rng_uniform(r) < 0.7f;
-    if (rng_uniform(r) < (float)c->perfect_camera) *lens = trn_camera_perfect();
+    if (rng_uniform(r) < (float)c->perfect_camera) *lens = train_camera_perfect();
 }
 
 /* Nearly normal, mean 0, variance 1, from one draw: the sum of its four bytes. */
@@ -67,33 +68,33 @@ static float cheap_normal(rng *r)
 
 /* What a camera's own curve makes of a value that is coded as sRGB: a power, and an S about the middle, whose feet are
  * the toe and the shoulder of film. */
-static float toned(const trn_camera *lens, float code)
+static float toned(const train_camera *lens, float code)
 {
     float y = powf(code, lens->gamma);
     return y + lens->contrast * y * (1 - y) * (2 * y - 1);
 }
 
-static float photographed(const trn_camera *lens, float radiance, int channel, rng *noise)
+static float photographed(const train_camera *lens, float radiance, int channel, rng *noise)
 {
     float x = fminf(radiance * lens->gain[channel] / lens->white, 1.0f);
     if (lens->read > 0 || lens->shot > 0) x += sqrtf(lens->shot * x + lens->read * lens->read) * cheap_normal(noise);
-    x = fminf(fmaxf(x, 0.0f), 1.0f);
+    x = clamp(x, 0.0f, 1.0f);
     if (lens->gamma != 1 || lens->contrast != 0) x = srgb_decode(toned(lens, srgb_encode(x)));
     if (lens->eight_bit) x = srgb_decode(roundf(srgb_encode(x) * 255.0f) / 255.0f);
     return x * lens->white;
 }
 
-static float background_at(const trn_camera *lens, int size, size_t pixel, int channel)
+static float background_at(const train_camera *lens, int size, size_t pixel, int channel)
 {
     int x = (int)(pixel % (size_t)size), y = (int)(pixel / (size_t)size);
     float right = (float)x / (float)size - 0.5f, down = (float)y / (float)size - 0.5f;
     float t = 0.5f + right * lens->across[0] + down * lens->across[1];
-    t = fminf(fmaxf(t, 0), 1);
+    t = clamp(t, 0, 1);
     return (1 - t) * lens->behind[0][channel] + t * lens->behind[1][channel];
 }
 
 /* How much of the light the lens keeps away from a pixel's corner of the frame: cos⁴ of a wide lens and less. */
-static float vignette_at(const trn_camera *lens, int size, size_t pixel)
+static float vignette_at(const train_camera *lens, int size, size_t pixel)
 {
     if (lens->vignette == 0) return 1;
     int x = (int)(pixel % (size_t)size), y = (int)(pixel / (size_t)size);
@@ -102,7 +103,7 @@ static float vignette_at(const trn_camera *lens, int size, size_t pixel)
 }
 
 /* What arrives from an object's pixel. */
-static float radiance_of(const trn_view *v, bool global, size_t value)
+static float radiance_of(const train_view *v, bool global, size_t value)
 {
     if (v->photo) return v->photo[value];
     float radiance = v->direct[value] + (global ? v->indirect[value] : 0.0f);
@@ -110,7 +111,7 @@ static float radiance_of(const trn_view *v, bool global, size_t value)
 }
 
 /* What the sensor sees, of the object's pixels or of the whole frame. */
-static void expose(const trn_view *v, bool global, const trn_camera *lens, bool whole, rng *noise)
+static void expose(const train_view *v, bool global, const train_camera *lens, bool whole, rng *noise)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
     memset(v->image, 0, 3 * pixels * sizeof(float));
@@ -125,14 +126,14 @@ static void expose(const trn_view *v, bool global, const trn_camera *lens, bool 
     }
 }
 
-static status compress(const trn_view *v, const trn_camera *lens)
+static status compress(const train_view *v, const train_camera *lens)
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
     uint8_t *rgb = malloc(values);
     if (!rgb) return fail(MERLIN_NO_MEMORY, "out of memory for a photograph of %d pixels' width", v->size);
     for (size_t i = 0; i < values; i++)
         rgb[i] = (uint8_t)(srgb_encode(v->image[i] / lens->white) * 255 + 0.5f);
-    status s = img_jpeg_spoil(rgb, v->size, v->size, &lens->jpeg_settings);
+    status s = img_jpeg_round_trip(rgb, v->size, v->size, &lens->jpeg_settings);
     float decoded[256];
     for (int i = 0; i < 256; i++)
         decoded[i] = srgb_decode((float)i / 255) * lens->white;
@@ -143,7 +144,7 @@ static status compress(const trn_view *v, const trn_camera *lens)
 }
 
 /* Where whoever cut the object out saw it: the true mask, or a pixel more or less of it. */
-static bool is_seen(const trn_view *v, int outline, int x, int y)
+static bool is_seen(const train_view *v, int outline, int x, int y)
 {
     static const int beside[5][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     bool larger = outline > 0;
@@ -156,7 +157,7 @@ static bool is_seen(const trn_view *v, int outline, int x, int y)
     return !larger;
 }
 
-status trn_photograph(const trn_view *v, bool global, const trn_camera *lens, rng *noise)
+status train_photograph(const train_view *v, bool global, const train_camera *lens, rng *noise)
 {
     /* a mask too large shows pixels that the object covers by less than half */
     expose(v, global, lens, lens->background || lens->jpeg || lens->outline > 0, noise);
@@ -174,7 +175,7 @@ status trn_photograph(const trn_view *v, bool global, const trn_camera *lens, rn
     return s;
 }
 
-void trn_camera_develop(rng *r, trn_camera *lens)
+void train_camera_add_response(rng *r, train_camera *lens)
 {
     bool own_curve = rng_uniform(r) < 0.5f, falls_off = rng_uniform(r) < 0.3f;
     float gamma = expf(rng_range(r, -0.25f, 0.25f)), contrast = rng_range(r, -0.4f, 0.8f);

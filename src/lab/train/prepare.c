@@ -5,31 +5,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "optics/ambient.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 
-vec3 trn_draw_light(rng *r)
+vec3 train_draw_light(rng *r)
 {
     float u1 = rng_uniform(r), u2 = rng_uniform(r);
     return frontal_light(u1, u2);
 }
 
-float trn_draw_strength(rng *r)
+float train_draw_strength(rng *r)
 {
     return expf(rng_range(r, logf(0.1f), 0));
 }
 
-float trn_draw_target_strength(float dark_share, rng *r)
+float train_draw_target_strength(float dark_share, rng *r)
 {
-    float strength = trn_draw_strength(r);
+    float strength = train_draw_strength(r);
     return rng_uniform(r) < dark_share ? 0 : strength;
 }
 
-void trn_render(const trn_view *maps, vec3 light, float *out)
+void train_render(const train_view *maps, vec3 light, float *out)
 {
     int size = maps->size;
-    const camera c = maps->lens.width ? maps->lens : (camera){.width = size, .height = size, .fov = MODEL_FOV};
+    const camera c = maps->lens.width ? maps->lens : (camera){.width = size, .height = size, .fov = CAMERA_FOV};
     memset(out, 0, 3 * (size_t)size * (size_t)size * sizeof(float));
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
@@ -41,7 +42,7 @@ void trn_render(const trn_view *maps, vec3 light, float *out)
                               .depth = maps->depth[i],
                               .ray = camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1),
                               .light = light,
-                              .power = MODEL_LIGHT_POWER};
+                              .power = LIGHT_POWER};
             vec3 radiance = shade_point(&in);
             out[3 * i] = fminf(radiance.x, 1.0f);
             out[3 * i + 1] = fminf(radiance.y, 1.0f);
@@ -57,21 +58,21 @@ static void add3(float *to, size_t i, vec3 v)
     to[3 * i + 2] += v.z;
 }
 
-void trn_add_environment(const trn_view *maps, const float sh[9][3], float *image)
+void train_add_environment(const train_view *maps, const float sh[9][3], float *image)
 {
     size_t pixels = (size_t)maps->size * (size_t)maps->size;
     for (size_t i = 0; i < pixels; i++) {
         if (maps->mask[i] <= 0) continue;
-        vec3 white = vec3_scale(sh_irradiance(sh, vec3_of(maps->normal + 3 * i)), maps->mask[i] / BRDF_PI);
+        vec3 white = vec3_scale(sh_irradiance(sh, vec3_of(maps->normal + 3 * i)), maps->mask[i] / PI);
         add3(image, i, vec3_mul(white, vec3_of(maps->albedo + 3 * i)));
     }
 }
 
 /* image -= what the specular lobe reflects of the environment, times coverage. */
-static void subtract_highlights(const trn_view *maps, const float sh[9][3], float *image)
+static void subtract_highlights(const train_view *maps, const float sh[9][3], float *image)
 {
     int size = maps->size;
-    camera c = {.width = size, .height = size, .fov = MODEL_FOV};
+    camera c = {.width = size, .height = size, .fov = CAMERA_FOV};
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
             size_t i = (size_t)y * (size_t)size + (size_t)x;
@@ -84,7 +85,7 @@ static void subtract_highlights(const trn_view *maps, const float sh[9][3], floa
 }
 
 /* Environment image and coefficients at the strength of this presentation. */
-static void scale_environment(const trn_view *v, float strength)
+static void scale_environment(const train_view *v, float strength)
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
     for (size_t i = 0; i < values; i++)
@@ -96,12 +97,12 @@ static void scale_environment(const trn_view *v, float strength)
 /* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Shadows do not
  * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is
  * not as the coefficients say. */
-static void add_environment(const trn_view *v, const float sh[9][3])
+static void add_environment(const train_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
     float *rest = v->env, *shaded = v->reconstruction; /* which is filled later */
     memset(shaded, 0, values * sizeof *shaded);
-    trn_add_environment(v, sh, shaded);
+    train_add_environment(v, sh, shaded);
     subtract_highlights(v, sh, rest);
     for (size_t i = 0; i < values; i++) {
         v->direct[i] += shaded[i];
@@ -110,23 +111,23 @@ static void add_environment(const trn_view *v, const float sh[9][3])
 }
 
 /* The target under both lights, clipped as the rendering layer clips. */
-static void add_target_environment(const trn_view *v, const float sh[9][3])
+static void add_target_environment(const train_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
-    trn_add_environment(v, sh, v->relit);
+    train_add_environment(v, sh, v->relit);
     for (size_t i = 0; i < values; i++)
-        v->relit[i] = v->mask[i / 3] > 0.5f ? fminf(fmaxf(v->relit[i], 0.0f), 1.0f) : 0.0f;
+        v->relit[i] = v->mask[i / 3] > 0.5f ? clamp(v->relit[i], 0.0f, 1.0f) : 0.0f;
     model_encode_sh(sh, v->target_sh);
 }
 
-static void clip_direct(const trn_view *v)
+static void clip_direct(const train_view *v)
 {
     for (size_t i = 0; i < 3 * (size_t)v->size * (size_t)v->size; i++)
         v->direct[i] = fminf(v->direct[i], 1.0f);
 }
 
 /* Masks become binary, maps go to the network's ranges. */
-static void convert(const trn_view *v)
+static void convert(const train_view *v)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
     for (size_t i = 0; i < pixels; i++) {
@@ -141,21 +142,22 @@ static void convert(const trn_view *v)
     }
 }
 
-void trn_finish(const trn_view *v, vec3 target)
+void train_finish(const train_view *v, vec3 target)
 {
-    trn_render(v, target, v->relit);
+    train_render(v, target, v->relit);
     clip_direct(v);
     convert(v);
     vec3_put(target, v->light);
 }
 
-status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise)
+status train_prepare(const train_view *v, bool global, const train_camera *lens, const train_lighting *lighting,
+                     rng *noise)
 {
     vec3 light = lighting->target;
     if (v->env) scale_environment(v, lighting->strength);
-    status s = trn_photograph(v, global, lens, noise);
+    status s = train_photograph(v, global, lens, noise);
     if (s != OK) return s;
-    trn_render(v, light, v->relit);
+    train_render(v, light, v->relit);
     clip_direct(v);
     if (v->env) {
         float sh[9][3];

@@ -6,28 +6,28 @@
 
 #include "base/rng.h"
 #include "base/vec.h"
-#include "lab/train/config.h"
 #include "lab/train/dataset.h"
 #include "lab/train/photograph.h"
+#include "lab/train/train_config.h"
 
 /* Streams of rng_at. */
 enum {
-    TRN_STREAM_ORDER = 101,
-    TRN_STREAM_PRESENTATION = 102,
-    TRN_STREAM_VALIDATION = 103,
-    TRN_STREAM_ENVIRONMENT = 104,
-    TRN_STREAM_MOTION = 105,
-    TRN_STREAM_FAULTS = 106,
-    TRN_STREAM_MIXTURE = 107
+    TRAIN_STREAM_ORDER = 101,
+    TRAIN_STREAM_PRESENTATION = 102,
+    TRAIN_STREAM_VALIDATION = 103,
+    TRAIN_STREAM_ENVIRONMENT = 104,
+    TRAIN_STREAM_MOTION = 105,
+    TRAIN_STREAM_FAULTS = 106,
+    TRAIN_STREAM_MIXTURE = 107
 };
 
 /* What a presentation is lit by beside the flash. */
-typedef struct trn_lighting {
+typedef struct train_lighting {
     vec3 target; /* the target's point light */
     /* for views with environments only: */
     float strength;        /* the photograph's environment counts this much */
     float target_sh[9][3]; /* the target's environment */
-} trn_lighting;
+} train_lighting;
 
 /* A unpacked sample (dataset.h) to the network's inputs and targets: binary masks (mask: more than half covered, the
  * outline errors and all; loss_mask: covered wholly and not lost to an error of the outline), image encoded for the
@@ -39,25 +39,26 @@ typedef struct trn_lighting {
  * flash and coefficients, and indirect takes up what that lacks of the truth: bounces, and the environment's shadows.
  * The environment's highlights, as far as its coefficients know them (optics/ambient.h), are in the input alone, so
  * that they are not counted twice where the relighter samples a map. MERLIN_NO_MEMORY. */
-status trn_prepare(const trn_view *v, bool global, const trn_camera *lens, const trn_lighting *lighting, rng *noise);
+status train_prepare(const train_view *v, bool global, const train_camera *lens, const train_lighting *lighting,
+                     rng *noise);
 
-/* What is left to do for the point setting behind trn_photograph: the relit image, clipped direct light, binary masks,
- * maps in the network's ranges. */
-void trn_finish(const trn_view *v, vec3 target);
+/* What is left to do for the point setting behind train_photograph: the relit image, clipped direct light, binary
+ * masks, maps in the network's ranges. */
+void train_finish(const train_view *v, vec3 target);
 
 /* A target light on the frontal hemisphere (Sang & Chandraker 2020). */
-vec3 trn_draw_light(rng *r);
+vec3 train_draw_light(rng *r);
 
 /* How much an environment counts beside the flash: evenly in the logarithm, from hardly visible to as rendered. */
-float trn_draw_strength(rng *r);
+float train_draw_strength(rng *r);
 /* The same for a target's environment, but a share of them has none: 0. */
-float trn_draw_target_strength(float dark_share, rng *r);
+float train_draw_target_strength(float dark_share, rng *r);
 
 /* Adds what the maps' diffuse part reflects of an environment, times coverage, to image: size × size × 3. */
-void trn_add_environment(const trn_view *maps, const float sh[9][3], float *image);
+void train_add_environment(const train_view *maps, const float sh[9][3], float *image);
 
 /* Direct light of the maps (albedo and roughness in [0, 1]) under a point light, clipped to [0, 1], zero outside the
  * mask: size × size × 3. */
-void trn_render(const trn_view *maps, vec3 light, float *out);
+void train_render(const train_view *maps, vec3 light, float *out);
 
 #endif

@@ -7,22 +7,22 @@
 #include "base/rng.h"
 #include "lab/train/prepare.h"
 
-status trn_order_new(trn_order *o, uint64_t seed, size_t count)
+status train_order_new(train_order *o, uint64_t seed, size_t count)
 {
-    *o = (trn_order){.seed = seed, .count = count, .epoch = UINT64_MAX, .index = malloc(count * sizeof *o->index)};
+    *o = (train_order){.seed = seed, .count = count, .epoch = UINT64_MAX, .index = malloc(count * sizeof *o->index)};
     return o->index ? OK : fail(MERLIN_NO_MEMORY, "out of memory for the order of %zu samples", count);
 }
 
-void trn_order_free(trn_order *o)
+void train_order_free(train_order *o)
 {
     free(o->index);
-    *o = (trn_order){0};
+    *o = (train_order){0};
 }
 
 /* Fisher and Yates. */
-static void shuffle(trn_order *o, uint64_t epoch)
+static void shuffle(train_order *o, uint64_t epoch)
 {
-    rng r = rng_at(o->seed, epoch, TRN_STREAM_ORDER);
+    rng r = rng_at(o->seed, epoch, TRAIN_STREAM_ORDER);
     for (size_t i = 0; i < o->count; i++)
         o->index[i] = (uint32_t)i;
     for (size_t i = o->count; i > 1; i--) {
@@ -34,13 +34,13 @@ static void shuffle(trn_order *o, uint64_t epoch)
     o->epoch = epoch;
 }
 
-size_t trn_order_at(trn_order *o, uint64_t p)
+size_t train_order_at(train_order *o, uint64_t p)
 {
     if (o->epoch != p / o->count) shuffle(o, p / o->count);
     return o->index[p % o->count];
 }
 
-double trn_learning_rate(const train_config *c, size_t epoch, uint64_t presentation)
+double train_learning_rate(const train_config *c, size_t epoch, uint64_t presentation)
 {
     uint64_t steps_done = presentation / (uint64_t)c->batch;
     double step = (double)steps_done + 1, epochs = (double)presentation / (double)epoch;

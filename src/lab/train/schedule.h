@@ -6,22 +6,22 @@
 
 #include <stdint.h>
 
-#include "lab/train/config.h"
+#include "lab/train/train_config.h"
 
 /* Every epoch is a permutation of 0 .. count-1 of its own. */
-typedef struct trn_order {
+typedef struct train_order {
     uint64_t seed;
     size_t count;
     uint64_t epoch; /* that `index` holds; UINT64_MAX: none yet */
     uint32_t *index;
-} trn_order;
+} train_order;
 
-status trn_order_new(trn_order *o, uint64_t seed, size_t count);
-void trn_order_free(trn_order *o);
+status train_order_new(train_order *o, uint64_t seed, size_t count);
+void train_order_free(train_order *o);
 /* The sample of presentation p. */
-size_t trn_order_at(trn_order *o, uint64_t p);
+size_t train_order_at(train_order *o, uint64_t p);
 
 /* Of the step that begins at this presentation: rises over the first warmup_steps, halves every halve_every_epochs. */
-double trn_learning_rate(const train_config *c, size_t epoch, uint64_t presentation);
+double train_learning_rate(const train_config *c, size_t epoch, uint64_t presentation);
 
 #endif

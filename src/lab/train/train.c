@@ -10,45 +10,45 @@
 #include "base/messages.h"
 #include "base/progress.h"
 #include "lab/train/checkpoint.h"
-#include "lab/train/feed.h"
+#include "lab/train/loader.h"
 
 typedef struct paths {
     char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
 } paths;
 
 typedef struct run {
-    const trn_options *options;
+    const train_options *options;
     model_config model;
     train_config training;
     char *model_json, *training_json;
     paths paths;
-    trn_dataset *data;
+    train_dataset *data;
     size_t training_count;
     int batch; /* of this rank: its share of the configuration's */
     nn_graph *graph;
     nn_params *params;
     nn_adam *adam;
-    trn_average *average;        /* NULL: the last weights are the run's result */
-    nn_program *program, *judge; /* judge: the same losses by running statistics, for validation */
-    trn_feed *feed, *judge_feed;
-    trn_order order;
-    trn_state state;
+    train_average *average;           /* NULL: the last weights are the run's result */
+    nn_program *program, *validation; /* validation: the same losses by running statistics */
+    train_loader *loader, *validation_loader;
+    train_order order;
+    train_state state;
     double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
     bool chart_missed;                           /* one could not be drawn, which has been said */
 } run;
 
 static void close_run(run *r)
 {
-    trn_order_free(&r->order);
-    trn_feed_free(r->feed);
-    trn_feed_free(r->judge_feed);
+    train_order_free(&r->order);
+    train_loader_free(r->loader);
+    train_loader_free(r->validation_loader);
     nn_program_free(r->program);
-    nn_program_free(r->judge);
-    trn_average_free(r->average);
+    nn_program_free(r->validation);
+    train_average_free(r->average);
     nn_adam_free(r->adam);
     nn_params_free(r->params);
     nn_graph_free(r->graph);
-    trn_dataset_close(r->data);
+    train_dataset_close(r->data);
     free(r->paths.checkpoint);
     free(r->paths.curves);
     free(r->paths.validation);
@@ -80,7 +80,7 @@ static status read_configuration(run *r)
 static void share_type(run *r)
 {
     int type = (int)r->training.type;
-    ranks_share(r->options->together, &type, sizeof type);
+    ranks_broadcast(r->options->together, &type, sizeof type);
     r->training.type = (nn_type)type;
 }
 
@@ -137,18 +137,18 @@ static bool is_lit_by_any(const run *r)
 
 static status open_data(run *r)
 {
-    trn_dataset_options options = {.size = r->training.size,
-                                   .memory_gib = r->training.memory_gib,
-                                   .environment = is_lit_by_both(r),
-                                   .lamps = is_lit_by_any(r)};
-    status s = trn_dataset_open(r->options->data, &options, &r->data);
+    train_dataset_options options = {.size = r->training.size,
+                                     .memory_gib = r->training.memory_gib,
+                                     .environment = is_lit_by_both(r),
+                                     .lamps = is_lit_by_any(r)};
+    status s = train_dataset_open(r->options->data, &options, &r->data);
     if (s != OK) return s;
-    size_t count = trn_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
+    size_t count = train_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
     if (count <= held_back)
         return fail(MERLIN_BAD_INPUT, "%s holds %zu samples and \"validation_count\" %zu leaves none to train on",
                     r->options->data, count, held_back);
     r->training_count = count - held_back;
-    return trn_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
+    return train_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
 }
 
 static void weigh_losses(nn_program *p, const train_config *c)
@@ -167,7 +167,7 @@ static model_part part_of(const train_config *c)
     return c->relight_brdf_weight > 0 ? MODEL_TRAINING_BRDF : MODEL_TRAINING;
 }
 
-static status load_weights(nn_params *params, const trn_options *o)
+static status load_weights(nn_params *params, const train_options *o)
 {
     status s = o->init ? nn_params_load(params, o->init) : OK;
     for (const char *const *w = o->init_shared; s == OK && w && *w; w++)
@@ -185,35 +185,35 @@ static status build(run *r)
                           .purpose = NN_TRAIN,
                           .together = r->options->together};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
-    trn_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
-                         r->training_count, r->batch};
+    train_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
+                           r->training_count, r->batch};
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
     if (s != OK) return s;
     nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
     s = nn_adam_new(r->params, &adam, &r->adam);
-    if (s == OK && c->average_decay > 0) s = trn_average_new(r->params, c->average_decay, &r->average);
+    if (s == OK && c->average_decay > 0) s = train_average_new(r->params, c->average_decay, &r->average);
     if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
     if (s == OK) s = record_training(r);
-    if (s == OK) s = trn_feed_new(r->program, &source, &r->feed);
+    if (s == OK) s = train_loader_new(r->program, &source, &r->loader);
     if (s == OK) weigh_losses(r->program, c);
     if (s != OK || c->validation_count == 0) return s;
     options.purpose = NN_INFER;
-    s = nn_compile(r->graph, r->params, &options, &r->judge);
-    if (s == OK) weigh_losses(r->judge, c);
-    return s == OK ? trn_feed_new(r->judge, &source, &r->judge_feed) : s;
+    s = nn_compile(r->graph, r->params, &options, &r->validation);
+    if (s == OK) weigh_losses(r->validation, c);
+    return s == OK ? train_loader_new(r->validation, &source, &r->validation_loader) : s;
 }
 
-static trn_learner learner_of(const run *r)
+static train_learner learner_of(const run *r)
 {
-    return (trn_learner){r->params, r->adam, r->average};
+    return (train_learner){r->params, r->adam, r->average};
 }
 
-static trn_identity identity_of(const run *r)
+static train_identity identity_of(const run *r)
 {
-    return (trn_identity){r->model_json, r->training_json, trn_dataset_count(r->data),
-                          ranks_count(r->options->together)};
+    return (train_identity){r->model_json, r->training_json, train_dataset_count(r->data),
+                            ranks_count(r->options->together)};
 }
 
 /* Time spent is kept beside the checkpoint, not in it: a resumed run's files are those of one that was not stopped. */
@@ -238,11 +238,11 @@ static status read_seconds(run *r)
 
 static status resume(run *r)
 {
-    trn_identity identity = identity_of(r);
-    trn_learner learner = learner_of(r);
-    status s = trn_checkpoint_read(r->paths.checkpoint, &learner, &r->state, &identity);
-    if (s == OK) s = trn_curve_truncate(r->paths.curves, r->state.step);
-    if (s == OK) s = trn_curve_truncate(r->paths.validation, r->state.step);
+    train_identity identity = identity_of(r);
+    train_learner learner = learner_of(r);
+    status s = train_checkpoint_read(r->paths.checkpoint, &learner, &r->state, &identity);
+    if (s == OK) s = train_curve_truncate(r->paths.curves, r->state.step);
+    if (s == OK) s = train_curve_truncate(r->paths.validation, r->state.step);
     return s == OK ? read_seconds(r) : s;
 }
 
@@ -253,8 +253,8 @@ static status begin_files(run *r)
     if (s != OK) return s;
     if (r->options->resume) return resume(r);
     /* curves left by a run that never reached its first checkpoint */
-    s = trn_curve_truncate(r->paths.curves, 0);
-    return s == OK ? trn_curve_truncate(r->paths.validation, 0) : s;
+    s = train_curve_truncate(r->paths.curves, 0);
+    return s == OK ? train_curve_truncate(r->paths.validation, 0) : s;
 }
 
 static status begin(run *r)
@@ -271,8 +271,8 @@ static status begin(run *r)
     if (s == OK && is_first(r)) s = begin_files(r);
     s = ranks_agree(together, s);
     if (s != OK || ranks_count(together) == 1) return s;
-    trn_learner learner = learner_of(r);
-    trn_checkpoint_share(together, &learner, &r->state);
+    train_learner learner = learner_of(r);
+    train_checkpoint_share(together, &learner, &r->state);
     return OK;
 }
 
@@ -290,14 +290,14 @@ static uint64_t own_presentations(const run *r)
 static status export_weights(run *r)
 {
     if (!is_first(r)) return OK;
-    trn_provenance from = {.config = r->model_json,
-                           .training = r->training_json,
-                           .note = r->options->note,
-                           .presentations = presented(r),
-                           .samples = (int64_t)r->training_count,
-                           .size = r->training.size,
-                           .generator_version = trn_dataset_generator_version(r->data),
-                           .validation_loss = r->state.best};
+    train_provenance from = {.config = r->model_json,
+                             .training = r->training_json,
+                             .note = r->options->note,
+                             .presentations = presented(r),
+                             .samples = (int64_t)r->training_count,
+                             .size = r->training.size,
+                             .generator_version = train_dataset_generator_version(r->data),
+                             .validation_loss = r->state.best};
     return train_export(r->paths.weights, r->params, &from);
 }
 
@@ -305,9 +305,9 @@ static status export_weights(run *r)
 static status with_average(run *r, status (*act)(run *))
 {
     if (!r->average) return act(r);
-    trn_average_swap(r->average);
+    train_average_swap(r->average);
     status s = act(r);
-    trn_average_swap(r->average);
+    train_average_swap(r->average);
     return s;
 }
 
@@ -315,7 +315,7 @@ static status with_average(run *r, status (*act)(run *))
  * it. */
 static void draw_chart(run *r)
 {
-    status s = trn_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
+    status s = train_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
     if (s != OK && !r->chart_missed && !r->options->quiet)
         fprintf(messages(), "\nmerlin-lab train: no chart is drawn, training goes on: %s\n", status_message());
     if (s != OK) r->chart_missed = true;
@@ -325,13 +325,13 @@ static status save(run *r)
 {
     r->saved_at = clock_seconds();
     if (!is_first(r)) return OK;
-    trn_identity identity = identity_of(r);
-    trn_learner learner = learner_of(r);
+    train_identity identity = identity_of(r);
+    train_learner learner = learner_of(r);
     /* before the checkpoint: behind the last one nothing is done again */
-    status s = r->judge ? OK : with_average(r, export_weights);
-    if (s == OK) s = trn_curve_keep(r->paths.curves);
-    if (s == OK) s = trn_curve_keep(r->paths.validation);
-    if (s == OK) s = trn_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
+    status s = r->validation ? OK : with_average(r, export_weights);
+    if (s == OK) s = train_curve_keep(r->paths.curves);
+    if (s == OK) s = train_curve_keep(r->paths.validation);
+    if (s == OK) s = train_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
     if (s == OK) s = write_seconds(r);
     if (s == OK) draw_chart(r);
     return s;
@@ -342,14 +342,14 @@ static int64_t last_step(const run *r)
     return ((int64_t)r->training.presentations + r->training.batch - 1) / r->training.batch;
 }
 
-static trn_curve_row row_of(const run *r)
+static train_curve_row row_of(const run *r)
 {
-    return (trn_curve_row){.step = r->state.step,
-                           .presentations = presented(r),
-                           .skipped = nn_adam_skipped(r->adam),
-                           .learning_rate =
-                               trn_learning_rate(&r->training, r->training_count,
-                                                 (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
+    return (train_curve_row){.step = r->state.step,
+                             .presentations = presented(r),
+                             .skipped = nn_adam_skipped(r->adam),
+                             .learning_rate =
+                                 train_learning_rate(&r->training, r->training_count,
+                                                     (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
 }
 
 /* Batch norm's running statistics as the mean over many batches with the weights as they are ("precise BN", Wu and
@@ -362,7 +362,7 @@ static status settle_statistics(run *r)
     status s = OK;
     for (int i = 0; s == OK && i < SETTLING_BATCHES; i++) {
         nn_set_norm_momentum(r->program, 1.0f / (float)(i + 1));
-        s = trn_feed_training(r->feed, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
+        s = train_loader_training(r->loader, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
         if (s == OK) s = nn_forward(r->program);
     }
     nn_set_norm_momentum(r->program, NN_NORM_MOMENTUM);
@@ -372,18 +372,18 @@ static status settle_statistics(run *r)
 
 static status validate(run *r)
 {
-    trn_losses losses = {0};
+    train_losses losses = {0};
     status settled = settle_statistics(r);
     if (settled != OK) return settled;
     for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
         const int own = first + ranks_index(r->options->together) * r->batch;
-        status s = trn_feed_validation(r->judge_feed, (size_t)own);
-        if (s == OK) s = nn_forward(r->judge);
+        status s = train_loader_validation(r->validation_loader, (size_t)own);
+        if (s == OK) s = nn_forward(r->validation);
         if (s != OK) return s;
-        trn_losses_add(&losses, r->judge);
+        train_losses_add(&losses, r->validation);
     }
-    trn_curve_row row = row_of(r);
-    status s = is_first(r) ? trn_curve_append(r->paths.validation, &row, &losses) : OK;
+    train_curve_row row = row_of(r);
+    status s = is_first(r) ? train_curve_append(r->paths.validation, &row, &losses) : OK;
     double mean = losses.total / (double)losses.count;
     if (s != OK || !(mean < r->state.best)) return s;
     r->state.best = mean;
@@ -392,28 +392,28 @@ static status validate(run *r)
 
 static status end_row(run *r)
 {
-    trn_curve_row row = row_of(r);
-    status s = is_first(r) ? trn_curve_append(r->paths.curves, &row, &r->state.open) : OK;
+    train_curve_row row = row_of(r);
+    status s = is_first(r) ? train_curve_append(r->paths.curves, &row, &r->state.open) : OK;
     if (s == OK && !isfinite(r->state.open.total))
         s = fail(MERLIN_BAD_INPUT, "training diverged before step %lld: lower \"learning_rate\" or \"clip_norm\"",
                  (long long)r->state.step);
-    r->state.open = (trn_losses){0};
+    r->state.open = (train_losses){0};
     return s;
 }
 
 static status one_step(run *r)
 {
     uint64_t first = (uint64_t)presented(r);
-    status s = trn_feed_training(r->feed, &r->order, own_presentations(r));
+    status s = train_loader_training(r->loader, &r->order, own_presentations(r));
     if (s == OK) s = nn_forward(r->program);
     if (s == OK) s = nn_backward(r->program);
-    if (s == OK) s = nn_adam_step(r->adam, (float)trn_learning_rate(&r->training, r->training_count, first));
+    if (s == OK) s = nn_adam_step(r->adam, (float)train_learning_rate(&r->training, r->training_count, first));
     if (s != OK) return s;
-    trn_losses_add(&r->state.open, r->program);
+    train_losses_add(&r->state.open, r->program);
     r->state.step++;
-    if (r->average) trn_average_add(r->average, r->state.step, r->state.step == last_step(r));
+    if (r->average) train_average_add(r->average, r->state.step, r->state.step == last_step(r));
     if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
-    if (s == OK && r->judge && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
+    if (s == OK && r->validation && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
         s = with_average(r, validate);
     return s;
 }
@@ -465,12 +465,12 @@ static status go(run *r)
     status s = steps(r, last, &bar);
     progress_end(&bar);
     if (s != OK || finished_before) return s;
-    if (!r->judge) s = with_average(r, settle_statistics);
-    if (r->judge && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
+    if (!r->validation) s = with_average(r, settle_statistics);
+    if (r->validation && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
     return s == OK ? save(r) : s;
 }
 
-status trn_train(const trn_options *o)
+status train_run(const train_options *o)
 {
     run r = {.options = o};
     status s = begin(&r);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Training: from a folder of samples to weights.
  *
- *     trn_options o = {.config = "configs/runs/merlin-point/01-128.json", .data = "data/train", .output = "runs/1"};
- *     status s = trn_train(&o);
+ *     train_options o = {.config = "configs/runs/merlin-point/01-128.json", .data = "data/train", .output = "runs/1"};
+ *     status s = train_run(&o);
  *
  * The output folder receives checkpoint.safetensors (every few minutes and when stopped), curves.csv, validation.csv
  * and curves.png, seconds.txt (time spent), and weights.safetensors, the best so far by validation loss (the latest,
@@ -16,7 +16,7 @@
 #include "base/ranks/ranks.h"
 #include "base/status.h"
 
-typedef struct trn_options {
+typedef struct train_options {
     const char *config, *data, *output;
     const char *init; /* weights to start from, or NULL */
     /* or other models' weights, ended by NULL: what fits by name and shape, of the last that has it */
@@ -26,10 +26,10 @@ typedef struct trn_options {
     bool quiet;
     int (*interrupted)(void); /* asked after every step; NULL: never */
     ranks *together;          /* NULL, or processes that share every batch: rank 0 alone writes */
-} trn_options;
+} train_options;
 
 /* MERLIN_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
- * STATUS_ELSEWHERE. Later the others wait for one that has failed: ranks_abandon ends them. */
-status trn_train(const trn_options *o);
+ * STATUS_ELSEWHERE. Later the others wait for one that has failed: ranks_abort ends them. */
+status train_run(const train_options *o);
 
 #endif

@@ -3,10 +3,10 @@
 #ifndef MERLIN_MESH_WRITE_MESH_FORMATS_H
 #define MERLIN_MESH_WRITE_MESH_FORMATS_H
 
-#include "mesh/write/mesh_build.h"
+#include "mesh/write/surface_mesh.h"
 
-status mesh_write_ply(const char *path, const surface_mesh *m, const pst_mesh_source *from);
-status mesh_write_obj(const char *path, const surface_mesh *m, const pst_mesh_source *from);
-status mesh_write_glb(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+status mesh_write_ply(const char *path, const surface_mesh *m, const mesh_source *from);
+status mesh_write_obj(const char *path, const surface_mesh *m, const mesh_source *from);
+status mesh_write_glb(const char *path, const surface_mesh *m, const mesh_source *from);
 
 #endif

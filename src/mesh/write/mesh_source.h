@@ -7,12 +7,12 @@
 #include "optics/camera.h"
 #include "optics/pinhole.h"
 
-typedef struct pst_mesh_source {
+typedef struct mesh_source {
     const img *depth, *mask;    /* of one size, as normal */
     const img *normal, *albedo; /* may be NULL; albedo, where it becomes a texture (OBJ, GLB), of any size */
     const img *roughness;       /* 1 channel, of any size, for GLB; NULL: 1 everywhere */
     pinhole camera;
     camera_slant slant; /* of a perspective camera whose axis is not the lens's (optics/camera.h) */
-} pst_mesh_source;
+} mesh_source;
 
 #endif

@@ -6,7 +6,7 @@
 
 typedef struct format {
     const char *ending;
-    status (*write)(const char *path, const surface_mesh *m, const pst_mesh_source *from);
+    status (*write)(const char *path, const surface_mesh *m, const mesh_source *from);
 } format;
 
 static const format formats[] = {{".ply", mesh_write_ply}, {".obj", mesh_write_obj}, {".glb", mesh_write_glb}};
@@ -19,15 +19,15 @@ static const format *format_of(const char *path)
     return NULL;
 }
 
-status pst_mesh_check_name(const char *path)
+status mesh_check_name(const char *path)
 {
     return format_of(path) ? OK : fail(MERLIN_WRONG_USE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
 }
 
-status pst_mesh_write(const char *path, const pst_mesh_source *from)
+status mesh_write(const char *path, const mesh_source *from)
 {
     surface_mesh m;
-    status s = pst_mesh_check_name(path);
+    status s = mesh_check_name(path);
     if (s == OK) s = file_check_writable(path);
     if (s == OK) s = surface_mesh_new(from, &m);
     if (s != OK) return s;

@@ -7,11 +7,11 @@
 #include "mesh/write/mesh_source.h"
 
 /* MERLIN_WRONG_USE unless the name ends in .ply, .obj or .glb. */
-status pst_mesh_check_name(const char *path);
+status mesh_check_name(const char *path);
 
 /* One vertex a pixel inside the mask; triangles that would bridge a depth jump are left out. Camera space: in
  * depth's unit, or in pixels without perspective, which a GLB's scene scales to a picture one unit large. Albedo is
  * linear in [0, 1]. An OBJ brings NAME.mtl and, with albedo, NAME.png along. */
-status pst_mesh_write(const char *path, const pst_mesh_source *from);
+status mesh_write(const char *path, const mesh_source *from);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/real.h"
 #include "base/rng.h"
 #include "stereo/calibrate/calibrate_parts.h"
 
@@ -110,7 +111,6 @@ static bool is_near(const edge *e, const pst_circle *c, float width, float *dist
  * count half. */
 static float share_seen(const edges *e, const pst_circle *c)
 {
-    static const float PI = 3.14159265f;
     unsigned char seen[2][BINS] = {{0}};
     for (size_t i = 0; i < e->count; i++) {
         float distance, cosine;

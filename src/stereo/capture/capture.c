@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+#include "optics/camera.h"
+
 status pst_capture_reserve(pst_capture *c, size_t count)
 {
     if (count < 1 || count > PST_MOST_PICTURES)
@@ -43,7 +46,7 @@ static status make_room(pst_capture *c)
 
 static uint16_t code_of(float value)
 {
-    return (uint16_t)(fminf(fmaxf(value, 0), 1) * 65535 + 0.5f);
+    return (uint16_t)(clamp(value, 0, 1) * 65535 + 0.5f);
 }
 
 status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light)
@@ -92,9 +95,8 @@ void pst_capture_forget_lights(pst_capture *c)
 
 void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
 {
-    static const float NEAR_FIELD_OF_VIEW = 60;
     bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
-    float degrees = field_of_view > 0 ? field_of_view : near ? NEAR_FIELD_OF_VIEW : 0;
+    float degrees = field_of_view > 0 ? field_of_view : near ? CAMERA_FOV : 0;
     float distance = mean_distance > 0 ? mean_distance : c->camera.mean_distance;
     if (degrees > 0) c->camera = pinhole_of(c->width, c->height, degrees);
     c->camera.mean_distance = distance;

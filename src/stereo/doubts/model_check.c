@@ -91,7 +91,7 @@ static status check_distance(const check *c, double *best, double *factor)
 
 static double degrees_wide(const pst_capture *c)
 {
-    return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)CAMERA_RADIAN;
+    return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)DEGREE;
 }
 
 static status check_lens(const check *c, double *best, double *degrees)

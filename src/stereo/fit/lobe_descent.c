@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "stereo/fit/lobe_model.h"
 
 enum { UNKNOWNS = 5, PRODUCTS = UNKNOWNS * (UNKNOWNS + 1) / 2 };
@@ -178,7 +179,7 @@ static pst_shading moved(const pst_shading *at, const equations *e, float dampin
     next.normal = vec3_normalize(vec3_fma(vec3_fma(at->normal, most * x[0], e->t1), most * x[1], e->t2));
     next.albedo = fmaxf(at->albedo + x[2], 0);
     next.gloss = fmaxf(at->gloss + x[3], 0);
-    next.sharpness = clamp_sharpness(at->sharpness + clamp_between(x[4], -1, 1));
+    next.sharpness = clamp_sharpness(at->sharpness + clamp(x[4], -1, 1));
     return next;
 }
 

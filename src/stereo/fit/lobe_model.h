@@ -3,17 +3,13 @@
 #ifndef MERLIN_STEREO_FIT_LOBE_MODEL_H
 #define MERLIN_STEREO_FIT_LOBE_MODEL_H
 
+#include "base/number.h"
 #include "stereo/fit/pixel_fit.h"
-
-static inline float clamp_between(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 /* Log u, from lobes wider than the hemisphere to mirrors. */
 static inline float clamp_sharpness(float x)
 {
-    return clamp_between(x, -2.3f, 11);
+    return clamp(x, -2.3f, 11);
 }
 
 /* What an observation that is far below the fit is charged. */

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/parallel.h"
 #include "stereo/algebra/matrix3.h"
 #include "stereo/methods/ls_lanes.h"
@@ -30,17 +31,11 @@ typedef struct answers {
     float normal[3][LS_BLOCK], albedo[3][LS_BLOCK], residual[LS_BLOCK];
 } answers;
 
-/* fmaxf promises something about NaN, which costs a call. */
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 /* pst_facing without a branch, and of any length; how steep the steepest is does not matter to a half, which spares a
  * root. */
 static inline vec3 facing(vec3 n)
 {
-    return vec3_make(n.x, n.y, larger(n.z, 1e-3f * (fabsf(n.x) + fabsf(n.y)) + 1e-18f));
+    return vec3_make(n.x, n.y, max_of(n.z, 1e-3f * (fabsf(n.x) + fabsf(n.y)) + 1e-18f));
 }
 
 typedef struct symmetric {
@@ -70,13 +65,13 @@ static void answer(const ls_sums *restrict s, int count, float per_unit, answers
         pst_factors factors = pst_factor3(m.xx, m.xy, m.xz, m.yy, m.yz, m.zz);
         vec3 r = right_side(s, 0, i), g = right_side(s, 1, i), b = right_side(s, 2, i);
         vec3 n = facing(pst_solve_factored(factors, vec3_add(vec3_add(r, g), b)));
-        vec3 weighted = vec3_scale(r, larger(vec3_dot(r, n), 0));
-        weighted = vec3_fma(weighted, larger(vec3_dot(g, n), 0), g);
-        weighted = vec3_fma(weighted, larger(vec3_dot(b, n), 0), b);
+        vec3 weighted = vec3_scale(r, max_of(vec3_dot(r, n), 0));
+        weighted = vec3_fma(weighted, max_of(vec3_dot(g, n), 0), g);
+        weighted = vec3_fma(weighted, max_of(vec3_dot(b, n), 0), b);
         n = facing(pst_solve_factored(factors, weighted));
         n = vec3_scale(n, 1 / sqrtf(vec3_dot(n, n)));
-        float share = 1 / larger(vec3_dot(n, times(m, n)), 1e-12f);
-        float red = larger(vec3_dot(r, n), 0), green = larger(vec3_dot(g, n), 0), blue = larger(vec3_dot(b, n), 0);
+        float share = 1 / max_of(vec3_dot(n, times(m, n)), 1e-12f);
+        float red = max_of(vec3_dot(r, n), 0), green = max_of(vec3_dot(g, n), 0), blue = max_of(vec3_dot(b, n), 0);
         float explained = share * (red * red + green * green + blue * blue);
         out->normal[0][i] = n.x;
         out->normal[1][i] = n.y;
@@ -85,7 +80,7 @@ static void answer(const ls_sums *restrict s, int count, float per_unit, answers
         out->albedo[1][i] = green * (share * per_unit);
         out->albedo[2][i] = blue * (share * per_unit);
         float fits = explained > 0 ? 1.0f : 0.0f;
-        out->residual[i] = fits * sqrtf(larger(s->square[i] - explained, 0) / larger(explained, 1e-37f));
+        out->residual[i] = fits * sqrtf(max_of(s->square[i] - explained, 0) / max_of(explained, 1e-37f));
     }
 }
 
@@ -94,24 +89,24 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-/* A component of LANES pixels, zero outside the mask. */
-static inline void take(const float *from, const lane_bits *counts, lanes *to)
+/* A component of LS_LANES pixels, zero outside the mask. */
+static inline void take(const float *from, const ls_lane_bits *counts, ls_lanes *to)
 {
     memcpy(to, from, sizeof *to);
-    *to = (lanes)((lane_bits)*to & *counts);
+    *to = (ls_lanes)((ls_lane_bits)*to & *counts);
 }
 
 static void store_triples(const float from[3][LS_BLOCK], int count, const float *mask, float *to)
 {
     int i = 0;
-    for (; i + LANES <= count; i += LANES) {
-        lanes m, x, y, z;
+    for (; i + LS_LANES <= count; i += LS_LANES) {
+        ls_lanes m, x, y, z;
         memcpy(&m, mask + i, sizeof m);
-        lane_bits counts = m > 0.5f;
+        ls_lane_bits counts = m > 0.5f;
         take(from[0] + i, &counts, &x);
         take(from[1] + i, &counts, &y);
         take(from[2] + i, &counts, &z);
-        lanes_weave(&x, &y, &z, to + (size_t)i * 3);
+        ls_lanes_weave(&x, &y, &z, to + (size_t)i * 3);
     }
     for (; i < count; i++)
         for (int c = 0; c < 3; c++)

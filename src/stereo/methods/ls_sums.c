@@ -59,52 +59,52 @@ void ls_lights_free(ls_lights *l)
 
 /* ---- right sides ---- */
 
-static inline void which_grey(const lane_colour *codes, ls_limits limits, lane_bits *counts)
+static inline void which_grey(const ls_lane_colour *codes, ls_limits limits, ls_lane_bits *counts)
 {
     *counts = (codes->r > limits.low) & (codes->r < limits.high);
 }
 
-static inline void which_colour(const lane_colour *codes, ls_limits limits, lane_bits *counts)
+static inline void which_colour(const ls_lane_colour *codes, ls_limits limits, ls_lane_bits *counts)
 {
     *counts = (codes->r + codes->g + codes->b > limits.low) & (codes->r < limits.high) & (codes->g < limits.high) &
               (codes->b < limits.high);
 }
 
-static inline void add_lit(uint32_t *lit, const lane_bits *a, const lane_bits *b, const ls_light *l)
+static inline void add_lit(uint32_t *lit, const ls_lane_bits *a, const ls_lane_bits *b, const ls_light *l)
 {
-    lane_bits sum;
+    ls_lane_bits sum;
     memcpy(&sum, lit, sizeof sum);
     sum |= (*a & l[0].bit) | (*b & l[1].bit);
     memcpy(lit, &sum, sizeof sum);
 }
 
 /* Codes as radiance, zero where they do not count. */
-static inline void radiance(const lanes *codes, const lane_bits *counts, float scale, lanes *out)
+static inline void radiance(const ls_lanes *codes, const ls_lane_bits *counts, float scale, ls_lanes *out)
 {
-    lanes v = *codes * scale;
-    *out = (lanes)((lane_bits)v & *counts);
+    ls_lanes v = *codes * scale;
+    *out = (ls_lanes)((ls_lane_bits)v & *counts);
 }
 
-static inline void add_component(float *sums, const lanes *a, const lanes *b, float of_a, float of_b)
+static inline void add_component(float *sums, const ls_lanes *a, const ls_lanes *b, float of_a, float of_b)
 {
-    lanes sum;
+    ls_lanes sum;
     memcpy(&sum, sums, sizeof sum);
     sum += *a * of_a;
     sum += *b * of_b;
     memcpy(sums, &sum, sizeof sum);
 }
 
-/* Which of LANES pixels count in each of two pictures. */
+/* Which of LS_LANES pixels count in each of two pictures. */
 typedef struct lane_counts {
-    lane_bits a, b;
+    ls_lane_bits a, b;
 } lane_counts;
 
 /* One channel in two pictures: its sums travel between registers and cache once for both, and only while it is its
  * turn, because there are sixteen registers in some processors. */
-static inline void add_channel(ls_sums *s, int channel, int i, const lanes *codes_a, const lanes *codes_b,
+static inline void add_channel(ls_sums *s, int channel, int i, const ls_lanes *codes_a, const ls_lanes *codes_b,
                                const lane_counts *counts, const ls_light *l)
 {
-    lanes a, b, square;
+    ls_lanes a, b, square;
     radiance(codes_a, &counts->a, l[0].scale[channel], &a);
     radiance(codes_b, &counts->b, l[1].scale[channel], &b);
     add_component(&s->right[channel][0][i], &a, &b, l[0].x, l[1].x);
@@ -116,7 +116,7 @@ static inline void add_channel(ls_sums *s, int channel, int i, const lanes *code
     memcpy(&s->square[i], &square, sizeof square);
 }
 
-static inline void add_grey(ls_sums *s, uint32_t *lit, int i, const lane_colour *a, const lane_colour *b,
+static inline void add_grey(ls_sums *s, uint32_t *lit, int i, const ls_lane_colour *a, const ls_lane_colour *b,
                             const ls_light *l, ls_limits limits)
 {
     lane_counts counts;
@@ -126,7 +126,7 @@ static inline void add_grey(ls_sums *s, uint32_t *lit, int i, const lane_colour 
     add_channel(s, 0, i, &a->r, &b->r, &counts, l);
 }
 
-static inline void add_colour(ls_sums *s, uint32_t *lit, int i, const lane_colour *a, const lane_colour *b,
+static inline void add_colour(ls_sums *s, uint32_t *lit, int i, const ls_lane_colour *a, const ls_lane_colour *b,
                               const ls_light *l, ls_limits limits)
 {
     lane_counts counts;
@@ -151,20 +151,20 @@ static inline places places_from(const ls_light *l, size_t value)
     return p;
 }
 
-/* Pixels i .. i + 2 LANES - 1 of a block; the values are theirs. */
+/* Pixels i .. i + 2 LS_LANES - 1 of a block; the values are theirs. */
 static inline void add_lanes(const ls_lights *all, const ls_light *l, places values, ls_sums *s, uint32_t *lit, int i)
 {
-    lane_colour a[2], b[2]; /* halves of either picture's */
+    ls_lane_colour a[2], b[2]; /* halves of either picture's */
     if (all->channels == 1) {
-        lanes_of_grey(values.at[0], &a[0], &a[1]);
-        lanes_of_grey(values.at[1], &b[0], &b[1]);
+        ls_lanes_of_grey(values.at[0], &a[0], &a[1]);
+        ls_lanes_of_grey(values.at[1], &b[0], &b[1]);
         add_grey(s, lit, i, &a[0], &b[0], l, all->limits);
-        add_grey(s, lit, i + LANES, &a[1], &b[1], l, all->limits);
+        add_grey(s, lit, i + LS_LANES, &a[1], &b[1], l, all->limits);
     } else {
-        lanes_of_colour(values.at[0], &a[0], &a[1]);
-        lanes_of_colour(values.at[1], &b[0], &b[1]);
+        ls_lanes_of_colour(values.at[0], &a[0], &a[1]);
+        ls_lanes_of_colour(values.at[1], &b[0], &b[1]);
         add_colour(s, lit, i, &a[0], &b[0], l, all->limits);
-        add_colour(s, lit, i + LANES, &a[1], &b[1], l, all->limits);
+        add_colour(s, lit, i + LS_LANES, &a[1], &b[1], l, all->limits);
     }
 }
 
@@ -185,7 +185,7 @@ typedef struct portion {
 /* The last pixels of a picture, which do not fill all lanes: zeros, which never count, stand for the others. */
 static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sums *s, uint32_t *lit)
 {
-    uint16_t copy[TOGETHER][6 * LANES] = {0};
+    uint16_t copy[TOGETHER][6 * LS_LANES] = {0};
     places values = places_from(now.light, now.value + (size_t)i * (size_t)all->channels);
     for (int k = 0; k < TOGETHER; k++) {
         memcpy(copy[k], values.at[k], (size_t)(count - i) * (size_t)all->channels * sizeof copy[k][0]);
@@ -198,8 +198,8 @@ static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sum
 static void add_pictures(const ls_lights *all, portion now, portion next, int count, ls_sums *s, uint32_t *lit)
 {
     int i = 0, channels = all->channels;
-    size_t bytes = 2 * LANES * (size_t)channels * sizeof(uint16_t);
-    for (; i + 2 * LANES <= count; i += 2 * LANES) {
+    size_t bytes = 2 * LS_LANES * (size_t)channels * sizeof(uint16_t);
+    for (; i + 2 * LS_LANES <= count; i += 2 * LS_LANES) {
         size_t offset = (size_t)i * (size_t)channels;
         fetch(places_from(next.light, next.value + offset), bytes);
         add_lanes(all, now.light, places_from(now.light, now.value + offset), s, lit, i);
@@ -230,23 +230,23 @@ static void recall(matrix_memory *m, uint32_t word, const ls_light *l, int light
 static void add_alike(const matrix_memory *m, int i, ls_sums *s)
 {
     for (int e = 0; e < 6; e++)
-        for (int k = i; k < i + LANES; k++)
+        for (int k = i; k < i + LS_LANES; k++)
             s->matrix[e][k] += m->matrix[e];
 }
 
-static inline void add_product(lanes *sum, float product, const lane_bits *counts)
+static inline void add_product(ls_lanes *sum, float product, const ls_lane_bits *counts)
 {
-    lanes p = product - (lanes){0};
-    *sum += (lanes)((lane_bits)p & *counts);
+    ls_lanes p = product - (ls_lanes){0};
+    *sum += (ls_lanes)((ls_lane_bits)p & *counts);
 }
 
 static void add_each(const uint32_t *lit, const ls_light *l, int lights, int i, ls_sums *s)
 {
-    lanes m0 = {0}, m1 = {0}, m2 = {0}, m3 = {0}, m4 = {0}, m5 = {0};
-    lane_bits word;
+    ls_lanes m0 = {0}, m1 = {0}, m2 = {0}, m3 = {0}, m4 = {0}, m5 = {0};
+    ls_lane_bits word;
     memcpy(&word, lit + i, sizeof word);
     for (int k = 0; k < lights; k++) {
-        lane_bits counts = (word & l[k].bit) != 0;
+        ls_lane_bits counts = (word & l[k].bit) != 0;
         add_product(&m0, l[k].product[0], &counts);
         add_product(&m1, l[k].product[1], &counts);
         add_product(&m2, l[k].product[2], &counts);
@@ -254,9 +254,9 @@ static void add_each(const uint32_t *lit, const ls_light *l, int lights, int i, 
         add_product(&m4, l[k].product[4], &counts);
         add_product(&m5, l[k].product[5], &counts);
     }
-    const lanes all[6] = {m0, m1, m2, m3, m4, m5};
+    const ls_lanes all[6] = {m0, m1, m2, m3, m4, m5};
     for (int e = 0; e < 6; e++)
-        for (int k = 0; k < LANES; k++)
+        for (int k = 0; k < LS_LANES; k++)
             s->matrix[e][i + k] += all[e][k];
 }
 
@@ -264,9 +264,9 @@ static void add_each(const uint32_t *lit, const ls_light *l, int lights, int i, 
 static void add_matrices(const uint32_t *lit, const ls_light *l, int lights, int count, ls_sums *s)
 {
     matrix_memory memory = {0};
-    for (int i = 0; i < count; i += LANES) {
+    for (int i = 0; i < count; i += LS_LANES) {
         uint32_t all = lit[i], any = lit[i];
-        for (int k = i; k < i + LANES; k++) {
+        for (int k = i; k < i + LS_LANES; k++) {
             all &= lit[k];
             any |= lit[k];
         }

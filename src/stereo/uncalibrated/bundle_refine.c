@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "stereo/algebra/dense.h"
 #include "stereo/uncalibrated/bundle.h"
 
@@ -351,13 +352,13 @@ static void take_step(bundle *b, const equations *y)
     for (int i = 0; i < b->cells; i++)
         y->old_albedo[i] = b->cell[i].albedo;
     for (int i = 0; i < b->corners; i++)
-        b->log_depth[i] += fminf(fmaxf((float)y->step[i], -0.3f), 0.3f);
+        b->log_depth[i] += clamp((float)y->step[i], -0.3f, 0.3f);
     for (int k = 0; k < b->lights; k++) {
         const double *d = y->step + b->corners + 3 * k;
         vec3 from = vec3_sub(b->position[k], b->centre), to = from;
-        to = vec3_fma(to, fminf(fmaxf((float)d[0], -0.5f), 0.5f), y->turn[3 * k]);
-        to = vec3_fma(to, fminf(fmaxf((float)d[1], -0.5f), 0.5f), y->turn[3 * k + 1]);
-        float distance = vec3_length(from) * expf(fminf(fmaxf((float)d[2], -0.5f), 0.5f));
+        to = vec3_fma(to, clamp((float)d[0], -0.5f, 0.5f), y->turn[3 * k]);
+        to = vec3_fma(to, clamp((float)d[1], -0.5f, 0.5f), y->turn[3 * k + 1]);
+        float distance = vec3_length(from) * expf(clamp((float)d[2], -0.5f, 0.5f));
         distance = fminf(fmaxf(distance, nearest * b->radius), farthest * b->radius);
         b->position[k] = vec3_fma(b->centre, distance, vec3_normalize(to));
     }

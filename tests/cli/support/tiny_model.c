@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/export.h"
 #include "model/model.h"
+#include "model/model_export.h"
 
 int main(int argc, char **argv)
 {

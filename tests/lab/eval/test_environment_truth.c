@@ -23,7 +23,7 @@ enum { SIZE = 48 };
 
 static void render(const environment *env, sample *out)
 {
-    scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.4f, 64);
+    scene_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.4f, 64);
     trace_device *device;
     trace_scene scene;
     image_settings settings = {.size = SIZE, .fov = 60, .strata = 2, .paths = 400};
@@ -119,7 +119,7 @@ static void judge_folded(uint64_t index, double *without, double *with)
     double similarity;
     render_folded(index, &truth, &map);
     surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask, .matte = false};
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = SURFACE_FOV}, &caster), OK);
+    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
     assert_int_equal(horizon_new(&caster, &h), OK);
     relight_folded(&s, &map, NULL, &plain);
     relight_folded(&s, &map, &h, &shadowed);

@@ -18,21 +18,21 @@
 /* degrees */
 static const double robust_bound = 2.5;
 
-static void generate(uint64_t index, scn_object *object)
+static void generate(uint64_t index, scene_object *object)
 {
-    assert_int_equal(scn_object_generate(1, index, 60, object), OK);
+    assert_int_equal(scene_object_generate(1, index, 60, object), OK);
     /* relief finer than a pixel has no one normal */
     object->material->bumps = 0;
 }
 
-static void take(const rendered *how, const scn_object *object, pst_capture *c)
+static void take(const rendered *how, const scene_object *object, pst_capture *c)
 {
     if (rendered_capture(how, object, c) != OK) fail_msg("%s", status_message());
 }
 
 static double rendered_angle(const rendered *how, uint64_t index, pst_method method)
 {
-    scn_object object;
+    scene_object object;
     pst_capture c;
     generate(index, &object);
     take(how, &object, &c);
@@ -40,7 +40,7 @@ static double rendered_angle(const rendered *how, uint64_t index, pst_method met
     print_message("object %d, roughness %.2f, cosine power %.0f, %d paths, field of view %.0f: %s %.2f degrees\n",
                   (int)index, (double)how->roughness, (double)how->exponent, how->paths, (double)how->fov,
                   pst_method_name(method), angle);
-    scn_object_free(&object);
+    scene_object_free(&object);
     pst_capture_free(&c);
     return angle;
 }
@@ -87,7 +87,7 @@ static void inlay(const pst_capture *from, pst_capture *to)
 static void robust_tells_two_materials_apart(void **state)
 {
     (void)state;
-    scn_object object;
+    scene_object object;
     pst_capture c, other;
     rendered how = glossy;
     generate(9, &object);
@@ -100,7 +100,7 @@ static void robust_tells_two_materials_apart(void **state)
     double angle = solve_angle(&c, PST_ROBUST);
     print_message("object 9 of two materials: %.2f degrees\n", angle);
     assert_true(angle < 0.29);
-    scn_object_free(&object);
+    scene_object_free(&object);
     pst_capture_free(&c);
     pst_capture_free(&other);
 }
@@ -127,7 +127,7 @@ static void robust_bears_indirect_light_and_few_bits(void **state)
 static void unknown_light_is_found_despite_highlights(void **state)
 {
     (void)state;
-    scn_object object;
+    scene_object object;
     pst_capture c;
     generate(9, &object);
     take(&glossy, &object, &c);
@@ -142,13 +142,13 @@ static void unknown_light_is_found_despite_highlights(void **state)
     print_message("object 9: uncalibrated %.2f, semi %.2f degrees\n", uncalibrated, semi);
     assert_true(semi < robust_bound);
     assert_true(uncalibrated < 15);
-    scn_object_free(&object);
+    scene_object_free(&object);
     pst_capture_free(&c);
 }
 
 static void check_leds(uint64_t index, const rendered *how, double angle_bound)
 {
-    scn_object object;
+    scene_object object;
     pst_capture c;
     pst_surface s;
     generate(index, &object);
@@ -160,7 +160,7 @@ static void check_leds(uint64_t index, const rendered *how, double angle_bound)
     assert_true(angle < angle_bound);
     assert_true(error < 0.02);
     pst_surface_free(&s);
-    scn_object_free(&object);
+    scene_object_free(&object);
     pst_capture_free(&c);
 }
 

@@ -87,11 +87,11 @@ static const rendered bare = {
 
 static void render(const rendered *how, uint64_t seed, uint64_t index, pst_capture *c)
 {
-    scn_object object;
-    assert_int_equal(scn_object_generate(seed, index, how->fov, &object), OK);
+    scene_object object;
+    assert_int_equal(scene_object_generate(seed, index, how->fov, &object), OK);
     object.material->bumps = 0; /* relief finer than a pixel has no one normal */
     if (rendered_capture(how, &object, c) != OK) fail_msg("%s", status_message());
-    scn_object_free(&object);
+    scene_object_free(&object);
 }
 
 /* Mean angle between the lights' true and found directions from the object's middle, degrees. */

@@ -7,17 +7,17 @@
 
 #include "lab/scene/scene.h"
 
-/* A test's object owns plain arrays, so that scn_object_free is not needed. */
-static inline scn_object shape_alloc(uint32_t vertices, uint32_t triangles)
+/* A test's object owns plain arrays, so that scene_object_free is not needed. */
+static inline scene_object shape_alloc(uint32_t vertices, uint32_t triangles)
 {
-    scn_object o = {.vertex_count = vertices, .triangle_count = triangles, .shape = "test"};
+    scene_object o = {.vertex_count = vertices, .triangle_count = triangles, .shape = "test"};
     o.position = calloc(vertices, sizeof *o.position);
     o.normal = calloc(vertices, sizeof *o.normal);
     o.triangle = calloc(triangles, sizeof *o.triangle);
     return o;
 }
 
-static inline void shape_free(scn_object *o)
+static inline void shape_free(scene_object *o)
 {
     free(o->position);
     free(o->normal);
@@ -25,10 +25,10 @@ static inline void shape_free(scn_object *o)
 }
 
 /* A sphere of rows × 2 rows quads. */
-static inline scn_object shape_sphere(vec3 centre, float radius, uint32_t rows)
+static inline scene_object shape_sphere(vec3 centre, float radius, uint32_t rows)
 {
     uint32_t around = 2 * rows;
-    scn_object o = shape_alloc((rows + 1) * (around + 1), 2 * rows * around);
+    scene_object o = shape_alloc((rows + 1) * (around + 1), 2 * rows * around);
     for (uint32_t i = 0; i <= rows; i++)
         for (uint32_t j = 0; j <= around; j++) {
             float theta = 3.14159265f * (float)i / (float)rows, phi = 6.2831853f * (float)j / (float)around;
@@ -55,9 +55,9 @@ typedef struct shape_quad {
     vec3 origin, edge1, edge2;
 } shape_quad;
 
-static inline scn_object shape_quads(const shape_quad *quads, uint32_t count)
+static inline scene_object shape_quads(const shape_quad *quads, uint32_t count)
 {
-    scn_object o = shape_alloc(4 * count, 2 * count);
+    scene_object o = shape_alloc(4 * count, 2 * count);
     for (uint32_t i = 0; i < count; i++) {
         vec3 n = vec3_normalize(vec3_cross(quads[i].edge1, quads[i].edge2));
         vec3 a = quads[i].origin, b = vec3_add(a, quads[i].edge1), d = vec3_add(a, quads[i].edge2);
@@ -76,7 +76,7 @@ static inline scn_object shape_quads(const shape_quad *quads, uint32_t count)
 }
 
 /* Position and both normals, as the real lookup gives them; grey of albedo one half, roughness 0.4. */
-static inline void shape_grey_point(const scn_object *o, const scn_place *at, scn_surface *out)
+static inline void shape_grey_point(const scene_object *o, const scene_place *at, scene_surface *out)
 {
     const uint32_t *t = o->triangle[at->triangle];
     real u = at->u, v = at->v;
@@ -90,17 +90,17 @@ static inline void shape_grey_point(const scn_object *o, const scn_place *at, sc
     out->roughness = 0.4f;
 }
 
-static inline void shape_grey(const scn_object *o, const scn_place *places, int count, scn_surface *out)
+static inline void shape_grey(const scene_object *o, const scene_place *places, int count, scene_surface *out)
 {
     for (int i = 0; i < count; i++)
         shape_grey_point(o, &places[i], &out[i]);
 }
 
 /* The same with colour and roughness that wander smoothly over space. */
-static inline void shape_patterned(const scn_object *o, const scn_place *places, int count, scn_surface *out)
+static inline void shape_patterned(const scene_object *o, const scene_place *places, int count, scene_surface *out)
 {
     for (int i = 0; i < count; i++) {
-        scn_surface *s = &out[i];
+        scene_surface *s = &out[i];
         shape_grey_point(o, &places[i], s);
         vec3 p = s->position;
         s->albedo = vec3_make(0.5f + 0.4f * sinf(9 * p.x), 0.5f + 0.4f * sinf(11 * p.y), 0.5f + 0.3f * sinf(7 * p.z));

@@ -34,7 +34,7 @@ static void uniform_surroundings_light_a_convex_diffuse_object_by_its_albedo(voi
     trace_device *device;
     trace_scene scene;
     sample out;
-    scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 64);
+    scene_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 64);
     assert_int_equal(trace_device_new(&device), OK);
     assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 1e6, &scene), OK);
     scene.diffuse_only = true;

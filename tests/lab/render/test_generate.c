@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Data sets: the same whatever the threads, continued where they stopped, never mixed; and what the samples promise. */
 #include "lab/render/generate.h"
-#include "lab/render/lamps.h"
+#include "lab/render/sample_lamps.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -365,7 +365,7 @@ static size_t compare_lamp(const sample *s, const sample_lamp *under, float *err
 {
     size_t count = 0;
     const camera eye = {s->mask.width, s->mask.height, s->fov, s->slant};
-    const point_light light = lamp_light(under);
+    const point_light light = sample_lamp_light(under);
     for (int i = 0; i < s->mask.width * s->mask.height && under->radius == 0; i++) {
         int x = i % s->mask.width, y = i / s->mask.width;
         if (s->mask.data[i] < 1 || under->visibility.data[i] < 0.01f) continue;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Light transport against closed forms. */
-#include "lab/render/lamps.h"
 #include "lab/render/paths.h"
 #include "lab/render/render.h"
+#include "lab/render/sample_lamps.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "shapes.h"
@@ -19,11 +19,11 @@ static const float pi = 3.14159265f;
 
 typedef struct stage {
     trace_device *device;
-    scn_object object;
+    scene_object object;
     trace_scene scene;
 } stage;
 
-static void stage_open(stage *s, scn_object object, trace_surface_function *surface)
+static void stage_open(stage *s, scene_object object, trace_surface_function *surface)
 {
     s->object = object;
     assert_int_equal(trace_device_new(&s->device), OK);
@@ -188,7 +188,7 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
     for (int k = 0; k < 3; k++) {
         enum { PATHS = 400000 };
         vec3 p = on_floor(places[k][0], places[k][1]);
-        scn_surface at = {p, floor_normal, floor_normal, {0.5f, 0.5f, 0.5f}, 0.4f};
+        scene_surface at = {p, floor_normal, floor_normal, {0.5f, 0.5f, 0.5f}, 0.4f};
         point_light flash = {.power = 5.95f, .at_eye = true};
         rng r = rng_at(7, (uint64_t)k, 0);
         sequence spread = sequence_of(&r);
@@ -261,10 +261,10 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
                            {{-0.1f, 0.1f, -0.9f}, {0.2f, 0, 0}, {0, 0, -0.2f}}};
     stage_open(&s, shape_quads(quads, 2), shape_grey);
     point_light above = {.position = {0, 0.7f, -1}, .power = 5.95f};
-    scn_surface under = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f}, beside = under;
+    scene_surface under = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f}, beside = under;
     beside.position.x = 0.5f;
     vec3 view = vec3_normalize(vec3_make(0, 0.3f, 1));
-    scn_surface both[2] = {under, beside};
+    scene_surface both[2] = {under, beside};
     vec3 views[2] = {view, view}, shadowed[2], unshadowed[2];
     point_light_direct(&s.scene, both, views, 2, &above, shadowed);
     point_light_unshadowed(&s.scene, both, views, 2, &above, unshadowed);
@@ -284,11 +284,11 @@ static void a_disc_half_behind_a_plate_gives_half(void **state)
     stage_open(&s, shape_quads(quads, 2), shape_grey);
     const point_light disc = {.position = {0, 0.7f, -1}, .power = 5.95f, .across = {{0.1f, 0, 0}, {0, 0, 0.1f}}};
     static vec3 view[POINTS], seen[POINTS], sent[POINTS];
-    static scn_surface under[POINTS];
+    static scene_surface under[POINTS];
     double arrived = 0, all = 0;
     for (int i = 0; i < POINTS; i++) {
         under[i] =
-            (scn_surface){{0, -0.3f, -0.9f - 0.0005f * (float)i}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f};
+            (scene_surface){{0, -0.3f, -0.9f - 0.0005f * (float)i}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f};
         view[i] = vec3_normalize(vec3_make(0, 0.3f, 1));
     }
     point_light_both(&s.scene, under, view, POINTS, &disc, seen, sent);
@@ -311,8 +311,8 @@ static void lamps_are_as_bright_in_the_middle_as_the_flash(void **state)
     int distant = 0, discs = 0, behind = 0;
     for (int i = 0; i < 400; i++) {
         sample_lamp drawn = {0};
-        lamp_draw(&r, s.scene.object, &drawn);
-        point_light light = lamp_light(&drawn);
+        sample_lamp_draw(&r, s.scene.object, &drawn);
+        point_light light = sample_lamp_light(&drawn);
         vec3 way = vec3_sub(light.position, vec3_make(0, 0, -1));
         double far = vec3_length(way), cosine = way.z / far;
         assert_true(fabs(light.power / (far * far) - LIGHT_POWER) < 1e-3);

@@ -21,7 +21,7 @@ static void few_rays_find_the_coverage_of_a_sphere(void **state)
     trace_scene scene;
     visibility *v;
     const camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
-    scn_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 96);
+    scene_object sphere = shape_sphere(vec3_make(0, 0, -1), 0.35f, 96);
     assert_int_equal(trace_device_new(&device), OK);
     assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 1e6, &scene), OK);
     assert_int_equal(visibility_new(&scene, &eye, STRATA, 7, &v), OK);
@@ -57,7 +57,7 @@ static void an_edge_between_two_surfaces_gets_all_its_rays(void **state)
     visibility *v;
     const camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
     shape_quad quads[2] = {{{-2, -2, -2}, {4, 0, 0}, {0, 4, 0}}, {{0.013f, -1, -1}, {1, 0, 0}, {0, 2, 0}}};
-    scn_object plates = shape_quads(quads, 2);
+    scene_object plates = shape_quads(quads, 2);
     assert_int_equal(trace_device_new(&device), OK);
     assert_int_equal(trace_scene_new(device, &plates, shape_grey, 1e6, &scene), OK);
     assert_int_equal(visibility_new(&scene, &eye, STRATA, 7, &v), OK);
@@ -83,13 +83,13 @@ static void what_rays_meet_does_not_depend_on_how_good_the_tree_is(void **state)
     (void)state;
     trace_device *device;
     trace_scene quick, good;
-    scn_object sphere = shape_sphere(vec3_make(0.05f, 0, -1), 0.4f, 40);
+    scene_object sphere = shape_sphere(vec3_make(0.05f, 0, -1), 0.4f, 40);
     assert_int_equal(trace_device_new(&device), OK);
     assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 0, &quick), OK);
     assert_int_equal(trace_scene_new(device, &sphere, shape_grey, 1e9, &good), OK);
     int met = 0;
     for (int i = 0; i < 1000; i++) {
-        scn_surface a, b;
+        scene_surface a, b;
         vec3 eye = {0, 0, 0},
              d = vec3_normalize(vec3_make(0.031f * (float)(i % 32 - 16), 0.0313f * (i / 32 - 16.0f), -1));
         bool seen = trace_surface(&quick, eye, d, &a);

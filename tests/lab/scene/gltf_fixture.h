@@ -15,9 +15,9 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "mesh/read/mesh_file.h"
-#include "mesh/read/mesh_gltf.h"
 #include "mesh/read/mesh_limits.h"
+#include "mesh/read/mesh_read.h"
+#include "mesh/read/mesh_read_gltf.h"
 #include "scratch.h"
 
 /* last: it defines a macro named fail */
@@ -95,32 +95,32 @@ static inline char *json_of(const document *d, const char *uri)
     return text;
 }
 
-static inline status read_document(const document *d, scn_mesh *mesh, int *parts)
+static inline status read_document(const document *d, triangle_mesh *mesh, int *parts)
 {
     char uri[8000];
     put_uri(d, uri);
     char *text = json_of(d, uri);
-    *mesh = (scn_mesh){0};
+    *mesh = (triangle_mesh){0};
     status s = mesh_parse_gltf(text, strlen(text), NULL, mesh, parts);
     free(text);
     return s;
 }
 
-static inline void must_read(const document *d, scn_mesh *mesh, int *parts)
+static inline void must_read(const document *d, triangle_mesh *mesh, int *parts)
 {
     if (read_document(d, mesh, parts) != OK) fail_msg("%s", status_message());
 }
 
 static inline void must_refuse(const document *d, const char *why)
 {
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(read_document(d, &mesh, &parts), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), why)) fail_msg("\"%s\" does not say \"%s\"", status_message(), why);
     mesh_free(&mesh);
 }
 
-static inline vec3 corner_of(const scn_mesh *mesh, uint32_t triangle, int corner)
+static inline vec3 corner_of(const triangle_mesh *mesh, uint32_t triangle, int corner)
 {
     return mesh->position[mesh->triangle[triangle][corner]];
 }

@@ -28,23 +28,23 @@ static const char INSIDE_OUT[] = CUBE_VERTICES "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\
 static const char PLY_HEAD[] = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                                "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
 
-static status object_of(const char *path, uint64_t seed, uint64_t index, scn_object *out)
+static status object_of(const char *path, uint64_t seed, uint64_t index, scene_object *out)
 {
-    scn_model *model;
-    status s = scn_model_read(path, &model);
-    if (s == OK) s = scn_object_from_model(model, seed, index, 60, out);
-    scn_model_free(model);
+    scene_model *model;
+    status s = scene_model_read(path, &model);
+    if (s == OK) s = scene_object_from_model(model, seed, index, 60, out);
+    scene_model_free(model);
     return s;
 }
 
-static status load(const char *name, const void *data, size_t size, scn_object *out)
+static status load(const char *name, const void *data, size_t size, scene_object *out)
 {
     const char *path = scratch_path(name);
     assert_int_equal(file_write(path, data, size), OK);
     return object_of(path, 1, 2, out);
 }
 
-static double signed_volume(const scn_object *o)
+static double signed_volume(const scene_object *o)
 {
     double sum = 0;
     for (uint32_t t = 0; t < o->triangle_count; t++) {
@@ -56,14 +56,14 @@ static double signed_volume(const scn_object *o)
     return sum;
 }
 
-static void check_cube(const scn_object *o)
+static void check_cube(const scene_object *o)
 {
     assert_int_equal(o->triangle_count, 12);
     assert_int_equal(o->vertex_count, 24); /* every corner split by its three creases */
     assert_true(signed_volume(o) > 0);
     for (uint32_t t = 0; t < o->triangle_count; t++) {
-        scn_surface s;
-        scn_surfaces_eval(o, &(scn_place){t, 0.3f, 0.3f}, 1, &s);
+        scene_surface s;
+        scene_surfaces_eval(o, &(scene_place){t, 0.3f, 0.3f}, 1, &s);
         for (int k = 0; k < 3; k++) /* flat faces: float rounding only */
             assert_true(vec3_dot(o->normal[o->triangle[t][k]], s.geometric_normal) > 0.9999f);
     }
@@ -72,34 +72,34 @@ static void check_cube(const scn_object *o)
 static void polygons_without_normals_are_triangulated_and_creased(void **state)
 {
     (void)state;
-    scn_object o;
+    scene_object o;
     const char text[] = CUBE_VERTICES CUBE_FACES;
     assert_int_equal(load("cube.obj", text, sizeof text - 1, &o), OK);
     check_cube(&o);
     assert_string_equal(o.shape, "mesh");
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 /* The cube at half its size, between vertices that no face has. */
 static void obj_numbers_may_begin_with_their_point(void **state)
 {
     (void)state;
-    scn_object o;
+    scene_object o;
     const char text[] = "\xef\xbb\xbfv .5 0 0\nv .5\t.5 .5\nvt .25 .75\n"
                         "v 0 0 0\nv .5 0 0\nv .5 .5 0\nv 0 .5 0\nv 0 0 .5\nv .5 0 .5\nv .5 .5 .5\nv 0 .5 .5\n"
                         "v 7 7 7\nv 8 8 8\nf 3 6 5 4\nf 7 8 9 10\nf 3 4 8 7\nf 4 5 9 8\nf 5 6 10 9\nf 6 3 7 10\n";
     assert_int_equal(load("points.obj", text, sizeof text - 1, &o), OK);
     check_cube(&o);
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 static void inward_surfaces_are_turned_outward(void **state)
 {
     (void)state;
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("cube.obj", INSIDE_OUT, sizeof INSIDE_OUT - 1, &o), OK);
     check_cube(&o);
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 static void ascii_ply_is_read(void **state)
@@ -109,15 +109,15 @@ static void ascii_ply_is_read(void **state)
     int size =
         snprintf(text, sizeof text,
                  "ply\nformat ascii 1.0\n%s0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", PLY_HEAD);
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("t.ply", text, (size_t)size, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 /* The tetrahedron of ascii_ply_is_read among more vertices, in the given type, moved and scaled. */
-static status load_tetrahedron(const char *type, double x, double size, const char *stray, scn_object *out)
+static status load_tetrahedron(const char *type, double x, double size, const char *stray, scene_object *out)
 {
     char text[800];
     int length = snprintf(text, sizeof text,
@@ -131,13 +131,13 @@ static status load_tetrahedron(const char *type, double x, double size, const ch
 static void vertices_of_no_face_do_not_count_for_the_frame(void **state)
 {
     (void)state;
-    scn_object without, with;
+    scene_object without, with;
     assert_int_equal(load_tetrahedron("float", 0, 1, "", &without), OK);
     assert_int_equal(load_tetrahedron("float", 0, 1, "100 0 0\n", &with), OK);
     assert_int_equal(with.vertex_count, without.vertex_count);
     assert_memory_equal(with.position, without.position, with.vertex_count * sizeof *with.position);
-    scn_object_free(&with);
-    scn_object_free(&without);
+    scene_object_free(&with);
+    scene_object_free(&without);
 }
 
 /* A square with a notch, from each of its corners on. */
@@ -151,30 +151,30 @@ static void concave_polygons_of_a_ply_do_not_fold_over(void **state)
                               "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
                               "0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n5 %d %d %d %d %d\n",
                               first, (first + 1) % 5, (first + 2) % 5, (first + 3) % 5, (first + 4) % 5);
-        scn_object o;
-        scn_surface one, other;
+        scene_object o;
+        scene_surface one, other;
         assert_int_equal(load("notch.ply", text, (size_t)length, &o), OK);
         assert_int_equal(o.triangle_count, 3);
-        scn_surfaces_eval(&o, &(scn_place){0, 0.3f, 0.3f}, 1, &one);
+        scene_surfaces_eval(&o, &(scene_place){0, 0.3f, 0.3f}, 1, &one);
         for (uint32_t t = 1; t < 3; t++) {
-            scn_surfaces_eval(&o, &(scn_place){t, 0.3f, 0.3f}, 1, &other);
+            scene_surfaces_eval(&o, &(scene_place){t, 0.3f, 0.3f}, 1, &other);
             assert_true(vec3_dot(one.geometric_normal, other.geometric_normal) > 0.999f); /* one plane */
         }
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
 }
 
 static void ply_far_from_its_origin_keeps_its_digits(void **state)
 {
     (void)state;
-    scn_object here, far;
+    scene_object here, far;
     assert_int_equal(load_tetrahedron("double", 0, 0.7, "", &here), OK);
     assert_int_equal(load_tetrahedron("double", 5.1e6, 0.7, "", &far), OK); /* floats lie 0.5 apart there */
     assert_int_equal(far.vertex_count, here.vertex_count);
     for (uint32_t v = 0; v < far.vertex_count; v++) /* float rounding of lengths near 1 */
         assert_true(vec3_length(vec3_sub(far.position[v], here.position[v])) < 1e-5f);
-    scn_object_free(&far);
-    scn_object_free(&here);
+    scene_object_free(&far);
+    scene_object_free(&here);
 }
 
 /* A square whose triangles share no corner in the file. */
@@ -186,12 +186,12 @@ static void corners_that_only_texture_or_material_tells_apart_are_one_vertex(voi
         "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\n",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"};
     for (int i = 0; i < 2; i++) {
-        scn_object o;
+        scene_object o;
         assert_int_equal(load("square.obj", TEXTS[i], strlen(TEXTS[i]), &o), OK);
         assert_int_equal(o.vertex_count, 4);
         assert_int_equal(o.triangle_count, 2);
         assert_int_equal(o.part[1], i);
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
 }
 
@@ -201,10 +201,10 @@ static void triangles_that_lie_where_others_do_are_dropped(void **state)
     (void)state;
     static const char TEXT[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nv 1 0 0\nv 0 1 0\n"
                                "f 1 2 3\nf 2 3 1\nf 7 5 6\nf 1 3 2\nf 1 2 4\nf 2 4 1\n";
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("again.obj", TEXT, sizeof TEXT - 1, &o), OK);
     assert_int_equal(o.triangle_count, 3);
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 /* As the mirrored half of a figure does. */
@@ -215,16 +215,16 @@ static void triangles_that_wind_against_their_normals_are_turned(void **state)
                                "vn 1 0 0\nvn 0 1 0\nvn 0 0 1\nvn -1 0 0\nvn 0 -1 0\nvn 0 0 -1\n"
                                "f 1//1 2//2 3//3\nf 2//2 4//4 3//3\nf 4//4 5//5 3//3\nf 5//5 1//1 3//3\n"
                                "f 1//1 2//2 6//6\nf 2//2 4//4 6//6\nf 4//4 5//5 6//6\n";
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("mirrored.obj", TEXT, sizeof TEXT - 1, &o), OK);
     assert_int_equal(o.triangle_count, 7);
     for (uint32_t t = 0; t < o.triangle_count; t++) {
-        scn_surface s;
-        scn_surfaces_eval(&o, &(scn_place){t, 0.333f, 0.333f}, 1, &s);
+        scene_surface s;
+        scene_surfaces_eval(&o, &(scene_place){t, 0.333f, 0.333f}, 1, &s);
         for (int k = 0; k < 3; k++)
             assert_true(vec3_dot(o.normal[o.triangle[t][k]], s.geometric_normal) > 0);
     }
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 static void binary_ply_is_read(void **state)
@@ -241,11 +241,11 @@ static void binary_ply_is_read(void **state)
         memcpy(data + size, FACES[i], sizeof FACES[i]);
         size += sizeof FACES[i];
     }
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("t.ply", data, size, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
-    scn_object_free(&o);
+    scene_object_free(&o);
     for (size_t left = 0; left < size; left += 7)
         assert_int_equal(load("cut.ply", data, left, &o), MERLIN_BAD_INPUT);
 }
@@ -264,16 +264,16 @@ static void gltf_is_read(void **state)
         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
         "\"min\":[0,0,0],\"max\":[1,1,1]},"
         "{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
-    scn_object o;
+    scene_object o;
     assert_int_equal(load("t.gltf", TEXT, sizeof TEXT - 1, &o), OK);
     assert_int_equal(o.triangle_count, 4);
     assert_true(signed_volume(&o) > 0);
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 static void assert_refused(const char *name, const char *text)
 {
-    scn_object o;
+    scene_object o;
     assert_int_equal(load(name, text, strlen(text), &o), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), name));
     assert_null(strchr(status_message(), '\n'));
@@ -294,7 +294,7 @@ static void broken_meshes_are_refused_in_one_line_that_names_the_file(void **sta
                                "0 0 0\n1 0 0\n0 1 0\n4e9 3 0 1 2\n");
     assert_refused("junk.glb", "glTFnot really");
     assert_refused("photo.jpg", "anything");
-    scn_object o;
+    scene_object o;
     assert_int_equal(object_of("/nowhere/cow.obj", 1, 1, &o), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "/nowhere/cow.obj"));
 }
@@ -303,7 +303,7 @@ static void folders_and_pipes_are_refused_without_waiting(void **state)
 {
     (void)state;
     static const char *const NAMES[] = {"folder.obj", "pipe.obj"};
-    scn_object o;
+    scene_object o;
     assert_int_equal(file_make_folder(scratch_path(NAMES[0])), OK);
     assert_int_equal(mkfifo(scratch_path(NAMES[1]), 0600), 0);
     alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
@@ -319,21 +319,21 @@ static void a_mesh_is_read_once_for_many_objects(void **state)
     (void)state;
     const char *path = scratch_path("once.obj");
     assert_int_equal(file_write(path, INSIDE_OUT, sizeof INSIDE_OUT - 1), OK);
-    scn_model *model;
-    scn_object first, other, again;
-    assert_int_equal(scn_model_read(path, &model), OK);
+    scene_model *model;
+    scene_object first, other, again;
+    assert_int_equal(scene_model_read(path, &model), OK);
     assert_int_equal(unlink(path), 0);
-    assert_int_equal(scn_object_from_model(model, 1, 2, 60, &first), OK);
-    assert_int_equal(scn_object_from_model(model, 1, 3, 60, &other), OK);
-    assert_int_equal(scn_object_from_model(model, 1, 2, 60, &again), OK);
+    assert_int_equal(scene_object_from_model(model, 1, 2, 60, &first), OK);
+    assert_int_equal(scene_object_from_model(model, 1, 3, 60, &other), OK);
+    assert_int_equal(scene_object_from_model(model, 1, 2, 60, &again), OK);
     check_cube(&again);
     assert_int_equal(first.vertex_count, again.vertex_count);
     assert_memory_equal(first.position, again.position, first.vertex_count * sizeof *first.position);
     assert_memory_not_equal(first.position, other.position, first.vertex_count * sizeof *first.position);
-    scn_object_free(&first);
-    scn_object_free(&other);
-    scn_object_free(&again);
-    scn_model_free(model);
+    scene_object_free(&first);
+    scene_object_free(&other);
+    scene_object_free(&again);
+    scene_model_free(model);
 }
 
 /* Meshes with normals and thousands of faces, where a folder of them is at hand. */
@@ -350,13 +350,13 @@ static void meshes_of_the_world_are_posed_before_the_camera(void **state)
     }
     assert_int_equal(file_list(where, ENDINGS, &names, &count), OK);
     for (size_t i = 0; i < count; i++) {
-        scn_object o;
+        scene_object o;
         assert_int_equal(object_of(names[i], 3, i, &o), OK);
         for (uint32_t v = 0; v < o.vertex_count; v++) {
             assert_true(-o.position[v].z > 0.4f);
             assert_float_equal(vec3_length(o.normal[v]), 1, 1e-5f);
         }
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
     file_list_free(names, count);
 }

@@ -2,7 +2,7 @@
 /* glTF by hand: what each of its features means for the surface, and what is refused. */
 #include "gltf_fixture.h"
 
-static void assert_triangle(const scn_mesh *mesh)
+static void assert_triangle(const triangle_mesh *mesh)
 {
     assert_int_equal(mesh->triangle_count, 1);
     assert_at(corner_of(mesh, 0, 0), 0, 0, 0);
@@ -14,7 +14,7 @@ static void a_buffer_may_be_text_a_file_or_a_glbs_own(void **state)
 {
     (void)state;
     document d = triangle_document();
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     must_read(&d, &mesh, &parts);
     assert_triangle(&mesh);
@@ -65,7 +65,7 @@ static void buffers_that_are_no_plain_files_beside_it_are_refused(void **state)
     alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
     for (size_t i = 0; i < sizeof URIS / sizeof *URIS; i++) {
         char *text = json_of(&d, URIS[i][0]);
-        scn_mesh mesh = {0};
+        triangle_mesh mesh = {0};
         int parts;
         assert_int_equal(mesh_parse_gltf(text, strlen(text), scratch, &mesh, &parts), MERLIN_BAD_INPUT);
         if (!strstr(status_message(), URIS[i][1])) fail_msg("%s: %s", URIS[i][0], status_message());
@@ -105,7 +105,7 @@ static void positions_may_be_numbers_of_any_type(void **state)
             append(d.more, sizeof d.more,
                    ",\"extensionsRequired\":[\"KHR_mesh_quantization\",\"KHR_materials_unlit\"],\"scenes\":[{\"nodes\":"
                    "[0]}]");
-            scn_mesh mesh;
+            triangle_mesh mesh;
             int parts;
             must_read(&d, &mesh, &parts);
             const float *wanted = normalized ? CASES[i].fraction : CASES[i].whole;
@@ -129,7 +129,7 @@ static void corners_may_be_whole_numbers_of_three_sizes(void **state)
                  {WORDS, sizeof WORDS, UNSIGNED_INT}};
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         document d = {0};
-        scn_mesh mesh;
+        triangle_mesh mesh;
         int parts;
         add_array(&d, TRIANGLE, sizeof TRIANGLE, FLOAT, 3, "VEC3");
         add_array(&d, CASES[i].bytes, CASES[i].size, CASES[i].type, 3, "SCALAR");
@@ -148,7 +148,7 @@ static void elements_may_lie_apart(void **state)
     (void)state;
     static const float MIXED[18] = {0, 0, 0, 0, 0, 5, 2, 0, 0, 0, 0, 5, 0, 3, 0, 0, 0, 5};
     document d = {0};
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     add_view(&d, MIXED, sizeof MIXED, 24);
     add_accessor(&d, "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"");
@@ -170,7 +170,7 @@ static void sparse_accessors_replace_what_is_there_or_zeros(void **state)
     static const float TWO[] = {2, 0, 0, 0, 3, 0};
     for (int zeros = 0; zeros < 2; zeros++) {
         document d = {0};
-        scn_mesh mesh;
+        triangle_mesh mesh;
         int parts;
         float base[9];
         memcpy(base, OTHER, sizeof base);
@@ -198,7 +198,7 @@ static void strips_and_fans_wind_as_their_first_triangle(void **state)
     static const float FAN[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0};
     for (int mode = 5; mode <= 6; mode++) {
         document d = {0};
-        scn_mesh mesh;
+        triangle_mesh mesh;
         int parts;
         add_array(&d, mode == 5 ? STRIP : FAN, sizeof STRIP, FLOAT, 5, "VEC3");
         append(d.meshes, sizeof d.meshes,
@@ -224,7 +224,7 @@ static void materials_are_the_parts_in_their_order(void **state)
 {
     (void)state;
     document d = triangle_document();
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     d.meshes[0] = 0;
     append(d.meshes, sizeof d.meshes,

@@ -6,7 +6,7 @@ static void transforms_of_nodes_add_up(void **state)
 {
     (void)state;
     document d = triangle_document();
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     /* moved by (0 0 7); turned a quarter about z and twice as large; and a matrix that moves by x */
     append(d.nodes, sizeof d.nodes,
@@ -25,7 +25,7 @@ static void several_meshes_keep_their_places(void **state)
 {
     (void)state;
     document d = triangle_document();
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     append(d.nodes, sizeof d.nodes,
            "{\"children\":[1,2]},{\"mesh\":0,\"translation\":[5e6,0,0]},{\"mesh\":0,\"translation\":[5e6,0.25,1]}");
@@ -41,7 +41,7 @@ static void mirrored_nodes_wind_the_other_way_and_normals_follow(void **state)
     (void)state;
     static const float NORMALS[9] = {0, 0.6f, 0.8f, 0, 0.6f, 0.8f, 0, 0.6f, 0.8f};
     document d = {0};
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     add_array(&d, TRIANGLE, sizeof TRIANGLE, FLOAT, 3, "VEC3");
     add_array(&d, NORMALS, sizeof NORMALS, FLOAT, 3, "VEC3");
@@ -66,7 +66,7 @@ static void the_scene_that_is_meant_is_read(void **state)
                  {",\"extras\":[]", 3}}; /* none: all */
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         document d = triangle_document();
-        scn_mesh mesh;
+        triangle_mesh mesh;
         int parts;
         append(d.more, sizeof d.more, "%s", CASES[i].scenes);
         append(d.nodes, sizeof d.nodes, "{\"mesh\":0},{\"mesh\":0,\"children\":[2]},{\"mesh\":0}");
@@ -168,7 +168,7 @@ static void what_is_compressed_or_of_another_version_is_refused_by_name(void **s
         {"{\"asset\"", "JSON"},
         {"", "JSON"}};
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
-        scn_mesh mesh = {0};
+        triangle_mesh mesh = {0};
         int parts;
         assert_int_equal(mesh_parse_gltf(OTHERS[i][0], strlen(OTHERS[i][0]), NULL, &mesh, &parts), MERLIN_BAD_INPUT);
         if (!strstr(status_message(), OTHERS[i][1])) fail_msg("%s: %s", OTHERS[i][0], status_message());
@@ -182,7 +182,7 @@ static void json_too_deep_or_of_too_many_values_is_refused_before_it_is_taken_ap
     enum { SIZE = 5000000 };
     char *text = malloc(SIZE);
     assert_non_null(text);
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     memset(text, '[', SIZE);
     assert_int_equal(mesh_parse_gltf(text, SIZE, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
@@ -213,7 +213,7 @@ static void a_small_file_has_no_more_triangles_than_a_million(void **state)
     for (int i = 0; i < TIMES; i++)
         end += (size_t)sprintf(text + end, "%s{\"attributes\":{\"POSITION\":0}}", i ? "," : "");
     end += (size_t)sprintf(text + end, "]}]}");
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     assert_int_equal(mesh_parse_gltf(text, end, NULL, &mesh, &parts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "triangles"));

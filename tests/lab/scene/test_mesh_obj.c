@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "mesh/read/mesh_file.h"
-#include "mesh/read/mesh_obj.h"
+#include "mesh/read/mesh_read.h"
+#include "mesh/read/mesh_read_obj.h"
 #include "scratch.h"
 
 /* last: it defines a macro named fail */
@@ -21,22 +21,22 @@
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-static status parse(const char *text, scn_mesh *mesh, int *parts)
+static status parse(const char *text, triangle_mesh *mesh, int *parts)
 {
-    *mesh = (scn_mesh){0};
+    *mesh = (triangle_mesh){0};
     return mesh_parse_obj(text, strlen(text), 1000, mesh, parts);
 }
 
 static void assert_refused(const char *text, const char *why)
 {
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(parse(text, &mesh, &parts), MERLIN_BAD_INPUT);
     if (!strstr(status_message(), why)) fail_msg("\"%s\" does not say \"%s\"", status_message(), why);
     mesh_free(&mesh);
 }
 
-static vec3 corner_of(const scn_mesh *mesh, uint32_t triangle, int corner)
+static vec3 corner_of(const triangle_mesh *mesh, uint32_t triangle, int corner)
 {
     return mesh->position[mesh->triangle[triangle][corner]];
 }
@@ -51,7 +51,7 @@ static void assert_at(vec3 p, float x, float y, float z)
 /* The unit square in the plane z = 0, seen from +z, of two triangles. */
 static void assert_square(const char *text)
 {
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     if (parse(text, &mesh, &parts) != OK) fail_msg("%s: %s", status_message(), text);
     assert_int_equal(mesh.triangle_count, 2);
@@ -105,7 +105,7 @@ static void lines_go_on_behind_a_backslash(void **state)
 static void concave_polygons_do_not_fold_over(void **state)
 {
     (void)state;
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     /* a comb of four teeth: its triangles' areas sum up to its own only if none lies outside */
     char text[600] = "";
@@ -130,7 +130,7 @@ static void concave_polygons_do_not_fold_over(void **state)
 static void materials_that_faces_have_are_the_parts(void **state)
 {
     (void)state;
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(parse(SQUARE "f 1 2 3\nusemtl none\nusemtl red \nf 1 2 3\nusemtl blue sky\nf 1 2 4\n"
                                   "usemtl red\ng other\nf 1 2 3\n",
@@ -150,7 +150,7 @@ static void more_materials_than_parts_share_them(void **state)
     size_t end = strlen(text);
     for (int i = 0; i < 600; i++)
         end += (size_t)snprintf(text + end, sizeof text - end, "usemtl m%d\nf 1 2 3\n", i);
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(parse(text, &mesh, &parts), OK);
     assert_int_equal(parts, MESH_PARTS);
@@ -163,7 +163,7 @@ static void more_materials_than_parts_share_them(void **state)
 static void normals_are_kept_where_every_corner_has_one(void **state)
 {
     (void)state;
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(parse(SQUARE "vn 0 3 4\nvn 0 0 1\nf 1//1 2//2 3//2\nf 1//2 3//2 4//2\n", &mesh, &parts), OK);
     assert_int_equal(mesh.vertex_count, 5); /* the first corner with either normal */
@@ -182,7 +182,7 @@ static void normals_are_kept_where_every_corner_has_one(void **state)
 static void far_from_its_origin_a_mesh_keeps_its_digits(void **state)
 {
     (void)state;
-    scn_mesh mesh;
+    triangle_mesh mesh;
     int parts;
     assert_int_equal(parse("v 5100000.25 0 400\nv 5100001.25 0 400\nv 5100000.25 0.5 400\nf 1 2 3\n", &mesh, &parts),
                      OK);
@@ -227,7 +227,7 @@ static void a_polygon_of_more_than_1024_corners_is_refused(void **state)
     end += (size_t)sprintf(text + end, "f");
     for (int i = 1; i < CORNERS; i++)
         end += (size_t)sprintf(text + end, " %d", i);
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     assert_int_equal(mesh_parse_obj(text, end, 5000, &mesh, &parts), OK);
     assert_int_equal(mesh.triangle_count, 1022);
@@ -242,7 +242,7 @@ static void a_polygon_of_more_than_1024_corners_is_refused(void **state)
 static void more_triangles_than_allowed_are_refused(void **state)
 {
     (void)state;
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     const char text[] = SQUARE "f 1 2 3 4\nf 1 2 3 4\n";
     assert_int_equal(mesh_parse_obj(text, sizeof text - 1, 3, &mesh, &parts), MERLIN_BAD_INPUT);
@@ -260,7 +260,7 @@ static void very_many_normals_at_a_vertex_take_no_time(void **state)
     size_t end = (size_t)sprintf(text, SQUARE);
     for (int i = 0; i < COUNT; i++)
         end += (size_t)sprintf(text + end, "vn 0 0 1\nf 1//%d 2//%d 3//%d\n", i + 1, i + 1, i + 1);
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     alarm(20);
     assert_int_equal(mesh_parse_obj(text, end, COUNT, &mesh, &parts), OK);
@@ -274,7 +274,7 @@ static void material_libraries_are_not_opened(void **state)
 {
     (void)state;
     const char text[] = "mtllib pipe.mtl\n" SQUARE "usemtl red\nf 1 2 3 4\n";
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     int parts;
     assert_int_equal(file_write(scratch_path("a.obj"), text, sizeof text - 1), OK);
     assert_int_equal(mkfifo(scratch_path("pipe.mtl"), 0600), 0);

@@ -17,9 +17,9 @@ enum { OBJECTS = 200 };
 
 static const float FOV = 60;
 
-static void generate(uint64_t index, scn_object *out)
+static void generate(uint64_t index, scene_object *out)
 {
-    assert_int_equal(scn_object_generate(42, index, FOV, out), OK);
+    assert_int_equal(scene_object_generate(42, index, FOV, out), OK);
 }
 
 static int is_finite(vec3 v)
@@ -31,7 +31,7 @@ static void same_seed_and_index_make_the_same_object(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < 12; i++) {
-        scn_object a, b;
+        scene_object a, b;
         generate(i, &a);
         generate(i, &b);
         assert_int_equal(a.vertex_count, b.vertex_count);
@@ -39,25 +39,25 @@ static void same_seed_and_index_make_the_same_object(void **state)
         assert_memory_equal(a.position, b.position, a.vertex_count * sizeof(vec3));
         assert_memory_equal(a.normal, b.normal, a.vertex_count * sizeof(vec3));
         for (uint32_t t = 0; t < a.triangle_count; t += 97) {
-            scn_surface at = {0}, bt = {0};
-            scn_surfaces_eval(&a, &(scn_place){t, 0.2f, 0.3f}, 1, &at);
-            scn_surfaces_eval(&b, &(scn_place){t, 0.2f, 0.3f}, 1, &bt);
+            scene_surface at = {0}, bt = {0};
+            scene_surfaces_eval(&a, &(scene_place){t, 0.2f, 0.3f}, 1, &at);
+            scene_surfaces_eval(&b, &(scene_place){t, 0.2f, 0.3f}, 1, &bt);
             assert_memory_equal(&at, &bt, sizeof at);
         }
-        scn_object_free(&a);
-        scn_object_free(&b);
+        scene_object_free(&a);
+        scene_object_free(&b);
     }
 }
 
 static void different_indices_make_different_objects(void **state)
 {
     (void)state;
-    scn_object a, b;
+    scene_object a, b;
     generate(0, &a);
     generate(1, &b);
     assert_true(a.vertex_count != b.vertex_count || memcmp(a.position, b.position, a.vertex_count * sizeof(vec3)) != 0);
-    scn_object_free(&a);
-    scn_object_free(&b);
+    scene_object_free(&a);
+    scene_object_free(&b);
 }
 
 static void every_class_is_drawn(void **state)
@@ -66,18 +66,18 @@ static void every_class_is_drawn(void **state)
     static const char *const NAMES[] = {"union", "blend", "revolution", "superquadric", "relief"};
     int seen[5] = {0};
     for (uint64_t i = 0; i < OBJECTS; i++) {
-        scn_object o;
+        scene_object o;
         generate(i, &o);
         for (int k = 0; k < 5; k++)
             seen[k] += strcmp(o.shape, NAMES[k]) == 0;
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
     for (int k = 0; k < 5; k++)
         assert_true(seen[k] >= OBJECTS / 20);
 }
 
 /* Six times the volume enclosed by the surface, about its own first vertex. */
-static double signed_volume(const scn_object *o)
+static double signed_volume(const scene_object *o)
 {
     double sum = 0;
     for (uint32_t t = 0; t < o->triangle_count; t++) {
@@ -89,7 +89,7 @@ static double signed_volume(const scn_object *o)
     return sum;
 }
 
-static void check_vertices(const scn_object *o)
+static void check_vertices(const scene_object *o)
 {
     for (uint32_t v = 0; v < o->vertex_count; v++) {
         assert_true(is_finite(o->position[v]) && is_finite(o->reference[v]));
@@ -103,7 +103,7 @@ static void shapes_are_finite_closed_and_wind_outward(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < OBJECTS; i++) {
-        scn_object o;
+        scene_object o;
         generate(i, &o);
         check_vertices(&o);
         assert_true(o.triangle_count >= 5000 && o.triangle_count <= 60000);
@@ -123,12 +123,12 @@ static void shapes_are_finite_closed_and_wind_outward(void **state)
         assert_true(signed_volume(&o) > 0);
         /* smooth normals lie close to the faces'; over a whole surface they agree but for the roundings of edges */
         assert_true(facing > 0.85 * area);
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
 }
 
 /* Share of the frame under the silhouette, on a grid fine enough (1 %) for the bounds tested. */
-static float coverage(const scn_object *o, int *outside)
+static float coverage(const scene_object *o, int *outside)
 {
     enum { SIDE = 100 };
     static uint8_t mask[SIDE][SIDE];
@@ -165,14 +165,14 @@ static void silhouettes_fill_a_quarter_to_three_quarters_of_the_frame(void **sta
     (void)state;
     int good = 0, cut = 0;
     for (uint64_t i = 0; i < OBJECTS; i++) {
-        scn_object o;
+        scene_object o;
         int outside;
         generate(i, &o);
         float c = coverage(&o, &outside);
         /* half a cell along the outline is counted too much: 0.5 x 4 x 80 cells of 10,000 at most */
         good += c >= 0.25f && c <= 0.77f;
         cut += outside;
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
     assert_true(good >= OBJECTS * 95 / 100);
     /* one in twenty is pushed to the edge by design: 10 expected, 22 is four standard deviations above */
@@ -183,14 +183,14 @@ static void surfaces_have_materials_in_range_and_unit_normals(void **state)
 {
     (void)state;
     for (uint64_t i = 0; i < OBJECTS; i++) {
-        scn_object o;
+        scene_object o;
         generate(i, &o);
         rng r = rng_at(1, i, 2);
         for (int k = 0; k < 500; k++) {
             float u = rng_uniform(&r), v = rng_uniform(&r) * (1 - u);
-            scn_surface s;
-            scn_place at = {(uint32_t)rng_below(&r, (int)o.triangle_count), u, v};
-            scn_surfaces_eval(&o, &at, 1, &s);
+            scene_surface s;
+            scene_place at = {(uint32_t)rng_below(&r, (int)o.triangle_count), u, v};
+            scene_surfaces_eval(&o, &at, 1, &s);
             assert_true(is_finite(s.position) && is_finite(s.normal));
             assert_float_equal(vec3_length(s.normal), 1, 1e-5f);
             assert_float_equal(vec3_length(s.geometric_normal), 1, 1e-5f);
@@ -199,7 +199,7 @@ static void surfaces_have_materials_in_range_and_unit_normals(void **state)
             assert_true(s.albedo.z >= 0 && s.albedo.z <= 1);
             assert_true(s.roughness >= 0.1f && s.roughness <= 1);
         }
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
 }
 
@@ -209,19 +209,19 @@ static void materials_are_continuous_but_at_borders(void **state)
     (void)state;
     int pairs = 0, jumps = 0;
     for (uint64_t i = 0; i < OBJECTS; i++) {
-        scn_object o;
+        scene_object o;
         generate(i, &o);
         rng r = rng_at(3, i, 4);
         for (int k = 0; k < 200; k++) {
             uint32_t t = (uint32_t)rng_below(&r, (int)o.triangle_count);
-            scn_surface a, b;
-            scn_surfaces_eval(&o, &(scn_place){t, 0.3f, 0.3f}, 1, &a);
-            scn_surfaces_eval(&o, &(scn_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle on */
+            scene_surface a, b;
+            scene_surfaces_eval(&o, &(scene_place){t, 0.3f, 0.3f}, 1, &a);
+            scene_surfaces_eval(&o, &(scene_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle on */
             vec3 d = vec3_sub(a.albedo, b.albedo);
             pairs++;
             jumps += vec3_length(d) > 0.1f || fabsf(a.roughness - b.roughness) > 0.1f;
         }
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
     /* 3e-4 of a radius apart, across borders a few hundredths wide and some truly sharp ones */
     assert_true(jumps < pairs / 200);
@@ -231,28 +231,28 @@ static void materials_are_continuous_but_at_borders(void **state)
 static void surface_positions_are_interpolated(void **state)
 {
     (void)state;
-    scn_object o;
+    scene_object o;
     generate(5, &o);
     for (uint32_t t = 0; t < o.triangle_count; t += 31) {
-        scn_surface a, b, c, m;
-        scn_surfaces_eval(&o, &(scn_place){t, 0, 0}, 1, &a);
-        scn_surfaces_eval(&o, &(scn_place){t, 1, 0}, 1, &b);
-        scn_surfaces_eval(&o, &(scn_place){t, 0, 1}, 1, &c);
-        scn_surfaces_eval(&o, &(scn_place){t, 0.25f, 0.5f}, 1, &m);
+        scene_surface a, b, c, m;
+        scene_surfaces_eval(&o, &(scene_place){t, 0, 0}, 1, &a);
+        scene_surfaces_eval(&o, &(scene_place){t, 1, 0}, 1, &b);
+        scene_surfaces_eval(&o, &(scene_place){t, 0, 1}, 1, &c);
+        scene_surfaces_eval(&o, &(scene_place){t, 0.25f, 0.5f}, 1, &m);
         vec3 want = vec3_fma(vec3_fma(vec3_scale(a.position, 0.25f), 0.25f, b.position), 0.5f, c.position);
         assert_memory_equal(&b.position, &o.position[o.triangle[t][1]], sizeof(vec3));
         assert_float_equal(vec3_length(vec3_sub(want, m.position)), 0, 1e-6f);
     }
-    scn_object_free(&o);
+    scene_object_free(&o);
 }
 
 static void a_senseless_field_of_view_is_refused(void **state)
 {
     (void)state;
-    scn_object o;
-    assert_int_equal(scn_object_generate(1, 1, 0, &o), MERLIN_WRONG_USE);
-    assert_int_equal(scn_object_generate(1, 1, NAN, &o), MERLIN_WRONG_USE);
-    scn_object_free(&o);
+    scene_object o;
+    assert_int_equal(scene_object_generate(1, 1, 0, &o), MERLIN_WRONG_USE);
+    assert_int_equal(scene_object_generate(1, 1, NAN, &o), MERLIN_WRONG_USE);
+    scene_object_free(&o);
 }
 
 /* Every pattern gets its turn within forty objects; what a point is given must not depend on those beside it. */
@@ -261,21 +261,21 @@ static void point_looks_the_same_alone_and_among_others(void **state)
     (void)state;
     enum { POINTS = 37 };
     for (uint64_t k = 0; k < 40; k++) {
-        scn_object o;
+        scene_object o;
         rng r = rng_at(3, k, 0);
-        scn_place places[POINTS];
-        scn_surface together[POINTS], alone;
-        assert_int_equal(scn_object_generate(21, k, 60, &o), OK);
+        scene_place places[POINTS];
+        scene_surface together[POINTS], alone;
+        assert_int_equal(scene_object_generate(21, k, 60, &o), OK);
         for (int i = 0; i < POINTS; i++) {
             uint32_t triangle = (uint32_t)rng_below(&r, (int)o.triangle_count);
-            places[i] = (scn_place){triangle, 0.5f * rng_uniform(&r), 0.5f * rng_uniform(&r)};
+            places[i] = (scene_place){triangle, 0.5f * rng_uniform(&r), 0.5f * rng_uniform(&r)};
         }
-        scn_surfaces_eval(&o, places, POINTS, together);
+        scene_surfaces_eval(&o, places, POINTS, together);
         for (int i = 0; i < POINTS; i++) {
-            scn_surfaces_eval(&o, &places[i], 1, &alone);
+            scene_surfaces_eval(&o, &places[i], 1, &alone);
             assert_memory_equal(&alone, &together[i], sizeof alone);
         }
-        scn_object_free(&o);
+        scene_object_free(&o);
     }
 }
 

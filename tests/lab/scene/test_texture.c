@@ -39,7 +39,7 @@ static void put(const char *name, float r, float g, float b)
     free(path);
 }
 
-static texture_place plainly(const scn_texture *texture)
+static texture_place plainly(const scene_texture *texture)
 {
     return (texture_place){.texture = texture, .turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .scale = 1};
 }
@@ -56,8 +56,8 @@ static void files_of_one_name_make_one_material(void **state)
     put("wood/old_wood_rough_1k.png", 0.75f, 0.75f, 0.75f);
     put("wood/old_wood_disp_1k.png", 0.5f, 0.5f, 0.5f);
     put("photo.png", 0, 0, 1);
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 3);
     vec3 up = {0, 0, 1}, at = {0.3f, 0.2f, 0};
     texture_place brick = plainly(&t.texture[0]), photo = plainly(&t.texture[1]), wood = plainly(&t.texture[2]);
@@ -69,7 +69,7 @@ static void files_of_one_name_make_one_material(void **state)
     assert_null(photo.texture->slope.data);
     assert_float_equal(texture_albedo(&wood, at, up).y, 1, 1e-3);
     assert_float_equal(texture_roughness(&wood, at, up), 0.75f, 1e-3);
-    scn_textures_free(&t);
+    scene_textures_free(&t);
 }
 
 static void files_called_by_their_map_alone_are_their_folder_s_material(void **state)
@@ -82,8 +82,8 @@ static void files_called_by_their_map_alone_are_their_folder_s_material(void **s
     put("wood/Albedo.png", 0, 1, 0);
     put("wood/Normal.png", 0.5f, 0.5f, 1);
     put("metal.png", 0, 0, 1); /* a picture of metal */
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 3);
     vec3 up = {0, 0, 1}, at = {0.3f, 0.2f, 0};
     texture_place brick = plainly(&t.texture[0]), metal = plainly(&t.texture[1]), wood = plainly(&t.texture[2]);
@@ -94,7 +94,7 @@ static void files_called_by_their_map_alone_are_their_folder_s_material(void **s
     assert_float_equal(texture_albedo(&wood, at, up).y, 1, 1e-3);
     assert_null(wood.texture->roughness.data);
     assert_non_null(wood.texture->slope.data);
-    scn_textures_free(&t);
+    scene_textures_free(&t);
 }
 
 static void tiles_that_are_not_square_keep_their_shape(void **state)
@@ -104,7 +104,7 @@ static void tiles_that_are_not_square_keep_their_shape(void **state)
     assert_int_equal(img_new(&tile, 8, 4, 3), OK);
     for (int i = 0; i < 16 * 3; i++) /* the upper half of the rows */
         tile.data[i] = 1;
-    scn_texture texture = {.albedo = tile};
+    scene_texture texture = {.albedo = tile};
     texture_place place = plainly(&texture);
     for (int i = 0; i < 8; i++) {
         vec3 at = {0.3f, 0.125f + 0.25f * (float)i, 0};
@@ -122,8 +122,8 @@ static void normal_maps_become_slopes(void **state)
     put("gl_nor_gl.png", x, 0.5f - y, z);
     put("dx_albedo.png", 1, 1, 1);
     put("dx_nor_dx.png", x, 0.5f + y, z);
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 2);
     for (int i = 0; i < 2; i++) {
         texture_place place = plainly(&t.texture[i]);
@@ -135,7 +135,7 @@ static void normal_maps_become_slopes(void **state)
         assert_float_equal(top.x, 0.5f, 1e-3);
         assert_float_equal(top.z, 0.25f, 1e-3);
     }
-    scn_textures_free(&t);
+    scene_textures_free(&t);
 }
 
 static void materials_are_told_by_content_and_others_are_listed(void **state)
@@ -143,22 +143,22 @@ static void materials_are_told_by_content_and_others_are_listed(void **state)
     (void)state;
     put("brick_albedo.jpe", 1, 1, 1);
     assert_int_equal(file_write(scratch_path("tile_albedo.jxl"), "\xff\x0a and more", 11), OK);
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), OK);
     assert_int_equal(t.count, 1);
     assert_int_equal(t.skipped.count, 1);
     assert_string_equal(t.skipped.at[0].name, "tile_albedo.jxl");
-    scn_textures_free(&t);
+    scene_textures_free(&t);
 }
 
 static void folder_without_materials_is_refused(void **state)
 {
     (void)state;
     put("brick_roughness.png", 1, 1, 1);
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), MERLIN_BAD_INPUT);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "brick_albedo.png"));
-    assert_int_equal(scn_textures_read("/nowhere", &t), MERLIN_BAD_INPUT);
+    assert_int_equal(scene_textures_read("/nowhere", &t), MERLIN_BAD_INPUT);
 }
 
 static void objects_wear_the_folder(void **state)
@@ -167,34 +167,34 @@ static void objects_wear_the_folder(void **state)
     put("red_albedo.png", 0.8f, 0.02f, 0.02f);
     put("red_roughness.png", 0.5f, 0.5f, 0.5f);
     put("red_normal.png", 0.8f, 0.5f, 0.9f);
-    scn_textures t;
-    assert_int_equal(scn_textures_read(scratch, &t), OK);
+    scene_textures t;
+    assert_int_equal(scene_textures_read(scratch, &t), OK);
     int worn = 0, points = 0;
     for (uint64_t index = 0; index < 40; index++) {
-        scn_object with, again, without;
-        assert_int_equal(scn_object_generate(5, index, 60, &with), OK);
-        assert_int_equal(scn_object_generate(5, index, 60, &again), OK);
-        assert_int_equal(scn_object_generate(5, index, 60, &without), OK);
-        scn_object_wear(&with, &t, 5, index);
-        scn_object_wear(&again, &t, 5, index);
+        scene_object with, again, without;
+        assert_int_equal(scene_object_generate(5, index, 60, &with), OK);
+        assert_int_equal(scene_object_generate(5, index, 60, &again), OK);
+        assert_int_equal(scene_object_generate(5, index, 60, &without), OK);
+        scene_object_apply_textures(&with, &t, 5, index);
+        scene_object_apply_textures(&again, &t, 5, index);
         for (uint32_t k = 0; k < with.triangle_count; k += 1 + with.triangle_count / 20) {
-            scn_surface a = {0}, b = {0}, c = {0};
-            scn_surfaces_eval(&with, &(scn_place){k, 0.2f, 0.3f}, 1, &a);
-            scn_surfaces_eval(&again, &(scn_place){k, 0.2f, 0.3f}, 1, &b);
-            scn_surfaces_eval(&without, &(scn_place){k, 0.2f, 0.3f}, 1, &c);
+            scene_surface a = {0}, b = {0}, c = {0};
+            scene_surfaces_eval(&with, &(scene_place){k, 0.2f, 0.3f}, 1, &a);
+            scene_surfaces_eval(&again, &(scene_place){k, 0.2f, 0.3f}, 1, &b);
+            scene_surfaces_eval(&without, &(scene_place){k, 0.2f, 0.3f}, 1, &c);
             assert_memory_equal(&a, &b, sizeof a);
             assert_float_equal(vec3_length(a.normal), 1, 1e-4);
             assert_true(a.roughness >= 0.1f && a.roughness <= 1);
             points++;
             worn += memcmp(&a, &c, sizeof a) != 0;
         }
-        scn_object_free(&with);
-        scn_object_free(&again);
-        scn_object_free(&without);
+        scene_object_free(&with);
+        scene_object_free(&again);
+        scene_object_free(&without);
     }
     /* three objects in four, less what paint over the grounds covers wholly */
     assert_in_range(worn, points / 2, points * 9 / 10);
-    scn_textures_free(&t);
+    scene_textures_free(&t);
 }
 
 int main(void)

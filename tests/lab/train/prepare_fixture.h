@@ -27,11 +27,11 @@ static inline void photographs_have_no_faults_unless_asked_for(void **unused)
     (void)unused;
     train_config none = {0}, all = {.background_leak = 1, .outline_error = 1, .jpeg = 1};
     for (uint64_t i = 0; i < 100; i++) {
-        trn_camera lens = trn_camera_perfect();
+        train_camera lens = train_camera_perfect();
         rng r = rng_at(1, i, 3);
-        trn_camera_spoil(&none, &r, &lens);
+        train_camera_degrade(&none, &r, &lens);
         assert_false(lens.background || lens.outline || lens.jpeg);
-        trn_camera_spoil(&all, &r, &lens);
+        train_camera_degrade(&all, &r, &lens);
         assert_true(lens.background && abs(lens.outline) == 1 && lens.jpeg);
     }
 }
@@ -42,12 +42,12 @@ static inline void perfect_cameras_are_as_many_as_asked_for(void **unused)
     (void)unused;
     enum { DRAWS = 2000 };
     train_config half = {.exposure_jitter = 0.3, .colour_jitter = 0.1, .background_leak = 1, .perfect_camera = 0.5};
-    trn_camera perfect = trn_camera_perfect();
+    train_camera perfect = train_camera_perfect();
     int count = 0;
     for (uint64_t i = 0; i < DRAWS; i++) {
         rng r = rng_at(1, i, 3);
-        trn_camera lens = trn_camera_draw(&half, &r);
-        trn_camera_spoil(&half, &r, &lens);
+        train_camera lens = train_camera_draw(&half, &r);
+        train_camera_degrade(&half, &r, &lens);
         bool is_perfect = memcmp(lens.gain, perfect.gain, sizeof lens.gain) == 0 && lens.white == perfect.white;
         assert_true(is_perfect != lens.background);
         count += is_perfect;
@@ -61,7 +61,7 @@ static inline void target_lights_lie_on_the_frontal_hemisphere(void **unused)
     (void)unused;
     rng r = rng_at(5, 6, 7);
     for (int i = 0; i < 1000; i++) {
-        vec3 light = trn_draw_light(&r);
+        vec3 light = train_draw_light(&r);
         assert_float_equal(vec3_length(vec3_sub(light, vec3_make(0, 0, -1))), 1, 1e-5);
         assert_true(light.z >= -1);
     }
@@ -73,7 +73,7 @@ static inline vec3 random_direction(rng *r)
     return vec3_make(s * cosf(phi), s * sinf(phi), z);
 }
 
-/* As trn_dataset_get turns normals; rows run downwards, y upwards. */
+/* As train_dataset_get turns normals; rows run downwards, y upwards. */
 static inline vec3 turned(int orientation, vec3 d)
 {
     if (orientation & ORIENTATION_FLIP_X) d.x = -d.x;
@@ -106,7 +106,7 @@ static inline void strengths_span_a_decade(void **unused)
     rng r = rng_at(5, 6, 7);
     int weak = 0;
     for (int i = 0; i < 1000; i++) {
-        float s = trn_draw_strength(&r);
+        float s = train_draw_strength(&r);
         assert_true(s >= 0.099f && s <= 1.001f);
         weak += s < 0.316f;
     }
@@ -119,10 +119,10 @@ static inline void a_share_of_targets_is_dark(void **unused)
     rng r = rng_at(5, 6, 7);
     int dark = 0;
     for (int i = 0; i < 1000; i++) {
-        float s = trn_draw_target_strength(0.25f, &r);
+        float s = train_draw_target_strength(0.25f, &r);
         assert_true(s == 0 || (s >= 0.099f && s <= 1.001f));
         dark += s == 0;
-        assert_true(trn_draw_target_strength(0, &r) > 0);
+        assert_true(train_draw_target_strength(0, &r) > 0);
     }
     assert_in_range(dark, 200, 300); /* standard deviation 14 */
 }

@@ -9,19 +9,19 @@
 
 enum { SIZE = 64, PIXELS = SIZE * SIZE, FLOATS = 28 * PIXELS + 3 + 2 * MODEL_SH };
 
-static const trn_dataset_options usual = {.size = SIZE, .memory_gib = 1};
+static const train_dataset_options usual = {.size = SIZE, .memory_gib = 1};
 
 typedef struct fixture {
     char *folder;
-    trn_dataset *data;
+    train_dataset *data;
     float *memory;
-    trn_view view;
+    train_view view;
 } fixture;
 
 static inline void place(fixture *f)
 {
     float *at = f->memory;
-    trn_view *v = &f->view;
+    train_view *v = &f->view;
     v->size = SIZE;
     float **const three[] = {&v->albedo, &v->normal,         &v->direct, &v->indirect,
                              &v->image,  &v->reconstruction, &v->relit};
@@ -43,7 +43,7 @@ static inline int set_up(void **state)
     f->memory = malloc(FLOATS * sizeof(float));
     assert_non_null(f->memory);
     place(f);
-    if (trn_dataset_open(f->folder, &usual, &f->data) != OK) fail_msg("%s", status_message());
+    if (train_dataset_open(f->folder, &usual, &f->data) != OK) fail_msg("%s", status_message());
     *state = f;
     return 0;
 }
@@ -51,7 +51,7 @@ static inline int set_up(void **state)
 static inline int tear_down(void **state)
 {
     fixture *f = *state;
-    trn_dataset_close(f->data);
+    train_dataset_close(f->data);
     scratch_remove(f->folder);
     free(f->memory);
     free(f);

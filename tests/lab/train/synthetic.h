@@ -33,7 +33,7 @@ static inline void sphere_sky(int which, float sh[9][3])
 static inline vec3 sphere_environment(const sample *s, vec3 albedo, vec3 normal, vec3 ray)
 {
     const float(*sh)[3] = (const float(*)[3])s->sh;
-    vec3 diffuse = vec3_mul(albedo, vec3_scale(sh_irradiance(sh, normal), 1 / BRDF_PI));
+    vec3 diffuse = vec3_mul(albedo, vec3_scale(sh_irradiance(sh, normal), 1 / PI));
     return vec3_add(diffuse, ambient_specular(sh, 0.5f, normal, vec3_scale(vec3_normalize(ray), -1)));
 }
 

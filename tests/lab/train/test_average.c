@@ -58,16 +58,16 @@ static void mean_is(double decay, double (*value)(int step), int steps, double e
 {
     nn_graph *graph;
     nn_params *params = new_params(&graph);
-    trn_average *average;
+    train_average *average;
     set_all(params, 30);
-    assert_int_equal(trn_average_new(params, decay, &average), OK);
+    assert_int_equal(train_average_new(params, decay, &average), OK);
     for (int step = 1; step <= steps; step++) {
         set_all(params, value(step));
-        trn_average_add(average, step, step == steps);
+        train_average_add(average, step, step == steps);
     }
-    trn_average_swap(average);
+    train_average_swap(average);
     all_equal(params, expected, tolerance);
-    trn_average_free(average);
+    train_average_free(average);
     nn_params_free(params);
     nn_graph_free(graph);
 }
@@ -101,15 +101,15 @@ static void swapping_twice_changes_nothing(void **state)
     (void)state;
     nn_graph *graph;
     nn_params *params = new_params(&graph);
-    trn_average *average;
+    train_average *average;
     set_all(params, 2);
-    assert_int_equal(trn_average_new(params, 0.9, &average), OK);
+    assert_int_equal(train_average_new(params, 0.9, &average), OK);
     set_all(params, 5);
-    trn_average_swap(average);
+    train_average_swap(average);
     all_equal(params, 2, 0);
-    trn_average_swap(average);
+    train_average_swap(average);
     all_equal(params, 5, 0);
-    trn_average_free(average);
+    train_average_free(average);
     nn_params_free(params);
     nn_graph_free(graph);
 }

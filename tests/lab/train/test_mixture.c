@@ -24,15 +24,15 @@ enum { SIZE = 64, PIXELS = SIZE * SIZE, SAMPLES = 4, FLOATS = 60 * PIXELS };
 
 typedef struct fixture {
     char *folder;
-    trn_dataset *data;
+    train_dataset *data;
     float *memory;
-    trn_view view;
+    train_view view;
 } fixture;
 
 static void place(fixture *f)
 {
     float *at = f->memory;
-    trn_view *v = &f->view;
+    train_view *v = &f->view;
     v->size = SIZE;
     const struct {
         float **where;
@@ -87,8 +87,8 @@ static int set_up(void **state)
     f->memory = calloc(FLOATS, sizeof(float));
     assert_non_null(f->memory);
     place(f);
-    const trn_dataset_options options = {.size = SIZE, .memory_gib = 1, .lamps = true};
-    if (trn_dataset_open(f->folder, &options, &f->data) != OK) fail_msg("%s", status_message());
+    const train_dataset_options options = {.size = SIZE, .memory_gib = 1, .lamps = true};
+    if (train_dataset_open(f->folder, &options, &f->data) != OK) fail_msg("%s", status_message());
     *state = f;
     return 0;
 }
@@ -96,21 +96,21 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     fixture *f = *state;
-    trn_dataset_close(f->data);
+    train_dataset_close(f->data);
     scratch_remove(f->folder);
     free(f->memory);
     free(f);
     return 0;
 }
 
-static void prepare(fixture *f, const trn_mixture *m, const trn_camera *lens)
+static void prepare(fixture *f, const train_mixture *m, const train_camera *lens)
 {
     rng noise = rng_at(1, 2, 3);
-    assert_int_equal(trn_prepare_any(&f->view, m, lens, vec3_make(0.5f, 0, -0.2f), &noise), OK);
+    assert_int_equal(train_prepare_any(&f->view, m, lens, vec3_make(0.5f, 0, -0.2f), &noise), OK);
 }
 
 /* What the network is shown back in radiance. */
-static float shown(const trn_view *v, size_t value)
+static float shown(const train_view *v, size_t value)
 {
     return v->image[value] * v->image[value];
 }
@@ -118,18 +118,18 @@ static float shown(const trn_view *v, size_t value)
 static void a_photograph_is_the_sum_of_its_lights(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
-    trn_camera lens = trn_camera_perfect();
+    train_view *v = &f->view;
+    train_camera lens = train_camera_perfect();
     lens.white = 1000;
     const float gain = 0.01f;
     lens.gain[0] = lens.gain[1] = lens.gain[2] = gain;
-    const trn_mixture m = {.kind = TRN_MIXED,
-                           .flash = {1, 2, 3},
-                           .room = {2, 1, 1},
-                           .lamp = {{0}, {1, 1, 4}},
-                           .strongest = 1,
-                           .presence = 1};
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    const train_mixture m = {.kind = TRAIN_MIXED,
+                             .flash = {1, 2, 3},
+                             .room = {2, 1, 1},
+                             .lamp = {{0}, {1, 1, 4}},
+                             .strongest = 1,
+                             .presence = 1};
+    assert_int_equal(train_dataset_get(f->data, 0, 0, v), OK);
     float *raw = malloc(FLOATS * sizeof(float));
     memcpy(raw, f->memory, FLOATS * sizeof(float));
     prepare(f, &m, &lens);
@@ -152,15 +152,15 @@ static void a_photograph_is_the_sum_of_its_lights(void **state)
 static void the_truth_about_a_lamp_makes_the_photograph(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
-    trn_camera lens = trn_camera_perfect();
+    train_view *v = &f->view;
+    train_camera lens = train_camera_perfect();
     size_t right = 0, total = 0;
     lens.white = 1000;
     for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
         size_t close = 0, all = 0;
-        trn_mixture m = {.kind = TRN_MIXED, .strongest = orientation % 3, .presence = 1};
+        train_mixture m = {.kind = TRAIN_MIXED, .strongest = orientation % 3, .presence = 1};
         m.lamp[m.strongest] = vec3_make(0.5f, 0.25f, 0.25f);
-        assert_int_equal(trn_dataset_get(f->data, (size_t)orientation % SAMPLES, orientation, v), OK);
+        assert_int_equal(train_dataset_get(f->data, (size_t)orientation % SAMPLES, orientation, v), OK);
         prepare(f, &m, &lens);
         const float *code = v->lights, inverse = fmaxf(code[MODEL_LIGHTS_DISTANCE], 1e-3f);
         vec3 toward = vec3_of(code + MODEL_LIGHTS_LAMP);
@@ -171,7 +171,7 @@ static void the_truth_about_a_lamp_makes_the_photograph(void **state)
         for (size_t i = 0; i < PIXELS; i++) {
             if (v->visibility_weight[i] == 0 || v->visibility[i] < 0.99f) continue;
             float x = (float)(i % SIZE) + 0.5f, y = (float)(i / SIZE) + 0.5f;
-            float relief = v->lens_values[0] / camera_tangent(MODEL_FOV);
+            float relief = v->lens_values[0] / camera_tangent(CAMERA_FOV);
             shade_input in = {.albedo = vec3_make(0.5f * v->albedo[3 * i] + 0.5f, 0.5f * v->albedo[3 * i + 1] + 0.5f,
                                                   0.5f * v->albedo[3 * i + 2] + 0.5f),
                               .roughness = 0.5f * v->roughness[i] + 0.5f,
@@ -179,7 +179,7 @@ static void the_truth_about_a_lamp_makes_the_photograph(void **state)
                               .depth = 1 + (v->depth[i] - 1) * relief,
                               .ray = camera_point(&v->lens, x, y, 1),
                               .light = at,
-                              .power = MODEL_LIGHT_POWER * strength / (inverse * inverse)};
+                              .power = LIGHT_POWER * strength / (inverse * inverse)};
             float expected = shade_point(&in).y, found = shown(v, 3 * i + 1);
             if (expected > 0.9f * MODEL_BRIGHTEST) continue;             /* the input ends there */
             close += fabsf(found - expected) < 0.06f * expected + 0.01f; /* bounces come on top */
@@ -198,19 +198,19 @@ static void kinds_come_as_often_as_they_should(void **state)
     int kinds[3] = {0}, lamps = 0, told = 0, known = 0;
     for (int i = 0; i < DRAWS; i++) {
         rng r = rng_at(4, (uint64_t)i, 0);
-        trn_camera lens = trn_camera_perfect();
-        trn_mixture m;
-        if (i % 300 == 0) assert_int_equal(trn_dataset_get(f->data, (size_t)i / 300, 0, &f->view), OK);
-        trn_mixture_draw(&f->view, &r, &lens, &m);
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        if (i % 300 == 0) assert_int_equal(train_dataset_get(f->data, (size_t)i / 300, 0, &f->view), OK);
+        train_mixture_draw(&f->view, &r, &lens, &m);
         kinds[m.kind]++;
         lamps += m.strongest >= 0;
         told += m.told_flash;
         known += m.lens_known;
-        assert_true(!m.told_flash || m.kind == TRN_FLASH);
+        assert_true(!m.told_flash || m.kind == TRAIN_FLASH);
         assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0);
         assert_true(vec3_length(m.flash) + vec3_length(m.room) + (float)(m.strongest >= 0) > 0);
     }
-    assert_true(abs(kinds[TRN_FLASH] - DRAWS / 3) < 60 && abs(kinds[TRN_ROOM] - DRAWS / 6) < 50);
+    assert_true(abs(kinds[TRAIN_FLASH] - DRAWS / 3) < 60 && abs(kinds[TRAIN_ROOM] - DRAWS / 6) < 50);
     assert_true(lamps > DRAWS / 3 && lamps < DRAWS / 2 && told > DRAWS / 8 && told < DRAWS / 4);
     assert_true(abs(known - DRAWS * 3 / 4) < 60);
 }
@@ -218,14 +218,14 @@ static void kinds_come_as_often_as_they_should(void **state)
 static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
+    train_view *v = &f->view;
     for (int i = 0; i < 60; i++) {
         rng r = rng_at(9, (uint64_t)i, 0);
-        trn_camera lens = trn_camera_perfect();
-        trn_mixture m;
-        assert_int_equal(trn_dataset_get(f->data, (size_t)i % SAMPLES, 0, v), OK);
-        trn_mixture_draw(v, &r, &lens, &m);
-        if (m.kind == TRN_FLASH) continue;
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        assert_int_equal(train_dataset_get(f->data, (size_t)i % SAMPLES, 0, v), OK);
+        train_mixture_draw(v, &r, &lens, &m);
+        if (m.kind == TRAIN_FLASH) continue;
         prepare(f, &m, &lens);
         float brightest = 0;
         for (size_t k = 0; k < 3 * PIXELS; k++)
@@ -237,16 +237,16 @@ static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
 static void nobody_photographs_darkness(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    train_view *v = &f->view;
+    assert_int_equal(train_dataset_get(f->data, 0, 0, v), OK);
     memset(v->lamps, 0, 16 * PIXELS * sizeof(float)); /* all of them behind it, and nothing else lit at night */
     memset(v->env, 0, 3 * PIXELS * sizeof(float));
     memset(v->sh, 0, 27 * sizeof(float));
     for (int i = 0; i < 200; i++) {
         rng r = rng_at(10, (uint64_t)i, 0);
-        trn_camera lens = trn_camera_perfect();
-        trn_mixture m;
-        trn_mixture_draw(v, &r, &lens, &m);
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        train_mixture_draw(v, &r, &lens, &m);
         assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0 && m.flash.x > 0);
         assert_int_equal(m.strongest, -1);
     }
@@ -256,8 +256,8 @@ static void nobody_photographs_darkness(void **state)
 static void a_camera_exposes_for_what_is_lit(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    train_view *v = &f->view;
+    assert_int_equal(train_dataset_get(f->data, 0, 0, v), OK);
     memset(v->lamps, 0, 16 * PIXELS * sizeof(float));
     memset(v->env, 0, 3 * PIXELS * sizeof(float));
     memset(v->sh, 0, 27 * sizeof(float));
@@ -271,9 +271,9 @@ static void a_camera_exposes_for_what_is_lit(void **state)
     int lamps = 0;
     for (int i = 0; i < 200; i++) {
         rng r = rng_at(12, (uint64_t)i, 0);
-        trn_camera lens = trn_camera_perfect();
-        trn_mixture m;
-        trn_mixture_draw(v, &r, &lens, &m);
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        train_mixture_draw(v, &r, &lens, &m);
         lamps += m.strongest >= 0;
         for (int c = 0; c < 3; c++)
             assert_true(lens.gain[c] < 2000);
@@ -287,19 +287,19 @@ static void samples_without_lamps_are_refused(void **state)
     char *folder = scratch_new();
     render_options o = render_options_default();
     render_stats stats;
-    trn_view v = {.size = SIZE};
-    trn_dataset *d;
+    train_view v = {.size = SIZE};
+    train_dataset *d;
     o.folder = folder;
     o.count = 1;
     o.image = (image_settings){.size = SIZE, .fov = 60, .strata = 1, .paths = 1};
     o.quiet = true;
     assert_int_equal(render_samples(&o, &stats), OK);
     render_stats_free(&stats);
-    const trn_dataset_options options = {.size = SIZE, .memory_gib = 1, .lamps = true};
-    assert_int_equal(trn_dataset_open(folder, &options, &d), OK);
-    assert_int_equal(trn_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
+    const train_dataset_options options = {.size = SIZE, .memory_gib = 1, .lamps = true};
+    assert_int_equal(train_dataset_open(folder, &options, &d), OK);
+    assert_int_equal(train_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "--lamps"));
-    trn_dataset_close(d);
+    train_dataset_close(d);
     scratch_remove(folder);
 }
 

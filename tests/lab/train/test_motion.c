@@ -24,7 +24,7 @@ static vec3 times(const float m[3][3], vec3 v)
 }
 
 /* Pixels whose neighbours two steps away belong to the object as well. */
-static bool is_inside(const trn_view *v, int x, int y)
+static bool is_inside(const train_view *v, int x, int y)
 {
     for (int k = 0; k < 25; k++)
         if (v->mask[(y + k / 5 - 2) * SIZE + x + k % 5 - 2] < 0.999f) return false;
@@ -38,9 +38,9 @@ static void turned_camera_sees_the_turned_sphere(void **state)
     int inside = 0;
     for (uint64_t k = 0; k < 6; k++) {
         rng r = rng_at(4, k, 5);
-        trn_motion m = trn_motion_draw(&c, &r);
-        assert_int_equal(trn_dataset_get(f->data, 1, 0, &f->view), OK);
-        assert_int_equal(trn_move(&f->view, &m), OK);
+        train_motion m = train_motion_draw(&c, &r);
+        assert_int_equal(train_dataset_get(f->data, 1, 0, &f->view), OK);
+        assert_int_equal(train_move(&f->view, &m), OK);
         vec3 centre = times((const float(*)[3])m.turn, vec3_make(0.03f, -0.05f, -1)); /* sample 1 of synthetic.h */
         camera eye = {.width = SIZE, .height = SIZE, .fov = 60};
         for (int y = 2; y < SIZE - 2; y++)
@@ -64,7 +64,7 @@ static float render_error(fixture *f)
     float *rendered = malloc(3 * PIXELS * sizeof(float)), error = 0;
     int count = 0;
     assert_non_null(rendered);
-    trn_render(&f->view, vec3_make(0, 0, 0), rendered);
+    train_render(&f->view, vec3_make(0, 0, 0), rendered);
     for (int y = 2; y < SIZE - 2; y++)
         for (int x = 2; x < SIZE - 2; x++) {
             if (!is_inside(&f->view, x, y)) continue;
@@ -82,9 +82,9 @@ static void moved_maps_render_to_the_moved_picture(void **state)
     train_config turning = {.camera_turn = 10}, both = {.camera_turn = 10, .distance_jitter = 0.4};
     for (uint64_t k = 0; k < 6; k++) {
         rng r = rng_at(6, k, 5);
-        trn_motion m = trn_motion_draw(k % 2 ? &turning : &both, &r);
-        assert_int_equal(trn_dataset_get(f->data, (size_t)k % 3, 0, &f->view), OK);
-        assert_int_equal(trn_move(&f->view, &m), OK);
+        train_motion m = train_motion_draw(k % 2 ? &turning : &both, &r);
+        assert_int_equal(train_dataset_get(f->data, (size_t)k % 3, 0, &f->view), OK);
+        assert_int_equal(train_move(&f->view, &m), OK);
         /* interpolation, seen most where the stripes of albedo meet a highlight; the picture's mean is above 0.5 */
         assert_true(render_error(f) < 0.005f);
     }
@@ -93,10 +93,10 @@ static void moved_maps_render_to_the_moved_picture(void **state)
 static void distance_alone_is_exact(void **state)
 {
     fixture *f = *state;
-    trn_motion m = {.distance = 1.5f};
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    train_motion m = {.distance = 1.5f};
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
     float depth = f->view.depth[32 * SIZE + 32], indirect = f->view.indirect[3 * (32 * SIZE + 32)];
-    assert_int_equal(trn_move(&f->view, &m), OK);
+    assert_int_equal(train_move(&f->view, &m), OK);
     assert_true(render_error(f) < 1e-3f); /* of half floats */
     assert_float_equal(f->view.depth[32 * SIZE + 32], 1.5f * depth, 1e-6f);
     assert_float_equal(f->view.indirect[3 * (32 * SIZE + 32)], indirect / 2.25f, 1e-6f);
@@ -107,12 +107,12 @@ static void object_that_the_frame_cuts_off_is_not_turned(void **state)
     fixture *f = *state;
     train_config c = {.camera_turn = 10};
     rng r = rng_at(6, 0, 5);
-    trn_motion m = trn_motion_draw(&c, &r);
+    train_motion m = train_motion_draw(&c, &r);
     float depth[PIXELS];
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
     f->view.mask[5] = 0.3f;
     memcpy(depth, f->view.depth, sizeof depth);
-    assert_int_equal(trn_move(&f->view, &m), OK);
+    assert_int_equal(train_move(&f->view, &m), OK);
     assert_memory_equal(depth, f->view.depth, sizeof depth);
 }
 
@@ -122,9 +122,9 @@ static void turns_are_rotations_within_their_reach(void **unused)
     train_config none = {0}, c = {.camera_turn = 10, .distance_jitter = 0.3};
     for (uint64_t k = 0; k < 200; k++) {
         rng r = rng_at(9, k, 5);
-        trn_motion m = trn_motion_draw(&c, &r), still = trn_motion_draw(&none, &r);
-        assert_false(trn_motion_moves(&still));
-        assert_true(trn_motion_moves(&m));
+        train_motion m = train_motion_draw(&c, &r), still = train_motion_draw(&none, &r);
+        assert_false(train_motion_moves(&still));
+        assert_true(train_motion_moves(&m));
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) {
                 float dot = m.turn[i][0] * m.turn[j][0] + m.turn[i][1] * m.turn[j][1] + m.turn[i][2] * m.turn[j][2];

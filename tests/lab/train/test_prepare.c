@@ -9,8 +9,8 @@ static void turned_maps_render_to_the_turned_image(void **state)
     float *image = malloc(3 * PIXELS * sizeof(float));
     assert_non_null(image);
     for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
-        assert_int_equal(trn_dataset_get(f->data, 1, orientation, &f->view), OK);
-        trn_render(&f->view, vec3_make(0, 0, 0), image);
+        assert_int_equal(train_dataset_get(f->data, 1, orientation, &f->view), OK);
+        train_render(&f->view, vec3_make(0, 0, 0), image);
         int inside = 0;
         for (int i = 0; i < 3 * PIXELS; i++) {
             /* normals in half floats are off by 5e-4, radiance in half by another 5e-4 of up to 1 */
@@ -28,7 +28,7 @@ static void the_eight_orientations_differ(void **state)
     float *all = malloc(ORIENTATIONS * 3 * PIXELS * sizeof(float));
     assert_non_null(all);
     for (int i = 0; i < ORIENTATIONS; i++) {
-        assert_int_equal(trn_dataset_get(f->data, 1, i, &f->view), OK);
+        assert_int_equal(train_dataset_get(f->data, 1, i, &f->view), OK);
         memcpy(all + (size_t)i * 3 * PIXELS, f->view.direct, 3 * PIXELS * sizeof(float));
         for (int k = 0; k < i; k++)
             assert_memory_not_equal(all + (size_t)i * 3 * PIXELS, all + (size_t)k * 3 * PIXELS,
@@ -40,32 +40,32 @@ static void the_eight_orientations_differ(void **state)
 static void sample_from_memory_equals_sample_from_disk(void **state)
 {
     fixture *f = *state;
-    trn_dataset *forgetful;
-    assert_int_equal(trn_dataset_open(f->folder, &(trn_dataset_options){.size = SIZE}, &forgetful), OK);
+    train_dataset *forgetful;
+    assert_int_equal(train_dataset_open(f->folder, &(train_dataset_options){.size = SIZE}, &forgetful), OK);
     float *copy = malloc(FLOATS * sizeof(float));
     assert_non_null(copy);
     for (int pass = 0; pass < 2; pass++) {
         memset(f->memory, 0, FLOATS * sizeof(float));
-        assert_int_equal(trn_dataset_get(f->data, 2, 5, &f->view), OK);
+        assert_int_equal(train_dataset_get(f->data, 2, 5, &f->view), OK);
         memcpy(copy, f->memory, FLOATS * sizeof(float));
         memset(f->memory, 0, FLOATS * sizeof(float));
-        assert_int_equal(trn_dataset_get(forgetful, 2, 5, &f->view), OK);
+        assert_int_equal(train_dataset_get(forgetful, 2, 5, &f->view), OK);
         assert_memory_equal(copy, f->memory, FLOATS * sizeof(float));
     }
     free(copy);
-    trn_dataset_close(forgetful);
+    train_dataset_close(forgetful);
 }
 
 static void sample_of_another_size_is_refused(void **state)
 {
     fixture *f = *state;
-    trn_dataset *d;
-    trn_view v = f->view;
+    train_dataset *d;
+    train_view v = f->view;
     v.size = 32;
-    assert_int_equal(trn_dataset_open(f->folder, &(trn_dataset_options){.size = 32, .memory_gib = 1}, &d), OK);
-    assert_int_equal(trn_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
+    assert_int_equal(train_dataset_open(f->folder, &(train_dataset_options){.size = 32, .memory_gib = 1}, &d), OK);
+    assert_int_equal(train_dataset_get(d, 0, 0, &v), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "64"));
-    trn_dataset_close(d);
+    train_dataset_close(d);
 }
 
 static void rewrite(const char *path, float fov, float power, vec3 light)
@@ -90,11 +90,11 @@ static void sample_of_another_camera_or_flash_is_refused(void **state)
     char *path = sample_path(f->folder, 0);
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         rewrite(path, wrong[i].fov, wrong[i].power, wrong[i].light);
-        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), MERLIN_BAD_INPUT);
+        assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), wrong[i].word));
     }
     rewrite(path, 60, LIGHT_POWER, vec3_make(0, 0, 0));
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
     free(path);
 }
 
@@ -102,7 +102,7 @@ static void a_folder_is_of_its_first_samples_version(void **state)
 {
     (void)state;
     char *folder = scratch_new();
-    trn_dataset *d;
+    train_dataset *d;
     for (int i = 0; i < 2; i++) {
         sphere_write(folder, 32, i);
         char *path = sample_path(folder, (uint64_t)i);
@@ -113,9 +113,9 @@ static void a_folder_is_of_its_first_samples_version(void **state)
         sample_free(&s);
         free(path);
     }
-    assert_int_equal(trn_dataset_open(folder, &(trn_dataset_options){.size = 32}, &d), OK);
-    assert_int_equal(trn_dataset_generator_version(d), 7);
-    trn_dataset_close(d);
+    assert_int_equal(train_dataset_open(folder, &(train_dataset_options){.size = 32}, &d), OK);
+    assert_int_equal(train_dataset_generator_version(d), 7);
+    train_dataset_close(d);
     scratch_remove(folder);
 }
 
@@ -123,18 +123,18 @@ static void empty_folder_is_refused(void **state)
 {
     (void)state;
     char *folder = scratch_new();
-    trn_dataset *d;
-    assert_int_equal(trn_dataset_open(folder, &usual, &d), MERLIN_BAD_INPUT);
+    train_dataset *d;
+    assert_int_equal(train_dataset_open(folder, &usual, &d), MERLIN_BAD_INPUT);
     scratch_remove(folder);
 }
 
 /* The fixture's samples with their environments. */
-static trn_dataset *with_environments(fixture *f)
+static train_dataset *with_environments(fixture *f)
 {
-    trn_dataset *d;
-    trn_dataset_options options = usual;
+    train_dataset *d;
+    train_dataset_options options = usual;
     options.environment = true;
-    if (trn_dataset_open(f->folder, &options, &d) != OK) fail_msg("%s", status_message());
+    if (train_dataset_open(f->folder, &options, &d) != OK) fail_msg("%s", status_message());
     f->view.env = f->view.light + 3;
     f->view.sh = f->view.env + 3 * PIXELS;
     f->view.target_sh = f->view.sh + MODEL_SH;
@@ -145,16 +145,16 @@ static trn_dataset *with_environments(fixture *f)
 static void turned_maps_reflect_the_turned_environment(void **state)
 {
     fixture *f = *state;
-    trn_dataset *d = with_environments(f);
-    trn_view *v = &f->view;
+    train_dataset *d = with_environments(f);
+    train_view *v = &f->view;
     for (int orientation = 0; orientation < ORIENTATIONS; orientation++) {
-        assert_int_equal(trn_dataset_get(d, 2, orientation, v), OK);
+        assert_int_equal(train_dataset_get(d, 2, orientation, v), OK);
         float sh[9][3], alone[9][3];
         memcpy(sh, v->sh, sizeof sh);
-        assert_int_equal(trn_dataset_sh(d, 2, orientation, alone), OK);
+        assert_int_equal(train_dataset_sh(d, 2, orientation, alone), OK);
         assert_memory_equal(sh, alone, sizeof sh);
         memset(v->relit, 0, 3 * PIXELS * sizeof(float));
-        trn_add_environment(v, (const float(*)[3])sh, v->relit);
+        train_add_environment(v, (const float(*)[3])sh, v->relit);
         camera c = {.width = SIZE, .height = SIZE, .fov = 60};
         int inside = 0;
         for (int i = 0; i < PIXELS; i++) {
@@ -167,26 +167,26 @@ static void turned_maps_reflect_the_turned_environment(void **state)
         }
         assert_true(inside > PIXELS / 10);
     }
-    trn_dataset_close(d);
+    train_dataset_close(d);
 }
 
 static void photograph_is_lit_by_both_and_targets_add_up(void **state)
 {
     fixture *f = *state;
-    trn_dataset *d = with_environments(f);
-    trn_view *v = &f->view;
+    train_dataset *d = with_environments(f);
+    train_view *v = &f->view;
     float *raw = malloc(FLOATS * sizeof(float));
     assert_non_null(raw);
-    assert_int_equal(trn_dataset_get(d, 0, 0, v), OK);
+    assert_int_equal(train_dataset_get(d, 0, 0, v), OK);
     memcpy(raw, f->memory, FLOATS * sizeof(float));
     const float *direct = raw + (v->direct - f->memory), *indirect = raw + (v->indirect - f->memory);
     const float *env = raw + (v->env - f->memory), *sh = raw + (v->sh - f->memory);
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     lens.white = 4;
-    trn_lighting lighting = {.target = {0.5f, 0, -0.5f}, .strength = 0.5f};
+    train_lighting lighting = {.target = {0.5f, 0, -0.5f}, .strength = 0.5f};
     sphere_sky(1, lighting.target_sh);
     rng r = rng_at(1, 2, 3);
-    trn_prepare(v, true, &lens, &lighting, &r);
+    train_prepare(v, true, &lens, &lighting, &r);
     for (int i = 0; i < 3 * PIXELS; i++) {
         if (v->mask[i / 3] == 0) continue;
         assert_float_equal(v->image[i] * v->image[i], direct[i] + indirect[i] + 0.5f * env[i], 1e-4);
@@ -202,30 +202,30 @@ static void photograph_is_lit_by_both_and_targets_add_up(void **state)
     model_encode_sh((const float(*)[3])scaled, code);
     assert_memory_equal(code, v->sh, sizeof code);
     free(raw);
-    trn_dataset_close(d);
+    train_dataset_close(d);
 }
 
 static void target_is_lit_by_its_own_environment(void **state)
 {
     fixture *f = *state;
-    trn_dataset *d = with_environments(f);
+    train_dataset *d = with_environments(f);
     float *dark = malloc(3 * PIXELS * sizeof(float));
     assert_non_null(dark);
-    trn_camera lens = trn_camera_perfect();
-    trn_lighting lighting = {.target = {0.8f, 0, -1}, .strength = 1};
+    train_camera lens = train_camera_perfect();
+    train_lighting lighting = {.target = {0.8f, 0, -1}, .strength = 1};
     int brighter = 0;
     for (int pass = 0; pass < 2; pass++) {
         rng r = rng_at(1, 2, 3);
         if (pass) sphere_sky(2, lighting.target_sh);
-        assert_int_equal(trn_dataset_get(d, 0, 0, &f->view), OK);
-        trn_prepare(&f->view, true, &lens, &lighting, &r);
+        assert_int_equal(train_dataset_get(d, 0, 0, &f->view), OK);
+        train_prepare(&f->view, true, &lens, &lighting, &r);
         if (pass == 0) memcpy(dark, f->view.relit, 3 * PIXELS * sizeof(float));
     }
     for (int i = 0; i < 3 * PIXELS; i++)
         brighter += f->view.relit[i] > dark[i] + 0.05f;
     assert_true(brighter > PIXELS / 10);
     free(dark);
-    trn_dataset_close(d);
+    train_dataset_close(d);
 }
 
 int main(void)

@@ -2,17 +2,17 @@
 /* What a camera does to the photograph that a sample becomes. */
 #include "prepare_fixture.h"
 
-static const trn_lighting at_the_camera = {.target = {0, 0, 0}};
+static const train_lighting at_the_camera = {.target = {0, 0, 0}};
 
 static void perfect_camera_shows_direct_plus_indirect(void **state)
 {
     fixture *f = *state;
     for (int global = 0; global < 2; global++) {
         rng r = rng_at(1, 2, 3);
-        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
-        trn_camera lens = trn_camera_perfect();
-        trn_prepare(&f->view, global, &lens, &(trn_lighting){.target = {0.5f, 0, -0.5f}}, &r);
-        const trn_view *v = &f->view;
+        assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+        train_camera lens = train_camera_perfect();
+        train_prepare(&f->view, global, &lens, &(train_lighting){.target = {0.5f, 0, -0.5f}}, &r);
+        const train_view *v = &f->view;
         for (int i = 0; i < 3 * PIXELS; i++) {
             float linear = v->image[i] * v->image[i];
             if (v->reconstruction[i] < 1 && v->direct[i] < 1) /* where nothing was clipped */
@@ -27,14 +27,14 @@ static void sensor_saturates_at_its_white(void **state)
 {
     fixture *f = *state;
     rng r = rng_at(1, 2, 3);
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
     float *radiance = malloc(3 * PIXELS * sizeof(float));
     assert_non_null(radiance);
     for (int i = 0; i < 3 * PIXELS; i++)
         radiance[i] = f->view.direct[i] *= 4; /* bright enough for both kinds of pixel */
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     lens.white = 2;
-    trn_prepare(&f->view, false, &lens, &at_the_camera, &r);
+    train_prepare(&f->view, false, &lens, &at_the_camera, &r);
     int saturated = 0, below = 0;
     for (int i = 0; i < 3 * PIXELS; i++) {
         if (f->view.mask[i / 3] == 0) continue;
@@ -53,19 +53,19 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
     train_config c = {.exposure_jitter = 0.3, .colour_jitter = 0.1};
     float *clean = malloc(FLOATS * sizeof(float));
     assert_non_null(clean);
-    trn_camera perfect = trn_camera_perfect();
+    train_camera perfect = train_camera_perfect();
     rng r = rng_at(1, 2, 3);
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
-    trn_prepare(&f->view, true, &perfect, &at_the_camera, &r);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+    train_prepare(&f->view, true, &perfect, &at_the_camera, &r);
     memcpy(clean, f->memory, FLOATS * sizeof(float));
     const float *image = clean + (f->view.image - f->memory);
     for (uint64_t i = 0; i < 20; i++) {
         r = rng_at(1, i, 3);
-        trn_camera lens = trn_camera_draw(&c, &r);
+        train_camera lens = train_camera_draw(&c, &r);
         for (int k = 0; k < 3; k++)
             assert_true(fabsf(logf(lens.gain[k])) <= 0.4f + 1e-5f);
-        assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
-        trn_prepare(&f->view, true, &lens, &at_the_camera, &r);
+        assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+        train_prepare(&f->view, true, &lens, &at_the_camera, &r);
         assert_memory_not_equal(f->view.image, image, 3 * PIXELS * sizeof(float));
         memcpy(f->view.image, image, 3 * PIXELS * sizeof(float));
         assert_memory_equal(f->memory, clean, FLOATS * sizeof(float));
@@ -74,20 +74,20 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
 }
 
 /* Sample 0 photographed without noise under these faults. */
-static void photograph(fixture *f, const trn_camera *lens)
+static void photograph(fixture *f, const train_camera *lens)
 {
     rng r = rng_at(1, 2, 3);
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, &f->view), OK);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
     for (int x = 0; x < SIZE; x++) /* a row of the frame where the object covers three quarters of each pixel */
         if (f->view.mask[32 * SIZE + x] > 0) f->view.mask[32 * SIZE + x] = 0.75f;
-    assert_int_equal(trn_prepare(&f->view, true, lens, &at_the_camera, &r), OK);
+    assert_int_equal(train_prepare(&f->view, true, lens, &at_the_camera, &r), OK);
 }
 
 static void background_shows_where_the_object_does_not_cover_the_pixel(void **state)
 {
     fixture *f = *state;
     float clean[3 * PIXELS];
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     photograph(f, &lens);
     memcpy(clean, f->view.image, sizeof clean);
     lens.background = true;
@@ -120,7 +120,7 @@ static int count_ones(const float *mask)
 static void outline_errors_are_one_pixel_wide(void **state)
 {
     fixture *f = *state;
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     float exact[PIXELS], loss[PIXELS];
     photograph(f, &lens);
     memcpy(exact, f->view.mask, sizeof exact);
@@ -143,11 +143,11 @@ static void outline_errors_are_one_pixel_wide(void **state)
 static void a_mask_too_large_shows_what_the_object_covers_in_part(void **state)
 {
     fixture *f = *state;
-    trn_view *v = &f->view;
-    trn_camera lens = trn_camera_perfect();
+    train_view *v = &f->view;
+    train_camera lens = train_camera_perfect();
     rng r = rng_at(1, 2, 3);
     lens.outline = 1;
-    assert_int_equal(trn_dataset_get(f->data, 0, 0, v), OK);
+    assert_int_equal(train_dataset_get(f->data, 0, 0, v), OK);
     size_t edge = (size_t)32 * SIZE;
     while (v->mask[edge] == 0)
         edge++;
@@ -156,7 +156,7 @@ static void a_mask_too_large_shows_what_the_object_covers_in_part(void **state)
         v->direct[3 * edge + c] = 0.2f;
         v->indirect[3 * edge + c] = 0;
     }
-    assert_int_equal(trn_prepare(v, true, &lens, &at_the_camera, &r), OK);
+    assert_int_equal(train_prepare(v, true, &lens, &at_the_camera, &r), OK);
     assert_true(v->mask[edge] == 1 && v->loss_mask[edge] == 0);
     /* the input is the square root of the radiance */
     for (size_t c = 0; c < 3; c++)
@@ -167,7 +167,7 @@ static void jpeg_spoils_the_input_and_not_the_targets(void **state)
 {
     fixture *f = *state;
     float clean[FLOATS], error[2] = {0, 0};
-    trn_camera lens = trn_camera_perfect();
+    train_camera lens = train_camera_perfect();
     photograph(f, &lens);
     memcpy(clean, f->memory, sizeof clean);
     const float *image = clean + (f->view.image - f->memory);

@@ -2,26 +2,26 @@
 #include "train_fixture.h"
 
 /* begins: what the run begins from. */
-static status train_beginning(const fixture *f, const char *name, trn_options begins)
+static status train_beginning(const fixture *f, const char *name, train_options begins)
 {
     char *output = file_join(f->root, name);
     begins.config = f->config;
     begins.data = f->data;
     begins.output = output;
     begins.quiet = true;
-    status s = trn_train(&begins);
+    status s = train_run(&begins);
     free(output);
     return s;
 }
 
 static status train_from(const fixture *f, const char *name, const char *weights)
 {
-    return train_beginning(f, name, (trn_options){.init = weights});
+    return train_beginning(f, name, (train_options){.init = weights});
 }
 
 static status train_from_shared(const fixture *f, const char *name, const char *const *weights)
 {
-    return train_beginning(f, name, (trn_options){.init_shared = weights});
+    return train_beginning(f, name, (train_options){.init_shared = weights});
 }
 
 /* Of curves.csv. */
@@ -120,7 +120,7 @@ static void charts_are_drawn_of_rows_with_fewer_losses(void **state)
     snprintf(png, sizeof png, "%s/old.png", f->root);
     static const char rows[] = "step,presentations,learning_rate,skipped,total,albedo\n4,8,1,0,2,1\n8,16,1,0,1,0.5\n";
     assert_int_equal(file_write(csv, rows, sizeof rows - 1), OK);
-    assert_int_equal(trn_curve_chart(csv, "/nonexistent", png), OK);
+    assert_int_equal(train_curve_chart(csv, "/nonexistent", png), OK);
     assert_true(file_exists(png));
 }
 
@@ -143,9 +143,9 @@ static void a_curve_cut_within_its_header_begins_anew(void **state)
     size_t size;
     snprintf(csv, sizeof csv, "%s/cut.csv", f->root);
     assert_int_equal(file_write(csv, "step,pres", 9), OK);
-    assert_int_equal(trn_curve_truncate(csv, 4), OK);
-    assert_int_equal(trn_curve_append(csv, &(trn_curve_row){.step = 5}, &(trn_losses){.count = 1}), OK);
-    assert_int_equal(trn_curve_append(csv, &(trn_curve_row){.step = 6}, &(trn_losses){.count = 1}), OK);
+    assert_int_equal(train_curve_truncate(csv, 4), OK);
+    assert_int_equal(train_curve_append(csv, &(train_curve_row){.step = 5}, &(train_losses){.count = 1}), OK);
+    assert_int_equal(train_curve_append(csv, &(train_curve_row){.step = 6}, &(train_losses){.count = 1}), OK);
     assert_int_equal(file_read(csv, 1 << 12, &text, &size), OK);
     assert_int_equal(strncmp(text, "step,presentations,", 19), 0);
     assert_null(strstr(text + 1, "step,"));
@@ -239,11 +239,11 @@ static void later_shared_weights_replace_earlier_ones(void **state)
 static bool weights_name_a_loss(const fixture *f, const char *run)
 {
     char path[600];
-    st_file *file;
+    safetensors_file *file;
     snprintf(path, sizeof path, "%s/%s/weights.safetensors", f->root, run);
-    if (st_open(path, &file) != OK) fail_msg("%s", status_message());
-    bool named = st_metadata(file, "validation_loss") != NULL;
-    st_close(file);
+    if (safetensors_open(path, &file) != OK) fail_msg("%s", status_message());
+    bool named = safetensors_metadata(file, "validation_loss") != NULL;
+    safetensors_close(file);
     return named;
 }
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/train/config.h"
+#include "lab/train/train_config.h"
 #include "nn/device.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */

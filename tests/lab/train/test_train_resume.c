@@ -130,19 +130,20 @@ static void falsify_checkpoint(const char *path, const char *key, const char *va
                                        "counters",   "best",   "open_losses"};
     enum { COUNT = sizeof KEYS / sizeof *KEYS };
     const char *metadata[COUNT][2];
-    st_file *file;
-    assert_int_equal(st_open(path, &file), OK);
+    safetensors_file *file;
+    assert_int_equal(safetensors_open(path, &file), OK);
     for (size_t i = 0; i < COUNT; i++) {
         metadata[i][0] = KEYS[i];
-        metadata[i][1] = strcmp(KEYS[i], key) == 0 ? value : st_metadata(file, KEYS[i]);
+        metadata[i][1] = strcmp(KEYS[i], key) == 0 ? value : safetensors_metadata(file, KEYS[i]);
     }
-    st_tensor *tensors = calloc(st_count(file), sizeof *tensors);
+    safetensors_tensor *tensors = calloc(safetensors_count(file), sizeof *tensors);
     assert_non_null(tensors);
-    for (size_t i = 0; i < st_count(file); i++)
-        tensors[i] = *st_at(file, i);
-    assert_int_equal(st_write(path, tensors, st_count(file), (const char *const(*)[2])metadata, COUNT), OK);
+    for (size_t i = 0; i < safetensors_count(file); i++)
+        tensors[i] = *safetensors_at(file, i);
+    assert_int_equal(
+        safetensors_write(path, tensors, safetensors_count(file), (const char *const(*)[2])metadata, COUNT), OK);
     free(tensors);
-    st_close(file);
+    safetensors_close(file);
 }
 
 /* Steps times a batch must stay a number. */

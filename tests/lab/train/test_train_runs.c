@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "lab/train/config.h"
+#include "lab/train/train_config.h"
 
 /* cmocka names a macro fail, so that it comes behind base/status.h */
 #include <setjmp.h>

@@ -98,13 +98,13 @@ static inline int stop_after_steps(void)
 static inline status train_asked(const fixture *f, const char *name, bool resume, int (*interrupted)(void))
 {
     char *output = file_join(f->root, name);
-    trn_options o = {.config = f->config,
-                     .data = f->data,
-                     .output = output,
-                     .resume = resume,
-                     .quiet = true,
-                     .interrupted = interrupted};
-    status s = trn_train(&o);
+    train_options o = {.config = f->config,
+                       .data = f->data,
+                       .output = output,
+                       .resume = resume,
+                       .quiet = true,
+                       .interrupted = interrupted};
+    status s = train_run(&o);
     free(output);
     return s;
 }

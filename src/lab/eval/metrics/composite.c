@@ -11,7 +11,6 @@
 #include "optics/light.h"
 
 enum { STREAM = 0x3a5c, MOST_THINGS = 9, TABLE_BITS = 8 };
-static const float PI = 3.14159265f;
 
 /* A rectangle of one colour at the picture's border; lengths in parts of the picture's side. */
 typedef struct thing {

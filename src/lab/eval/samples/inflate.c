@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "stereo/uncalibrated/inflate.h"
+#include "base/number.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/samples/trivial.h"
 #include "optics/camera.h"
@@ -22,9 +23,9 @@ status eval_inflate(const eval_photo *photo, const img *mask, const eval_means *
         float depth = means->depth - size * (height.data[i] - middle);
         out->depth.data[i] = depth > 0.1f ? depth : 0.1f;
         out->roughness.data[i] = means->roughness;
-        float matte = photo->white * BRDF_PI * depth * depth / LIGHT_POWER;
+        float matte = photo->white * PI * depth * depth / LIGHT_POWER;
         for (size_t c = 3 * i; c < 3 * i + 3; c++)
-            out->albedo.data[c] = brdf_clamp(matte * photo->picture.data[c], 0, 1);
+            out->albedo.data[c] = clamp(matte * photo->picture.data[c], 0, 1);
     }
     img_free(&height);
     return OK;

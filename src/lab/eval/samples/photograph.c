@@ -23,7 +23,7 @@ static void find_frame(eval_photo *p)
     const camera_slant at = p->lens.slant;
     const float focal = pixels * sqrtf(1 - at.right * at.right - at.up * at.up);
     const bool larger = right != 0 || up != 0;
-    p->fov = p->params.fov = larger ? 2 * atanf((float)p->width / (2 * focal)) / CAMERA_RADIAN : p->lens.fov;
+    p->fov = p->params.fov = larger ? 2 * atanf((float)p->width / (2 * focal)) / DEGREE : p->lens.fov;
 }
 
 status eval_photo_take(const sample *s, const img *radiance, const img *mask, float white, eval_photo *out)
@@ -90,7 +90,7 @@ vec3 eval_photo_to_maps(const eval_photo *p, const merlin_maps *maps, vec3 at)
 static void turn_shape(const eval_photo *p, const merlin_maps *maps, surface *s)
 {
     const int side = maps->crop.side, left = p->x - maps->crop.x, top = p->y - maps->crop.y;
-    const camera_lens lens = {maps->fov > 0 ? maps->fov : SURFACE_FOV, {maps->slant[0], maps->slant[1]}};
+    const camera_lens lens = {maps->fov > 0 ? maps->fov : CAMERA_FOV, {maps->slant[0], maps->slant[1]}};
     const camera seen = camera_through(lens, side, side);
     for (int y = 0; y < s->mask.height; y++)
         for (int x = 0; x < s->mask.width; x++) {

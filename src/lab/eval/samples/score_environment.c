@@ -46,10 +46,10 @@ static status render_truth(const eval_subject *on, elsewhere *out)
     sample again;
     environment env;
     *out = (elsewhere){0};
-    if (fabsf(s->fov - SURFACE_FOV) > 0.01f)
+    if (fabsf(s->fov - CAMERA_FOV) > 0.01f)
         return fail(MERLIN_BAD_INPUT,
                     "sample %llu was rendered %g degrees wide: environments light what %g degrees show",
-                    (unsigned long long)s->index, (double)s->fov, (double)SURFACE_FOV);
+                    (unsigned long long)s->index, (double)s->fov, (double)CAMERA_FOV);
     o.seed = s->seed;
     o.image.size = s->mask.width;
     o.image.fov = s->fov;

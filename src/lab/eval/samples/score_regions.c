@@ -28,7 +28,7 @@ static float gloss_share(const eval_subject *on, size_t i)
                       .light = s->light,
                       .power = s->light_power};
     shade_terms terms = shade_terms_of(&in);
-    float diffuse = (in.albedo.x + in.albedo.y + in.albedo.z) / (3 * BRDF_PI);
+    float diffuse = (in.albedo.x + in.albedo.y + in.albedo.z) / (3 * PI);
     return terms.specular / (terms.specular + diffuse);
 }
 

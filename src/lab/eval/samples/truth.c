@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/eval/samples/truth.h"
 
+#include "base/number.h"
 #include "base/rng.h"
 #include "estimate/light/relight_env.h"
 #include "lab/eval/metrics/metrics.h"
@@ -32,7 +33,7 @@ status eval_binary_mask(const img *coverage, img *out)
 static void clip(img *picture, float exposure)
 {
     for (size_t i = 0; i < img_value_count(picture); i++)
-        picture->data[i] = brdf_clamp(exposure * picture->data[i], 0, 1);
+        picture->data[i] = clamp(exposure * picture->data[i], 0, 1);
 }
 
 status eval_render(const surface *maps, const illumination *light, float exposure, img *out)
@@ -49,7 +50,7 @@ status eval_picture(const img *a, const img *b, const img *mask, img *out)
     status s = img_copy(out, a);
     if (s != OK) return s;
     for (size_t i = 0, n = img_value_count(out); i < n; i++)
-        out->data[i] = mask->data[i / 3] > 0 ? brdf_clamp(a->data[i] + (b ? b->data[i] : 0), 0, 1) : 0;
+        out->data[i] = mask->data[i / 3] > 0 ? clamp(a->data[i] + (b ? b->data[i] : 0), 0, 1) : 0;
     return OK;
 }
 

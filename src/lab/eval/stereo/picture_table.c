@@ -43,7 +43,7 @@ static status judge(const pst_capture *c, const merlin_maps *maps, picture_score
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
     const bool by_sight = !maps->light.known;
     const img from = maps->normal;
-    const pinhole assumed = pinhole_of(c->width, c->height, SURFACE_FOV);
+    const pinhole assumed = pinhole_of(c->width, c->height, CAMERA_FOV);
     status s = stereo_frame_check(c, maps);
     if (s == OK) s = img_copy(&normal, &from);
     if (s != OK) return s;

@@ -19,7 +19,7 @@ static const float far_away = 500;
 /* What all rows share, */
 typedef struct job {
     const rendered *how;
-    const scn_object *object;
+    const scene_object *object;
     trace_device *device;
     pst_capture *capture;
     status result;
@@ -38,7 +38,7 @@ typedef struct rendering {
 /* The points of one pixel. */
 typedef struct sight {
     int count;
-    scn_surface at[MOST_POINTS];
+    scene_surface at[MOST_POINTS];
     vec3 view[MOST_POINTS];
 } sight;
 
@@ -92,11 +92,10 @@ static pst_light light_of(const rendered *how, int i)
 /* ---- one pixel ---- */
 
 /* Of the light that arrives along l: what goes toward the view. */
-static vec3 reflected(const rendered *how, const scn_surface *at, vec3 view, vec3 l)
+static vec3 reflected(const rendered *how, const scene_surface *at, vec3 view, vec3 l)
 {
     bool lambert = how->matte || how->phong > 0;
-    vec3 f =
-        lambert ? vec3_scale(at->albedo, 1 / (real)BRDF_PI) : brdf_eval(at->albedo, at->roughness, at->normal, l, view);
+    vec3 f = lambert ? vec3_scale(at->albedo, 1 / (real)PI) : brdf_eval(at->albedo, at->roughness, at->normal, l, view);
     if (how->phong > 0 && !how->matte) {
         float lobe = how->phong * powf(fmaxf(vec3_dot(at->normal, brdf_half_vector(l, view)), 0), how->exponent);
         f = vec3_add(f, vec3_make(lobe, lobe, lobe));
@@ -104,13 +103,13 @@ static vec3 reflected(const rendered *how, const scn_surface *at, vec3 view, vec
     return vec3_scale(f, vec3_dot(at->normal, l));
 }
 
-static bool is_lit(rendering *r, const scn_surface *at, vec3 l, float distance)
+static bool is_lit(rendering *r, const scene_surface *at, vec3 l, float distance)
 {
     if (!(vec3_dot(at->normal, l) > 0) || !(vec3_dot(at->geometric_normal, l) > 0)) return false;
     return r->how->unshadowed || !trace_occluded(&r->scene, trace_leave(at), l, distance);
 }
 
-static vec3 by_way_of_surfaces(rendering *r, const scn_surface *at, vec3 view, vec3 position, float power)
+static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view, vec3 position, float power)
 {
     point_light source = {.position = position, .power = power};
     path_points point = {at, &view, 1, r->path++};
@@ -121,7 +120,7 @@ static vec3 by_way_of_surfaces(rendering *r, const scn_surface *at, vec3 view, v
 }
 
 /* Radiance by one light. */
-static vec3 radiance(rendering *r, const scn_surface *at, vec3 view, const pst_light *from)
+static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const pst_light *from)
 {
     bool near = is_near(r->how);
     vec3 position = near ? from->position : vec3_scale(from->direction, far_away), sum = {0, 0, 0};
@@ -142,7 +141,7 @@ static void camera_ray_of(const rendered *how, float x, float y, vec3 *origin, v
     *direction = how->fov > 0 ? camera_ray(&eye, x, y) : vec3_make(0, 0, -1);
 }
 
-static void apply_material(const rendered *how, scn_surface *at)
+static void apply_material(const rendered *how, scene_surface *at)
 {
     if (how->roughness > 0) at->roughness = how->roughness;
     if (how->paleness > 0) at->albedo = vec3_scale(at->albedo, how->paleness);
@@ -223,7 +222,7 @@ static void render_rows(void *context, size_t begin, size_t end)
 {
     job *all = context;
     rendering r = {.how = all->how, .capture = all->capture};
-    status s = trace_scene_new(all->device, all->object, scn_surfaces_eval, 1e6, &r.scene);
+    status s = trace_scene_new(all->device, all->object, scene_surfaces_eval, 1e6, &r.scene);
     for (size_t j = begin; s == OK && j < end; j++)
         render_row(&r, (int)j);
     if (s == OK) {
@@ -250,7 +249,7 @@ static status allocate(const rendered *how, pst_capture *c)
     return OK;
 }
 
-status rendered_capture(const rendered *how, const scn_object *object, pst_capture *out)
+status rendered_capture(const rendered *how, const scene_object *object, pst_capture *out)
 {
     *out = (pst_capture){.width = how->size,
                          .height = how->size,

@@ -30,6 +30,6 @@ typedef struct rendered {
 } rendered;
 
 /* Equal scenes give equal pictures, whatever the number of threads. On failure *out needs no freeing. */
-status rendered_capture(const rendered *how, const scn_object *object, pst_capture *out);
+status rendered_capture(const rendered *how, const scene_object *object, pst_capture *out);
 
 #endif

@@ -7,11 +7,11 @@
 #include "base/progress.h"
 #include "lab/eval/stereo/rendered_capture.h"
 #include "lab/scene/material/material.h"
+#include "optics/camera.h"
 #include "stereo/integrate/surface_error.h"
 #include "stereo/methods/solve.h"
 
 enum { CAPTURES = 4, TIMED_RUNS = 3 };
-static const float field_of_view = 60;
 static const double timed_pixels = 20000;
 /* From polished to satin; the objects take them in turn. */
 static const float roughness[] = {0.15f, 0.25f, 0.35f, 0.5f};
@@ -19,7 +19,7 @@ enum { ROUGHNESSES = sizeof roughness / sizeof *roughness };
 
 typedef struct evaluation {
     const solver_options *options;
-    scn_object object;
+    scene_object object;
     solver_row *row;
     progress bar;
     size_t done;
@@ -112,7 +112,7 @@ static status measure_all(evaluation *e)
     smooth.matte = smooth.unshadowed = true;
     smooth.strata = 1; /* a pixel's mean of several normals is no one normal's brightness */
     leds.leds = true;
-    leds.fov = field_of_view;
+    leds.fov = CAMERA_FOV;
     leds.exposure = 0.4f;
     status s = measure(e, &smooth, lambert);
     if (s == OK) s = measure(e, &polished, glossy);
@@ -123,13 +123,13 @@ static status measure_all(evaluation *e)
 
 static status measure_object(evaluation *e, size_t index)
 {
-    status s = scn_object_generate(e->options->seed, index, field_of_view, &e->object);
+    status s = scene_object_generate(e->options->seed, index, CAMERA_FOV, &e->object);
     if (s != OK) return s;
     e->object.material->bumps = 0; /* relief finer than a pixel has no one normal */
     snprintf(e->row->name, sizeof e->row->name, "%zu %s", index, e->object.shape);
     e->row->roughness = roughness[index % ROUGHNESSES];
     s = measure_all(e);
-    scn_object_free(&e->object);
+    scene_object_free(&e->object);
     return s == OK ? OK : fail_in(s, "object %zu of seed %llu", index, (unsigned long long)e->options->seed);
 }
 

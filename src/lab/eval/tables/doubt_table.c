@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/number.h"
 #include "estimate/photo/network.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
@@ -63,7 +64,7 @@ static status bright_part(const img *picture, const img *mask, float *out)
     for (size_t i = 0; i < pixels; i++) {
         if (mask->data[i] < 0.5f) continue;
         float place = 16 * (log2f(fmaxf(color_luminance(picture->data + 3 * i), 1e-6f)) + 20);
-        bins[(int)fminf(fmaxf(place, 0), BINS - 1)]++;
+        bins[(int)clamp(place, 0, BINS - 1)]++;
         count++;
     }
     int bin = 0;

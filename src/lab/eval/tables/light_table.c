@@ -49,7 +49,7 @@ typedef struct subject {
 static float angle_of(const sample_lamp *l)
 {
     vec3 way = l->distant ? l->at : vec3_sub(l->at, vec3_make(0, 0, -1));
-    return acosf(fminf(fmaxf(vec3_normalize(way).z, -1), 1)) / CAMERA_RADIAN;
+    return acosf(fminf(fmaxf(vec3_normalize(way).z, -1), 1)) / DEGREE;
 }
 
 static light_kind kind_of_lamp(const sample_lamp *l)
@@ -184,7 +184,7 @@ static status judge_direction(run *r, const subject *on, const mixture *m, light
     vec3 way = vec3_normalize(l->distant ? l->at : vec3_sub(l->at, vec3_make(0, 0, -1)));
     if (!(vec3_length(found) > 0)) return OK;
     double cosine = (double)vec3_dot(way, vec3_normalize(found));
-    return note_direction(&r->found[kind], acos(fmin(fmax(cosine, -1), 1)) / (double)CAMERA_RADIAN);
+    return note_direction(&r->found[kind], acos(fmin(fmax(cosine, -1), 1)) / (double)DEGREE);
 }
 
 static void add_figures(const surface *maps, const subject *on, double sum[LIGHT_FIGURES])

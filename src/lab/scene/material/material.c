@@ -12,7 +12,7 @@ static lane_set on_parts(const material_points *at, uint32_t parts)
     return set & at->wanted;
 }
 
-static void mix_colours(const paint *p, const float t[LANES], lanes *out)
+static void mix_colours(const material_paint *p, const float t[LANES], lanes *out)
 {
     const vec3 *c = p->colour;
     int steps = p->colours - 1;
@@ -36,7 +36,7 @@ static void look_at_photograph(const texture_place *place, const material_points
     }
 }
 
-static void paint_lanes(const paint *p, const material_points *at, lane_set wanted, lanes *albedo,
+static void paint_lanes(const material_paint *p, const material_points *at, lane_set wanted, lanes *albedo,
                         float roughness[LANES])
 {
     float t[LANES];
@@ -56,7 +56,7 @@ static void paint_lanes(const paint *p, const material_points *at, lane_set want
 }
 
 /* How much of each point a layer covers; returns where it covers any. */
-static lane_set cover(const layer *l, const material_points *at, lane_set open, float share[LANES])
+static lane_set cover(const material_layer *l, const material_points *at, lane_set open, float share[LANES])
 {
     lane_set covered = 0;
     if (l->everywhere)
@@ -77,7 +77,7 @@ typedef struct coat {
     float roughness[LANES], through[LANES];
 } coat;
 
-static lane_set lay_under(coat *c, const layer *l, const material_points *at, lane_set open)
+static lane_set lay_under(coat *c, const material_layer *l, const material_points *at, lane_set open)
 {
     lanes colour;
     float gloss[LANES], share[LANES];
@@ -95,7 +95,7 @@ static lane_set lay_under(coat *c, const layer *l, const material_points *at, la
     return open & left;
 }
 
-void material_eval(const scn_material *material, const material_points *at, lanes *albedo, float roughness[LANES])
+void material_eval(const scene_material *material, const material_points *at, lanes *albedo, float roughness[LANES])
 {
     coat c = {.roughness = {0}};
     float smudge[LANES];
@@ -111,19 +111,19 @@ void material_eval(const scn_material *material, const material_points *at, lane
         vec3 a = lanes_at(&c.albedo, i);
         float rough = c.roughness[i];
         if (material->smudged) rough += material->smudge_amount * (smudge[i] - 0.5f);
-        lanes_put(albedo, i, vec3_make(clamp_to(0, 1, a.x), clamp_to(0, 1, a.y), clamp_to(0, 1, a.z)));
-        roughness[i] = clamp_to(0.1f, 1, rough);
+        lanes_put(albedo, i, vec3_make(clamp(a.x, 0, 1), clamp(a.y, 0, 1), clamp(a.z, 0, 1)));
+        roughness[i] = clamp(rough, 0.1f, 1);
     }
 }
 
 /* The relief of the ground that shows: the last layer without a mask. */
-static void add_photographed_slope(const scn_material *material, const material_points *at, int lane,
+static void add_photographed_slope(const scene_material *material, const material_points *at, int lane,
                                    const lanes tangent[2], float d[2][LANES])
 {
     uint32_t bit = 1u << (at->part[lane] % 32);
     const texture_place *place = NULL;
     for (int i = 0; i < material->layers; i++) {
-        const layer *l = &material->layer[i];
+        const material_layer *l = &material->layer[i];
         if (l->everywhere && (l->parts & bit)) place = &l->paint.photographed;
     }
     if (!place || !place->texture || !place->texture->slope.data) return;
@@ -132,7 +132,7 @@ static void add_photographed_slope(const scn_material *material, const material_
         d[k][lane] += vec3_dot(gradient, lanes_at(&tangent[k], lane));
 }
 
-static void add_bump(const bump *b, const material_points *at, lane_set wanted, const lanes tangent[2],
+static void add_bump(const material_bump *b, const material_points *at, lane_set wanted, const lanes tangent[2],
                      float d[2][LANES])
 {
     float here[LANES], there[LANES];
@@ -148,7 +148,8 @@ static void add_bump(const bump *b, const material_points *at, lane_set wanted, 
     }
 }
 
-void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES])
+void material_slope(const scene_material *material, const material_points *at, const lanes tangent[2],
+                    float d[2][LANES])
 {
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < LANES; i++)

@@ -9,35 +9,35 @@
 #include "lab/scene/shape/shape.h"
 
 /* One stuff: up to three colours mixed by a pattern, and a roughness that may follow it. */
-typedef struct paint {
+typedef struct material_paint {
     int colours;
     vec3 colour[3];
     pattern mix;                /* used with two or three colours, or where roughness varies */
     float roughness, spread;    /* at the middle of the mix; added over its whole range */
     texture_place photographed; /* takes the colours' place, and the roughness's where it has a map of it */
-} paint;
+} material_paint;
 
-typedef struct layer {
+typedef struct material_layer {
     uint32_t parts;  /* bit i: lies on part i (modulo 32) */
     bool everywhere; /* no mask */
     pattern mask;
     float opacity;
-    paint paint;
-} layer;
+    material_paint paint;
+} material_layer;
 
 /* Normal detail: height x pattern above the surface, in units of the object's radius. */
-typedef struct bump {
+typedef struct material_bump {
     uint32_t parts;
     pattern pattern;
     float height, step; /* step: how far apart the differences are taken, well under a feature */
-} bump;
+} material_bump;
 
 enum { LAYERS = 10, BUMPS = 3 };
 
-struct scn_material {
+struct scene_material {
     int layers, bumps;
-    layer layer[LAYERS];
-    bump bump[BUMPS];
+    material_layer layer[LAYERS];
+    material_bump bump[BUMPS];
     bool embossed; /* a photographed ground has normal detail */
     bool smudged;  /* roughness varies by itself */
     pattern smudge;
@@ -45,10 +45,10 @@ struct scn_material {
 };
 
 /* A random material for this mesh (its parts and references). NULL when memory ran out. */
-scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *traits);
+scene_material *material_random(rng *r, const triangle_mesh *mesh, const shape_traits *traits);
 
 /* Lays photographed textures on some of the material's grounds, or on none. They must outlive it. */
-void material_wear(scn_material *material, const scn_textures *textures, rng *r);
+void material_apply_textures(scene_material *material, const scene_textures *textures, rng *r);
 
 /* Where a material is looked up. */
 typedef struct material_points {
@@ -57,9 +57,10 @@ typedef struct material_points {
     uint8_t part[LANES];
 } material_points;
 
-void material_eval(const scn_material *material, const material_points *at, lanes *albedo, float roughness[LANES]);
+void material_eval(const scene_material *material, const material_points *at, lanes *albedo, float roughness[LANES]);
 
 /* Differences d[0], d[1] of the normal detail's height a unit length along two unit tangents. */
-void material_slope(const scn_material *material, const material_points *at, const lanes tangent[2], float d[2][LANES]);
+void material_slope(const scene_material *material, const material_points *at, const lanes tangent[2],
+                    float d[2][LANES]);
 
 #endif

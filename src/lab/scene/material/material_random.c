@@ -11,8 +11,8 @@ static const uint32_t ALL_PARTS = 0xffffffffu;
 /* What the steps of making one material share. */
 typedef struct maker {
     rng *r;
-    scn_material *out;
-    const scn_mesh *mesh;
+    scene_material *out;
+    const triangle_mesh *mesh;
     bool mirrored;
     int parts;
     vec3 palette[PALETTE];
@@ -53,7 +53,7 @@ static vec3 shade_of(maker *m, vec3 colour, float strength)
     float light = expf(strength * rng_normal(m->r)), tint = 0.25f * strength;
     real *channel[] = {&colour.x, &colour.y, &colour.z};
     for (int k = 0; k < 3; k++)
-        *channel[k] = clamp_to(0.008f, 0.95f, *channel[k] * light * (1 + tint * rng_normal(m->r)));
+        *channel[k] = clamp(*channel[k] * light * (1 + tint * rng_normal(m->r)), 0.008f, 0.95f);
     return colour;
 }
 
@@ -62,15 +62,15 @@ static pattern pattern_between(maker *m, pattern_kind kind, float low, float hig
     return pattern_random(m->r, kind, scale_between(m, low, high), m->mesh, m->mirrored);
 }
 
-static paint plain_paint(maker *m, vec3 colour)
+static material_paint plain_paint(maker *m, vec3 colour)
 {
-    return (paint){.colours = 1, .colour = {colour}, .roughness = paint_gloss(m)};
+    return (material_paint){.colours = 1, .colour = {colour}, .roughness = paint_gloss(m)};
 }
 
 /* Almost plain: shades of one colour, as hand-painted or worn surfaces have. */
-static paint shaded_paint(maker *m, vec3 colour)
+static material_paint shaded_paint(maker *m, vec3 colour)
 {
-    paint p = plain_paint(m, colour);
+    material_paint p = plain_paint(m, colour);
     p.colours = 2;
     p.colour[1] = shade_of(m, colour, rng_range(m->r, 0.1f, 0.6f));
     p.mix = pattern_between(m, chance(m, 0.75f) ? PATTERN_FBM : PATTERN_TURBULENCE, 1, 12);
@@ -79,12 +79,12 @@ static paint shaded_paint(maker *m, vec3 colour)
 }
 
 /* Wood, marble, granite, scales: two or three colours through one strong pattern. */
-static paint patterned_paint(maker *m)
+static material_paint patterned_paint(maker *m)
 {
     static const pattern_kind KINDS[] = {PATTERN_FBM,     PATTERN_FBM,   PATTERN_TURBULENCE,  PATTERN_CELLS,
                                          PATTERN_STRIPES, PATTERN_RINGS, PATTERN_MARBLE,      PATTERN_CELL_EDGES,
                                          PATTERN_MARBLE,  PATTERN_BANDS, PATTERN_CELL_VALUES, PATTERN_GRADIENT};
-    paint p = {.colours = 2 + rng_below(m->r, 2), .roughness = paint_gloss(m)};
+    material_paint p = {.colours = 2 + rng_below(m->r, 2), .roughness = paint_gloss(m)};
     vec3 first = any_colour(m);
     bool kin = chance(m, 0.55f); /* shades of one colour rather than several */
     for (int i = 0; i < 3; i++)
@@ -101,7 +101,7 @@ static paint patterned_paint(maker *m)
     return p;
 }
 
-static paint any_paint(maker *m)
+static material_paint any_paint(maker *m)
 {
     float kind = rng_uniform(m->r);
     if (kind < 0.55f) return plain_paint(m, any_colour(m));
@@ -109,13 +109,13 @@ static paint any_paint(maker *m)
     return patterned_paint(m);
 }
 
-static void add_layer(maker *m, uint32_t parts, const pattern *mask, float opacity, paint p)
+static void add_layer(maker *m, uint32_t parts, const pattern *mask, float opacity, material_paint p)
 {
-    scn_material *out = m->out;
+    scene_material *out = m->out;
     if (out->layers == LAYERS) return;
-    p.roughness = min_of(1, max_of(0.1f, p.roughness));
-    layer *l = &out->layer[out->layers++];
-    *l = (layer){.parts = parts, .everywhere = mask == NULL, .opacity = opacity, .paint = p};
+    p.roughness = clamp(p.roughness, 0.1f, 1);
+    material_layer *l = &out->layer[out->layers++];
+    *l = (material_layer){.parts = parts, .everywhere = mask == NULL, .opacity = opacity, .paint = p};
     if (mask) l->mask = *mask;
 }
 
@@ -183,17 +183,17 @@ static void add_wear(maker *m)
     pattern_threshold(&where, share, scratched ? 0.2f : width);
     float hue = rng_range(m->r, 0.05f, 0.12f), saturation = rng_range(m->r, 0.1f, 0.5f);
     vec3 colour = chance(m, 0.5f) ? colour_hsv(hue, saturation, 0.35f) : any_colour(m);
-    paint p = plain_paint(m, colour);
+    material_paint p = plain_paint(m, colour);
     p.roughness = scratched ? any_gloss(m) : rng_range(m->r, 0.6f, 1);
     add_layer(m, ALL_PARTS, &where, rng_range(m->r, 0.2f, 0.7f), p);
 }
 
 static void add_bump(maker *m, const pattern *p, float frequency, float slope, uint32_t parts)
 {
-    scn_material *out = m->out;
+    scene_material *out = m->out;
     if (out->bumps == BUMPS) return;
-    out->bump[out->bumps++] =
-        (bump){.parts = parts, .pattern = *p, .height = slope / frequency, .step = min_of(0.01f, 0.08f / frequency)};
+    out->bump[out->bumps++] = (material_bump){
+        .parts = parts, .pattern = *p, .height = slope / frequency, .step = min_of(0.01f, 0.08f / frequency)};
 }
 
 /* Grain, dents, scales, hammer marks, cloth: slopes from faint to strong. */
@@ -215,8 +215,8 @@ static void add_grain(maker *m)
 /* The border of a painted region, carved or raised. */
 static void emboss_top_layer(maker *m)
 {
-    scn_material *out = m->out;
-    const layer *l = &out->layer[out->layers - 1];
+    scene_material *out = m->out;
+    const material_layer *l = &out->layer[out->layers - 1];
     if (l->everywhere) return;
     pattern p = l->mask;
     float frequency = vec3_length(p.frame.row[0]), middle = 0.5f * (p.low + p.high);
@@ -252,7 +252,7 @@ static void make_material(maker *m)
     }
 }
 
-scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *traits)
+scene_material *material_random(rng *r, const triangle_mesh *mesh, const shape_traits *traits)
 {
     maker m = {.r = r, .out = calloc(1, sizeof *m.out), .mesh = mesh, .parts = traits->parts};
     if (!m.out) return NULL;
@@ -263,11 +263,11 @@ scn_material *material_random(rng *r, const scn_mesh *mesh, const shape_traits *
     return m.out;
 }
 
-void material_wear(scn_material *material, const scn_textures *textures, rng *r)
+void material_apply_textures(scene_material *material, const scene_textures *textures, rng *r)
 {
     bool worn = rng_uniform(r) < 0.75f; /* the rest stay procedural */
     for (int i = 0; worn && i < material->layers; i++) {
-        layer *l = &material->layer[i];
+        material_layer *l = &material->layer[i];
         if (!l->everywhere || (i > 0 && rng_uniform(r) < 0.3f)) continue;
         bool turned = rng_uniform(r) < 0.5f;
         l->paint.photographed =

@@ -8,8 +8,8 @@
 
 static float channel(float hue, float saturation, float value, float offset)
 {
-    float k = fmodf(offset + 6 * hue, 6), ramp = min_of(1, max_of(0, min_of(k, 4 - k)));
-    return min_of(0.95f, max_of(0.01f, srgb_decode(value * (1 - saturation * ramp))));
+    float k = fmodf(offset + 6 * hue, 6), ramp = clamp(min_of(k, 4 - k), 0, 1);
+    return clamp(srgb_decode(value * (1 - saturation * ramp)), 0.01f, 0.95f);
 }
 
 vec3 colour_hsv(float hue, float saturation, float value)

@@ -8,7 +8,7 @@
 
 static float wave(float x)
 {
-    return 0.5f + 0.5f * sinf(6.2831853f * x);
+    return 0.5f + 0.5f * sinf(2 * PI * x);
 }
 
 /* Lines of text on the plane the surface faces most. */
@@ -115,7 +115,7 @@ static float plain_value(const pattern *p, vec3 q, vec3 facing)
     case PATTERN_RINGS:
         return wave(hypotf(q.x, q.z) + 0.15f * q.y);
     case PATTERN_CHECKS:
-        return 0.5f + 0.5f * sinf(3.1415927f * q.x) * sinf(3.1415927f * q.y) * sinf(3.1415927f * (q.z + 0.5f));
+        return 0.5f + 0.5f * sinf(PI * q.x) * sinf(PI * q.y) * sinf(PI * (q.z + 0.5f));
     case PATTERN_LETTERS:
         return letters(p, q, facing);
     case PATTERN_BANDS:
@@ -150,7 +150,7 @@ void pattern_values(const pattern *p, const lanes *reference, const lanes *facin
         out[i] = smooth_step(p->low, p->high, out[i]);
 }
 
-static void choose_centres(rng *r, pattern *p, const scn_mesh *mesh)
+static void choose_centres(rng *r, pattern *p, const triangle_mesh *mesh)
 {
     p->centres = 1 + rng_below(r, PATTERN_CENTRES);
     p->offset = (vec3){0, 0, 0};
@@ -166,7 +166,7 @@ static void choose_centres(rng *r, pattern *p, const scn_mesh *mesh)
     }
 }
 
-pattern pattern_random(rng *r, pattern_kind kind, float frequency, const scn_mesh *mesh, bool mirrored)
+pattern pattern_random(rng *r, pattern_kind kind, float frequency, const triangle_mesh *mesh, bool mirrored)
 {
     pattern p = {.kind = kind, .mirrored = mirrored, .low = 0, .high = 1, .seed = rng_u32(r)};
     p.octaves = 1 + rng_below(r, 4);

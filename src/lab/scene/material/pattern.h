@@ -49,7 +49,7 @@ void pattern_values(const pattern *p, const lanes *reference, const lanes *facin
 
 /* A random pattern of a kind, with features of about 1/frequency of the object's radius; centres are taken among the
  * mesh's vertices. Its low and high leave the raw value's whole range. */
-pattern pattern_random(rng *r, pattern_kind kind, float frequency, const scn_mesh *mesh, bool mirrored);
+pattern pattern_random(rng *r, pattern_kind kind, float frequency, const triangle_mesh *mesh, bool mirrored);
 
 /* Sets low and high for two regions with a border of this width (in raw values), the second covering roughly `share`.
  */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Photographed materials that tile, from a folder: albedo with, where the folder has them, roughness and normal detail.
  *
- *     scn_textures textures;
- *     status s = scn_textures_read("materials", &textures);
- *     scn_object_wear(&object, &textures, seed, index);    the object points into the textures from now on
+ *     scene_textures textures;
+ *     status s = scene_textures_read("materials", &textures);
+ *     scene_object_apply_textures(&object, &textures, seed, index);    the object points into the textures from now on
  *     ...
- *     scn_textures_free(&textures);
+ *     scene_textures_free(&textures);
  */
 #ifndef MERLIN_LAB_SCENE_MATERIAL_TEXTURE_H
 #define MERLIN_LAB_SCENE_MATERIAL_TEXTURE_H
@@ -16,22 +16,22 @@
 #include "mesh/mesh.h"
 
 /* Each image is one tile, repeated without end; u runs right and v up, both in the tile's widths. */
-typedef struct scn_texture {
+typedef struct scene_texture {
     img albedo;    /* 3 channels, linear */
     img roughness; /* 1 channel; empty: the paint's own */
     img slope;     /* 2 channels, how steeply the height rises along u and v; empty: flat */
-} scn_texture;
+} scene_texture;
 
-typedef struct scn_textures {
-    scn_texture *texture;
+typedef struct scene_textures {
+    scene_texture *texture;
     size_t count;
     skipped_files skipped; /* pictures of formats that are not read */
-} scn_textures;
+} scene_textures;
 
 /* How a texture lies in the material's solid space: on three planes across each other, blended by the surface's
  * direction. */
 typedef struct texture_place {
-    const scn_texture *texture; /* NULL: none */
+    const scene_texture *texture; /* NULL: none */
     mat3 turn;
     float scale; /* tiles' widths per unit length */
     vec3 offset; /* tiles' widths */
@@ -43,12 +43,12 @@ typedef struct texture_place {
  * brick/albedo.png, are one material a folder. A picture without such a word is an albedo alone; other maps (height,
  * metalness, ...) are passed over. Tiles are shrunk to at most 512 pixels a side. MERLIN_BAD_INPUT if there is no
  * albedo at all. */
-status scn_textures_read(const char *folder, scn_textures *out);
-void scn_textures_free(scn_textures *textures);
+status scene_textures_read(const char *folder, scene_textures *out);
+void scene_textures_free(scene_textures *textures);
 
 /* Most objects are given textures for their grounds, chosen and laid by (seed, index); painted regions stay over them.
  * The textures must outlive the object. Call it once. */
-void scn_object_wear(scn_object *object, const scn_textures *textures, uint64_t seed, uint64_t index);
+void scene_object_apply_textures(scene_object *object, const scene_textures *textures, uint64_t seed, uint64_t index);
 
 /* At a reference point; facing is the reference surface's normal. The texture must have the map asked for. */
 vec3 texture_albedo(const texture_place *place, vec3 reference, vec3 facing);

@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "image/formats/kind.h"
+#include "image/formats/img_format.h"
 #include "image/read/read.h"
 #include "image/resize.h"
 #include "lab/scene/material/texture.h"
@@ -130,13 +130,13 @@ static status slopes(const source *s, const img *normal, img *out)
     for (size_t i = 0; i < pixels; i++) {
         const float *n = normal->data + 3 * i;
         float z = max_of(0.05f, 2 * n[2] - 1);
-        out->data[2 * i] = clamp_to(-STEEPEST, STEEPEST, -(2 * n[0] - 1) / z);
-        out->data[2 * i + 1] = clamp_to(-STEEPEST, STEEPEST, -down * (2 * n[1] - 1) / z);
+        out->data[2 * i] = clamp(-(2 * n[0] - 1) / z, -STEEPEST, STEEPEST);
+        out->data[2 * i + 1] = clamp(-down * (2 * n[1] - 1) / z, -STEEPEST, STEEPEST);
     }
     return OK;
 }
 
-static status read_map(const source *s, scn_texture *out)
+static status read_map(const source *s, scene_texture *out)
 {
     if (s->kind == MAP_ALBEDO) return read_tile(s, &out->albedo);
     if (s->kind == MAP_ROUGHNESS) return read_tile(s, &out->roughness);
@@ -147,7 +147,7 @@ static status read_map(const source *s, scn_texture *out)
     return st;
 }
 
-static void free_texture(scn_texture *t)
+static void free_texture(scene_texture *t)
 {
     img_free(&t->albedo);
     img_free(&t->roughness);
@@ -163,9 +163,9 @@ static source *partner(source *all, size_t count, const source *albedo, map_kind
     return NULL;
 }
 
-static status read_material(source *all, size_t count, const source *albedo, scn_texture *out)
+static status read_material(source *all, size_t count, const source *albedo, scene_texture *out)
 {
-    *out = (scn_texture){0};
+    *out = (scene_texture){0};
     const source *rough = partner(all, count, albedo, MAP_ROUGHNESS), *normal = partner(all, count, albedo, MAP_NORMAL);
     if (!normal) normal = partner(all, count, albedo, MAP_NORMAL_DOWN);
     status s = read_map(albedo, out);
@@ -175,7 +175,7 @@ static status read_material(source *all, size_t count, const source *albedo, scn
     return s;
 }
 
-static status read_materials(source *all, size_t count, const char *folder, scn_textures *out)
+static status read_materials(source *all, size_t count, const char *folder, scene_textures *out)
 {
     out->texture = calloc(count + 1, sizeof *out->texture);
     if (!out->texture) return fail(MERLIN_NO_MEMORY, "out of memory for the materials of %s", folder);
@@ -216,9 +216,9 @@ static status keep_pictures(char **names, size_t *count, const char *folder, ski
     return s;
 }
 
-status scn_textures_read(const char *folder, scn_textures *out)
+status scene_textures_read(const char *folder, scene_textures *out)
 {
-    *out = (scn_textures){0};
+    *out = (scene_textures){0};
     char **names;
     size_t count;
     status s = file_list_deep(folder, NULL, &names, &count);
@@ -231,15 +231,15 @@ status scn_textures_read(const char *folder, scn_textures *out)
     if (s == OK) s = read_materials(all, count, folder, out);
     free(all);
     file_list_free(names, count);
-    if (s != OK) scn_textures_free(out);
+    if (s != OK) scene_textures_free(out);
     return s;
 }
 
-void scn_textures_free(scn_textures *textures)
+void scene_textures_free(scene_textures *textures)
 {
     for (size_t i = 0; i < textures->count; i++)
         free_texture(&textures->texture[i]);
     free(textures->texture);
     skipped_free(&textures->skipped);
-    *textures = (scn_textures){0};
+    *textures = (scene_textures){0};
 }

@@ -10,9 +10,9 @@
 /* Streams of random numbers, apart from those of other steps. */
 enum { STREAM_CHOICE = 0x5ca1ab40 };
 
-static status read_one(const char *path, const char *folder, scn_models *out)
+static status read_one(const char *path, const char *folder, scene_models *out)
 {
-    status s = scn_model_read(path, &out->at[out->count]);
+    status s = scene_model_read(path, &out->at[out->count]);
     if (s == OK) {
         out->count++;
         return OK;
@@ -22,12 +22,12 @@ static status read_one(const char *path, const char *folder, scn_models *out)
     return skipped_add(&out->skipped, inside + strspn(inside, "/"), why ? why + 2 : status_message());
 }
 
-status scn_models_read(const char *folder, scn_models *out)
+status scene_models_read(const char *folder, scene_models *out)
 {
     static const char *const endings[] = {".ply", ".obj", ".gltf", ".glb", NULL};
     char **names;
     size_t count;
-    *out = (scn_models){0};
+    *out = (scene_models){0};
     status s = file_list_deep(folder, endings, &names, &count);
     if (s != OK) return s;
     out->at = calloc(count + 1, sizeof *out->at);
@@ -37,28 +37,28 @@ status scn_models_read(const char *folder, scn_models *out)
     if (s == OK && out->count == 0)
         s = fail(MERLIN_BAD_INPUT, "%s holds no meshes that can be read (.ply, .obj, .gltf, .glb)", folder);
     file_list_free(names, count);
-    if (s != OK) scn_models_free(out);
+    if (s != OK) scene_models_free(out);
     return s;
 }
 
-void scn_models_free(scn_models *models)
+void scene_models_free(scene_models *models)
 {
     for (size_t i = 0; i < models->count; i++)
-        scn_model_free(models->at[i]);
+        scene_model_free(models->at[i]);
     free(models->at);
     skipped_free(&models->skipped);
-    *models = (scn_models){0};
+    *models = (scene_models){0};
 }
 
-bool scn_models_chosen(uint64_t seed, uint64_t index, float share)
+bool scene_models_chosen(uint64_t seed, uint64_t index, float share)
 {
     rng r = rng_at(seed, index, STREAM_CHOICE);
     return rng_uniform(&r) < share;
 }
 
-status scn_object_from_models(const scn_models *models, uint64_t seed, uint64_t index, float fov, scn_object *out)
+status scene_object_from_models(const scene_models *models, uint64_t seed, uint64_t index, float fov, scene_object *out)
 {
     rng r = rng_at(seed, index, STREAM_CHOICE + 1);
-    const scn_model *model = models->at[rng_below(&r, (int)models->count)];
-    return scn_object_from_deformed(model, seed, index, fov, out);
+    const scene_model *model = models->at[rng_below(&r, (int)models->count)];
+    return scene_object_from_deformed(model, seed, index, fov, out);
 }

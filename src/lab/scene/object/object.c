@@ -7,7 +7,7 @@
 #include "lab/scene/object/pose.h"
 #include "lab/scene/scene.h"
 #include "lab/scene/shape/mesh_deform.h"
-#include "mesh/read/mesh_file.h"
+#include "mesh/read/mesh_read.h"
 
 /* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
 enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, STREAM_DEFORM };
@@ -19,35 +19,35 @@ static status check_fov(float fov)
 }
 
 /* Poses the mesh, finishes it and gives it a material; the object takes over the mesh's arrays. */
-static status complete(scn_mesh *mesh, const shape_traits *traits, uint64_t seed, uint64_t index, float fov,
-                       scn_object *out)
+static status complete(triangle_mesh *mesh, const shape_traits *traits, uint64_t seed, uint64_t index, float fov,
+                       scene_object *out)
 {
     if (!mesh->failed) mesh_normalize(mesh);
     rng pose = rng_at(seed, index, STREAM_POSE), material = rng_at(seed, index, STREAM_MATERIAL);
     if (!mesh->failed) pose_object(&pose, mesh, traits, fov);
     status s = mesh_finish(mesh, traits->crease_cosine);
     if (s != OK) return s;
-    *out = (scn_object){.vertex_count = mesh->vertex_count,
-                        .triangle_count = mesh->triangle_count,
-                        .material = material_random(&material, mesh, traits),
-                        .shape = traits->name};
+    *out = (scene_object){.vertex_count = mesh->vertex_count,
+                          .triangle_count = mesh->triangle_count,
+                          .material = material_random(&material, mesh, traits),
+                          .shape = traits->name};
     if (!out->material) return fail(MERLIN_NO_MEMORY, "no memory for a material");
     out->position = mesh->position;
     out->normal = mesh->normal;
     out->reference = mesh->reference;
     out->triangle = mesh->triangle;
     out->part = mesh->part;
-    *mesh = (scn_mesh){0};
+    *mesh = (triangle_mesh){0};
     return OK;
 }
 
-status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object *out)
+status scene_object_generate(uint64_t seed, uint64_t index, float fov, scene_object *out)
 {
-    *out = (scn_object){0};
+    *out = (scene_object){0};
     status s = check_fov(fov);
     if (s != OK) return s;
     rng r = rng_at(seed, index, STREAM_SHAPE);
-    scn_mesh mesh = {0};
+    triangle_mesh mesh = {0};
     shape_traits traits = {0};
     float kind = rng_uniform(&r);
     if (kind < 0.32f)
@@ -65,15 +65,15 @@ status scn_object_generate(uint64_t seed, uint64_t index, float fov, scn_object 
     return s;
 }
 
-struct scn_model {
-    scn_mesh mesh;
+struct scene_model {
+    triangle_mesh mesh;
     int parts;
     char *path;
 };
 
-status scn_model_read(const char *path, scn_model **out)
+status scene_model_read(const char *path, scene_model **out)
 {
-    scn_model *m = calloc(1, sizeof *m);
+    scene_model *m = calloc(1, sizeof *m);
     *out = NULL;
     if (!m || !(m->path = strdup(path))) {
         free(m);
@@ -81,14 +81,14 @@ status scn_model_read(const char *path, scn_model **out)
     }
     status s = mesh_read(path, &m->mesh, &m->parts);
     if (s != OK) {
-        scn_model_free(m);
+        scene_model_free(m);
         return fail_in(s, "%s", path);
     }
     *out = m;
     return OK;
 }
 
-void scn_model_free(scn_model *model)
+void scene_model_free(scene_model *model)
 {
     if (!model) return;
     mesh_free(&model->mesh);
@@ -96,12 +96,12 @@ void scn_model_free(scn_model *model)
     free(model);
 }
 
-status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
+status scene_object_from_model(const scene_model *model, uint64_t seed, uint64_t index, float fov, scene_object *out)
 {
-    *out = (scn_object){0};
+    *out = (scene_object){0};
     status s = check_fov(fov);
     if (s != OK) return s;
-    scn_mesh mesh;
+    triangle_mesh mesh;
     const shape_traits traits = {.name = "mesh", .upright = true, .crease_cosine = 0.6f, .parts = model->parts};
     mesh_copy(&model->mesh, &mesh);
     s = complete(&mesh, &traits, seed, index, fov, out);
@@ -109,13 +109,13 @@ status scn_object_from_model(const scn_model *model, uint64_t seed, uint64_t ind
     return s == OK ? OK : fail_in(s, "%s", model->path);
 }
 
-status scn_object_from_deformed(const scn_model *model, uint64_t seed, uint64_t index, float fov, scn_object *out)
+status scene_object_from_deformed(const scene_model *model, uint64_t seed, uint64_t index, float fov, scene_object *out)
 {
-    *out = (scn_object){0};
+    *out = (scene_object){0};
     status s = check_fov(fov);
     if (s != OK) return s;
     rng r = rng_at(seed, index, STREAM_DEFORM);
-    scn_mesh mesh;
+    triangle_mesh mesh;
     shape_traits traits = {.name = "mesh", .upright = true, .parts = model->parts};
     traits.crease_cosine = rng_range(&r, 0.3f, 0.85f);
     mesh_copy(&model->mesh, &mesh);
@@ -125,13 +125,13 @@ status scn_object_from_deformed(const scn_model *model, uint64_t seed, uint64_t 
     return s == OK ? OK : fail_in(s, "%s", model->path);
 }
 
-void scn_object_wear(scn_object *object, const scn_textures *textures, uint64_t seed, uint64_t index)
+void scene_object_apply_textures(scene_object *object, const scene_textures *textures, uint64_t seed, uint64_t index)
 {
     rng r = rng_at(seed, index, STREAM_TEXTURE);
-    material_wear(object->material, textures, &r);
+    material_apply_textures(object->material, textures, &r);
 }
 
-void scn_object_free(scn_object *object)
+void scene_object_free(scene_object *object)
 {
     free(object->position);
     free(object->normal);
@@ -139,5 +139,5 @@ void scn_object_free(scn_object *object)
     free(object->triangle);
     free(object->part);
     free(object->material);
-    *object = (scn_object){0};
+    *object = (scene_object){0};
 }

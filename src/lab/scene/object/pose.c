@@ -46,7 +46,7 @@ static void mark_triangle(uint8_t *mask, const float a[2], const float b[2], con
 }
 
 /* screen: room for two floats a vertex. */
-static silhouette measure(const scn_mesh *mesh, const pose *at, float tangent, float (*screen)[2])
+static silhouette measure(const triangle_mesh *mesh, const pose *at, float tangent, float (*screen)[2])
 {
     float low_x = 1e9f, high_x = -1e9f, low_y = 1e9f, high_y = -1e9f, nearest = 1e9f;
     const pose to = *at;
@@ -79,10 +79,10 @@ static mat3 choose_rotation(rng *r, const shape_traits *traits)
 {
     if (traits->frontal && rng_uniform(r) < 0.9f) {
         float x = rng_normal(r) * 0.4f, y = rng_normal(r) * 0.4f;
-        return rotation_xyz(x, y, 6.2831853f * rng_uniform(r));
+        return rotation_xyz(x, y, 2 * PI * rng_uniform(r));
     }
     if (traits->upright && rng_uniform(r) < 0.75f) {
-        float yaw = traits->mirrored ? rng_normal(r) * 0.9f : 6.2831853f * rng_uniform(r);
+        float yaw = traits->mirrored ? rng_normal(r) * 0.9f : 2 * PI * rng_uniform(r);
         float pitch = rng_range(r, -0.2f, 0.8f), roll = rng_normal(r) * 0.12f;
         mat3 turn = rotation_xyz(0, yaw, 0), tilt = rotation_xyz(pitch, 0, roll);
         return mat3_product(&tilt, &turn);
@@ -108,7 +108,7 @@ static void improve(pose *at, const silhouette *s, float target, float tangent, 
                 at->stretch.y *= widen;
         }
     }
-    grow = min_of(3, max_of(0.3f, grow));
+    grow = clamp(grow, 0.3f, 3);
     at->stretch = vec3_scale(at->stretch, grow);
     float depth = (1 - s->nearest) * grow;
     if (depth > 1 - NEAREST) at->stretch.z *= 0.97f * (1 - NEAREST) / depth;
@@ -133,7 +133,7 @@ static float badness(const silhouette *s, float target)
     return bad + !in_frame(s) + 2 * (s->nearest < 0.4f);
 }
 
-static pose search(rng *r, const scn_mesh *mesh, const shape_traits *traits, float tangent, float (*screen)[2])
+static pose search(rng *r, const triangle_mesh *mesh, const shape_traits *traits, float tangent, float (*screen)[2])
 {
     pose best = {0};
     float least = 1e9f;
@@ -161,9 +161,9 @@ static void push_to_edge(rng *r, pose *at, const silhouette *s, float tangent)
     *side += (rng_uniform(r) < 0.5f ? 1 + cut - high : -1 - cut - low) * tangent;
 }
 
-void pose_object(rng *r, scn_mesh *mesh, const shape_traits *traits, float fov)
+void pose_object(rng *r, triangle_mesh *mesh, const shape_traits *traits, float fov)
 {
-    float tangent = tanf(0.5f * fov * 0.017453293f), (*screen)[2] = malloc(mesh->vertex_count * sizeof *screen);
+    float tangent = tanf(0.5f * fov * DEGREE), (*screen)[2] = malloc(mesh->vertex_count * sizeof *screen);
     if (!screen) {
         mesh->failed = true;
         return;

@@ -9,6 +9,6 @@
  * silhouette covers 25 to 75 % of the square frame of a camera with this field of view (degrees), within the frame but
  * for one object in twenty, all of it at depth 0.4 or more. Thin things are stretched a little where no size would do.
  */
-void pose_object(rng *r, scn_mesh *mesh, const shape_traits *traits, float fov);
+void pose_object(rng *r, triangle_mesh *mesh, const shape_traits *traits, float fov);
 
 #endif

@@ -10,7 +10,7 @@ static float segment_distance(float x, float y, const float a[2], const float b[
 {
     float dx = b[0] - a[0], dy = b[1] - a[1], length = dx * dx + dy * dy;
     float t = length > 0 ? ((x - a[0]) * dx + (y - a[1]) * dy) / length : 0;
-    t = min_of(1, max_of(0, t));
+    t = clamp(t, 0, 1);
     return hypotf(x - a[0] - t * dx, y - a[1] - t * dy);
 }
 

@@ -21,7 +21,7 @@ static float blob_distance(const blob *b, vec3 p)
         return k * (k - 1) / max_of(vec3_length(c), 1e-6f);
     }
     case BLOB_CAPSULE: {
-        float t = min_of(1, max_of(-1, q.y / s.y)), radius = s.x + (s.z - s.x) * 0.5f * (t + 1);
+        float t = clamp(q.y / s.y, -1, 1), radius = s.x + (s.z - s.x) * 0.5f * (t + 1);
         return vec3_length(vec3_make(q.x, q.y - t * s.y, q.z)) - radius;
     }
     default: {
@@ -114,7 +114,7 @@ static vec3 onto_surface(const field *f, vec3 p)
 }
 
 /* The vertex of a cell: the mean of the places where its edges cross the surface, then moved onto it. */
-static void place_vertex(field *f, scn_mesh *mesh, int i, int j, int k)
+static void place_vertex(field *f, triangle_mesh *mesh, int i, int j, int k)
 {
     float corner[8];
     int inside = 0;
@@ -141,7 +141,7 @@ static void place_vertex(field *f, scn_mesh *mesh, int i, int j, int k)
 }
 
 /* The quad across the lattice edge from `at` along `axis`, if the surface crosses it. */
-static void join_cells(const field *f, scn_mesh *mesh, const int at[3], int axis, uint8_t part)
+static void join_cells(const field *f, triangle_mesh *mesh, const int at[3], int axis, uint8_t part)
 {
     int next[3] = {at[0] + (axis == 0), at[1] + (axis == 1), at[2] + (axis == 2)};
     bool here = f->value[field_index(f, at[0], at[1], at[2])] < 0;
@@ -183,7 +183,7 @@ static void field_bounds(field *f, int cells)
     f->origin = vec3_make(low[0] - 1.5f * f->step, low[1] - 1.5f * f->step, low[2] - 1.5f * f->step);
 }
 
-static void polygonize(field *f, scn_mesh *mesh, uint8_t part)
+static void polygonize(field *f, triangle_mesh *mesh, uint8_t part)
 {
     for (int i = 0; i < f->n[0]; i += BLOCK)
         for (int j = 0; j < f->n[1]; j += BLOCK)
@@ -200,7 +200,7 @@ static void polygonize(field *f, scn_mesh *mesh, uint8_t part)
                     join_cells(f, mesh, (int[3]){i, j, k}, axis, part);
 }
 
-void mesh_add_implicit(scn_mesh *mesh, const implicit *shape, int cells, uint8_t part)
+void mesh_add_implicit(triangle_mesh *mesh, const implicit *shape, int cells, uint8_t part)
 {
     field f = {.shape = shape};
     field_bounds(&f, cells);

@@ -30,6 +30,6 @@ float implicit_distance(const implicit *shape, vec3 p);
 
 /* Adds the surface with about `cells` cells along its longest side (surface nets, Gibson 1998, each vertex then moved
  * onto the surface along the gradient). */
-void mesh_add_implicit(scn_mesh *mesh, const implicit *shape, int cells, uint8_t part);
+void mesh_add_implicit(triangle_mesh *mesh, const implicit *shape, int cells, uint8_t part);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "lab/scene/shape/shape.h"
 
-static void mirror(scn_mesh *mesh)
+static void mirror(triangle_mesh *mesh)
 {
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         mesh->position[i].x = -mesh->position[i].x;
@@ -17,7 +17,7 @@ static void mirror(scn_mesh *mesh)
 }
 
 /* Along axes of its own choice, by up to 1.4 times each. */
-static void stretch(rng *r, scn_mesh *mesh)
+static void stretch(rng *r, triangle_mesh *mesh)
 {
     const mat3 turn = random_rotation(r);
     const vec3 by = {expf(rng_range(r, -0.34f, 0.34f)), expf(rng_range(r, -0.34f, 0.34f)),
@@ -28,7 +28,7 @@ static void stretch(rng *r, scn_mesh *mesh)
     }
 }
 
-void mesh_deform(rng *r, scn_mesh *mesh)
+void mesh_deform(rng *r, triangle_mesh *mesh)
 {
     bool as_it_is = rng_uniform(r) < 1.0f / 3, mirrored = rng_uniform(r) < 0.5f;
     bool stretched = rng_uniform(r) < 0.6f, bent = rng_uniform(r) < 0.5f, dented = rng_uniform(r) < 0.4f;

@@ -7,6 +7,6 @@
 #include "mesh/mesh.h"
 
 /* Positions alone: the material keeps to the shape that was (references). The file's normals are dropped. */
-void mesh_deform(rng *r, scn_mesh *mesh);
+void mesh_deform(rng *r, triangle_mesh *mesh);
 
 #endif

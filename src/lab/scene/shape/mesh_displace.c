@@ -5,7 +5,7 @@
 
 #include "lab/scene/shape/noise.h"
 
-void mesh_displace(scn_mesh *mesh, uint32_t first, float amount, float frequency, int octaves, uint32_t seed)
+void mesh_displace(triangle_mesh *mesh, uint32_t first, float amount, float frequency, int octaves, uint32_t seed)
 {
     if (mesh->failed || amount == 0) return;
     vec3 *normal = malloc(mesh->vertex_count * sizeof *normal);

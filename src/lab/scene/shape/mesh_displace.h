@@ -6,6 +6,6 @@
 #include "mesh/mesh.h"
 
 /* Moves vertices from `first` on along their smooth normals by amount x smooth solid noise of this frequency. */
-void mesh_displace(scn_mesh *mesh, uint32_t first, float amount, float frequency, int octaves, uint32_t seed);
+void mesh_displace(triangle_mesh *mesh, uint32_t first, float amount, float frequency, int octaves, uint32_t seed);
 
 #endif

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "mesh/mesh.h"
+#include "lab/scene/shape/mesh_solids.h"
 
 typedef struct lattice {
-    scn_mesh *mesh;
+    triangle_mesh *mesh;
     uint32_t *vertex; /* (n + 1)^3, UINT32_MAX where there is none yet */
     int n;
     vec3 (*map)(const void *context, vec3 cube);
@@ -44,7 +44,7 @@ static void lattice_face(lattice *l, int axis, int side, uint8_t part)
     }
 }
 
-void mesh_add_cube_grid(scn_mesh *mesh, int n, uint8_t part, vec3 (*map)(const void *context, vec3 cube),
+void mesh_add_cube_grid(triangle_mesh *mesh, int n, uint8_t part, vec3 (*map)(const void *context, vec3 cube),
                         const void *context)
 {
     size_t points = (size_t)(n + 1) * (size_t)(n + 1) * (size_t)(n + 1);
@@ -61,26 +61,26 @@ void mesh_add_cube_grid(scn_mesh *mesh, int n, uint8_t part, vec3 (*map)(const v
     free(l.vertex);
 }
 
-void profile_add(profile *p, float radius, float height)
+void lathe_profile_add(lathe_profile *p, float radius, float height)
 {
     if (p->count == PROFILE_POINTS) return;
     p->radius[p->count] = max_of(radius, 0);
     p->height[p->count++] = height;
 }
 
-void profile_add_corner(profile *p, const float from[2], const float corner[2], const float to[2], float round,
-                        int steps)
+void lathe_profile_add_corner(lathe_profile *p, const float from[2], const float corner[2], const float to[2],
+                              float round, int steps)
 {
     float a = hypotf(from[0] - corner[0], from[1] - corner[1]), b = hypotf(to[0] - corner[0], to[1] - corner[1]);
     float ta = min_of(0.5f, round / max_of(a, 1e-6f)), tb = min_of(0.5f, round / max_of(b, 1e-6f));
     for (int i = 0; i <= steps; i++) {
         float t = (float)i / (float)steps, wa = (1 - t) * (1 - t) * ta, wb = t * t * tb, wc = 1 - wa - wb;
-        profile_add(p, wa * from[0] + wc * corner[0] + wb * to[0], wa * from[1] + wc * corner[1] + wb * to[1]);
+        lathe_profile_add(p, wa * from[0] + wc * corner[0] + wb * to[0], wa * from[1] + wc * corner[1] + wb * to[1]);
     }
 }
 
 /* One ring of the lathe; on the axis all its vertices are the same one. */
-static void lathe_ring(scn_mesh *mesh, float radius, float height, int segments, uint32_t *ring)
+static void lathe_ring(triangle_mesh *mesh, float radius, float height, int segments, uint32_t *ring)
 {
     if (radius < 1e-5f) {
         uint32_t pole = mesh_add_vertex(mesh, vec3_make(0, height, 0));
@@ -89,12 +89,12 @@ static void lathe_ring(scn_mesh *mesh, float radius, float height, int segments,
         return;
     }
     for (int j = 0; j < segments; j++) {
-        float angle = 6.2831853f * (float)j / (float)segments;
+        float angle = 2 * PI * (float)j / (float)segments;
         ring[j] = mesh_add_vertex(mesh, vec3_make(radius * cosf(angle), height, radius * sinf(angle)));
     }
 }
 
-static void join_rings(scn_mesh *mesh, const uint32_t *below, const uint32_t *above, int segments, uint8_t part)
+static void join_rings(triangle_mesh *mesh, const uint32_t *below, const uint32_t *above, int segments, uint8_t part)
 {
     for (int j = 0; j < segments; j++) {
         int k = (j + 1) % segments;
@@ -107,7 +107,7 @@ static void join_rings(scn_mesh *mesh, const uint32_t *below, const uint32_t *ab
     }
 }
 
-void mesh_add_lathe(scn_mesh *mesh, const profile *p, int segments, uint8_t part)
+void mesh_add_lathe(triangle_mesh *mesh, const lathe_profile *p, int segments, uint8_t part)
 {
     uint32_t *rings = calloc((size_t)segments * (size_t)(p->count + 1), sizeof *rings);
     if (!rings) {
@@ -128,7 +128,7 @@ static vec3 path_direction(const vec3 *path, int count, int i)
     return vec3_normalize(vec3_sub(path[after], path[before]));
 }
 
-void mesh_add_tube(scn_mesh *mesh, const vec3 *path, const float *radius, int count, int segments, float aspect,
+void mesh_add_tube(triangle_mesh *mesh, const vec3 *path, const float *radius, int count, int segments, float aspect,
                    uint8_t part)
 {
     uint32_t *rings = malloc(2 * (size_t)segments * sizeof *rings), *ring = rings;
@@ -148,7 +148,7 @@ void mesh_add_tube(scn_mesh *mesh, const vec3 *path, const float *radius, int co
         bool end = i != at;
         uint32_t pole = end ? mesh_add_vertex(mesh, path[at]) : 0;
         for (int j = 0; j < segments; j++) {
-            float angle = -6.2831853f * (float)j / (float)segments, r = radius[at];
+            float angle = -2 * PI * (float)j / (float)segments, r = radius[at];
             vec3 p = vec3_fma(vec3_fma(path[at], r * cosf(angle), side), r * aspect * sinf(angle), up);
             ring[j] = end ? pole : mesh_add_vertex(mesh, p);
         }

@@ -4,10 +4,11 @@
 #include "lab/scene/shape/mesh_displace.h"
 
 #include "base/number.h"
+#include "lab/scene/shape/mesh_solids.h"
 
 mat3 random_rotation(rng *r)
 {
-    float u = rng_uniform(r), a = 6.2831853f * rng_uniform(r), b = 6.2831853f * rng_uniform(r);
+    float u = rng_uniform(r), a = 2 * PI * rng_uniform(r), b = 2 * PI * rng_uniform(r);
     float x = sqrtf(1 - u) * sinf(a), y = sqrtf(1 - u) * cosf(a), z = sqrtf(u) * sinf(b), w = sqrtf(u) * cosf(b);
     return (mat3){{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
                    {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
@@ -16,7 +17,7 @@ mat3 random_rotation(rng *r)
 
 vec3 random_direction(rng *r)
 {
-    float z = rng_range(r, -1, 1), a = 6.2831853f * rng_uniform(r), s = sqrtf(max_of(0, 1 - z * z));
+    float z = rng_range(r, -1, 1), a = 2 * PI * rng_uniform(r), s = sqrtf(max_of(0, 1 - z * z));
     return vec3_make(s * cosf(a), s * sinf(a), z);
 }
 
@@ -26,7 +27,7 @@ vec3 random_between(rng *r, float low, float high)
     return vec3_make(x, y, z);
 }
 
-void random_dents(rng *r, scn_mesh *mesh, uint32_t first, float amount, float low, float high)
+void random_dents(rng *r, triangle_mesh *mesh, uint32_t first, float amount, float low, float high)
 {
     float frequency = rng_range(r, low, high);
     int octaves = 1 + rng_below(r, 3);
@@ -58,12 +59,12 @@ static vec3 map_ellipsoid(const void *context, vec3 cube)
     return vec3_mul(vec3_normalize(d), *radii);
 }
 
-void add_ellipsoid(scn_mesh *mesh, int n, vec3 radii, uint8_t part)
+void add_ellipsoid(triangle_mesh *mesh, int n, vec3 radii, uint8_t part)
 {
     mesh_add_cube_grid(mesh, n, part, map_ellipsoid, &radii);
 }
 
-void bend_and_twist(rng *r, scn_mesh *mesh, uint32_t first)
+void bend_and_twist(rng *r, triangle_mesh *mesh, uint32_t first)
 {
     float twist = rng_uniform(r) < 0.4f ? rng_normal(r) * 0.7f : 0,
           bend = rng_uniform(r) < 0.5f ? rng_normal(r) * 0.5f : 0;
@@ -74,7 +75,7 @@ void bend_and_twist(rng *r, scn_mesh *mesh, uint32_t first)
         p = vec3_make(scale * (p.x * cosf(a) - p.z * sinf(a)), p.y, scale * (p.x * sinf(a) + p.z * cosf(a)));
         if (fabsf(bend) > 1e-3f) {
             /* the y axis becomes an arc of this curvature; beyond 0.8 it would fold onto itself */
-            float k = min_of(0.8f, max_of(-0.8f, bend)), angle = k * p.y, radius = 1 / k - p.x;
+            float k = clamp(bend, -0.8f, 0.8f), angle = k * p.y, radius = 1 / k - p.x;
             p = vec3_make(1 / k - radius * cosf(angle), radius * sinf(angle), p.z);
         }
         mesh->position[i] = p;

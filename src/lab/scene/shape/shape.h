@@ -16,11 +16,11 @@ typedef struct shape_traits {
     int parts;
 } shape_traits;
 
-void shape_union(rng *r, scn_mesh *mesh, shape_traits *traits);        /* after Xu et al. 2018 */
-void shape_blend(rng *r, scn_mesh *mesh, shape_traits *traits);        /* smooth implicit bodies and figures */
-void shape_revolution(rng *r, scn_mesh *mesh, shape_traits *traits);   /* vessels, lathed solids, fruit, rings */
-void shape_superquadric(rng *r, scn_mesh *mesh, shape_traits *traits); /* superellipsoids and rounded polyhedra */
-void shape_relief(rng *r, scn_mesh *mesh, shape_traits *traits);       /* plaques, coins, tiles, folded sheets */
+void shape_union(rng *r, triangle_mesh *mesh, shape_traits *traits);        /* after Xu et al. 2018 */
+void shape_blend(rng *r, triangle_mesh *mesh, shape_traits *traits);        /* smooth implicit bodies and figures */
+void shape_revolution(rng *r, triangle_mesh *mesh, shape_traits *traits);   /* vessels, lathed solids, fruit, rings */
+void shape_superquadric(rng *r, triangle_mesh *mesh, shape_traits *traits); /* superellipsoids and rounded polyhedra */
+void shape_relief(rng *r, triangle_mesh *mesh, shape_traits *traits);       /* plaques, coins, tiles, folded sheets */
 
 /* A uniformly random rotation (Shoemake 1992). */
 mat3 random_rotation(rng *r);
@@ -34,12 +34,12 @@ mat3 rotation_xyz(float x, float y, float z);
 mat3 mat3_product(const mat3 *a, const mat3 *b);
 
 /* An ellipsoid with these radii about the origin, n x n squares a side. */
-void add_ellipsoid(scn_mesh *mesh, int n, vec3 radii, uint8_t part);
+void add_ellipsoid(triangle_mesh *mesh, int n, vec3 radii, uint8_t part);
 
 /* Displaces by `amount` at a frequency drawn from [low, high). */
-void random_dents(rng *r, scn_mesh *mesh, uint32_t first, float amount, float low, float high);
+void random_dents(rng *r, triangle_mesh *mesh, uint32_t first, float amount, float low, float high);
 
 /* Bends, twists and tapers positions from vertex `first` on, along y, by random small or large amounts. */
-void bend_and_twist(rng *r, scn_mesh *mesh, uint32_t first);
+void bend_and_twist(rng *r, triangle_mesh *mesh, uint32_t first);
 
 #endif

@@ -124,7 +124,7 @@ static figure add_figure(rng *r, implicit *shape)
 }
 
 /* Balls set halfway into the head, found by walking from its centre outward to the surface. */
-static void add_eyes(rng *r, scn_mesh *mesh, const implicit *shape, const figure *f)
+static void add_eyes(rng *r, triangle_mesh *mesh, const implicit *shape, const figure *f)
 {
     float out = rng_range(r, 0.3f, 0.75f), up = rng_range(r, 0, 0.5f),
           size = f->head_radii.x * rng_range(r, 0.1f, 0.32f);
@@ -139,7 +139,7 @@ static void add_eyes(rng *r, scn_mesh *mesh, const implicit *shape, const figure
     }
 }
 
-void shape_blend(rng *r, scn_mesh *mesh, shape_traits *traits)
+void shape_blend(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     implicit shape = {0};
     bool is_figure = rng_uniform(r) < 0.6f;

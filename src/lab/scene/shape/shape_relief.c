@@ -81,7 +81,7 @@ static relief random_relief(rng *r)
 }
 
 /* The flat back: a fan around the middle, and the wall up to the front's border. */
-static void close_back(scn_mesh *mesh, const relief *f, const uint32_t *grid)
+static void close_back(triangle_mesh *mesh, const relief *f, const uint32_t *grid)
 {
     enum { BORDER = 4 * GRID };
     int side = GRID + 1;
@@ -105,7 +105,7 @@ static void close_back(scn_mesh *mesh, const relief *f, const uint32_t *grid)
     }
 }
 
-void shape_relief(rng *r, scn_mesh *mesh, shape_traits *traits)
+void shape_relief(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     relief f = random_relief(r);
     uint32_t grid[(GRID + 1) * (GRID + 1)];
@@ -120,7 +120,7 @@ void shape_relief(rng *r, scn_mesh *mesh, shape_traits *traits)
             mesh_add_quad(mesh, at[0], at[1], at[GRID + 2], at[GRID + 1], 0);
         }
     close_back(mesh, &f, grid);
-    float k = min_of(1, max_of(-1, f.curl));
+    float k = clamp(f.curl, -1, 1);
     for (uint32_t i = 0; i < mesh->vertex_count && fabsf(k) > 0.02f; i++) { /* bent over an upright cylinder */
         vec3 p = mesh->position[i];
         float angle = k * p.x, radius = 1 / k + p.z;

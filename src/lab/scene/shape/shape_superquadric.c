@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Superellipsoids (Barr 1981) and rounded convex polyhedra, bent, twisted and dented. */
 #include "base/number.h"
+#include "lab/scene/shape/mesh_solids.h"
 #include "lab/scene/shape/shape.h"
 
 enum { PLANES = 24 };
@@ -59,7 +60,7 @@ static radial random_polyhedron(rng *r)
     return s;
 }
 
-void shape_superquadric(rng *r, scn_mesh *mesh, shape_traits *traits)
+void shape_superquadric(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     bool polyhedron = rng_uniform(r) < 0.4f;
     radial s = polyhedron ? random_polyhedron(r) : random_superellipsoid(r);

@@ -2,6 +2,7 @@
 /* Unions of 1 to 9 cubes, ellipsoids and cylinders, each deformed by a random smooth height field (Xu et al. 2018);
  * one in ten put together as a toy on wheels. */
 #include "base/number.h"
+#include "lab/scene/shape/mesh_solids.h"
 #include "lab/scene/shape/shape.h"
 
 typedef struct rounded_box {
@@ -27,7 +28,7 @@ static vec3 map_rounded_box(const void *context, vec3 cube)
     return vec3_of(p);
 }
 
-static void add_box(rng *r, scn_mesh *mesh, int n, uint8_t part)
+static void add_box(rng *r, triangle_mesh *mesh, int n, uint8_t part)
 {
     rounded_box box = {{rng_range(r, 0.45f, 1), rng_range(r, 0.45f, 1), rng_range(r, 0.45f, 1)}, 0};
     float smallest = min_of(box.half.x, min_of(box.half.y, box.half.z)), u = rng_uniform(r);
@@ -35,28 +36,28 @@ static void add_box(rng *r, scn_mesh *mesh, int n, uint8_t part)
     mesh_add_cube_grid(mesh, n, part, map_rounded_box, &box);
 }
 
-static void add_cylinder(rng *r, scn_mesh *mesh, int n, uint8_t part)
+static void add_cylinder(rng *r, triangle_mesh *mesh, int n, uint8_t part)
 {
     float h = rng_range(r, 0.5f, 1.1f), bottom = rng_range(r, 0.35f, 0.9f), u = rng_uniform(r);
     float top = rng_uniform(r) < 0.6f ? bottom : bottom * rng_range(r, 0.1f, 1);
     float round = 0.02f + 0.35f * u * u;
     float points[4][2] = {{0, -h}, {bottom, -h}, {top, h}, {0, h}};
-    profile p = {0};
+    lathe_profile p = {0};
     int flat = n / 2;
     for (int i = 0; i < flat; i++)
-        profile_add(&p, bottom * 0.5f * (float)i / (float)flat, -h);
-    profile_add_corner(&p, points[0], points[1], points[2], round, 5);
+        lathe_profile_add(&p, bottom * 0.5f * (float)i / (float)flat, -h);
+    lathe_profile_add_corner(&p, points[0], points[1], points[2], round, 5);
     for (int i = 1; i < n; i++) {
         float t = 0.5f * round / h + (1 - round / h) * (float)i / (float)n;
-        profile_add(&p, bottom + (top - bottom) * t, -h + 2 * h * t);
+        lathe_profile_add(&p, bottom + (top - bottom) * t, -h + 2 * h * t);
     }
-    profile_add_corner(&p, points[1], points[2], points[3], round, 5);
+    lathe_profile_add_corner(&p, points[1], points[2], points[3], round, 5);
     for (int i = flat - 1; i >= 0; i--)
-        profile_add(&p, top * 0.5f * (float)i / (float)flat, h);
+        lathe_profile_add(&p, top * 0.5f * (float)i / (float)flat, h);
     mesh_add_lathe(mesh, &p, 4 * n, part);
 }
 
-static void add_primitive(rng *r, scn_mesh *mesh, int n, uint8_t part)
+static void add_primitive(rng *r, triangle_mesh *mesh, int n, uint8_t part)
 {
     switch (rng_below(r, 3)) {
     case 0:
@@ -72,7 +73,7 @@ static void add_primitive(rng *r, scn_mesh *mesh, int n, uint8_t part)
     }
 }
 
-static void place_box(scn_mesh *mesh, vec3 half, float round, vec3 at, uint8_t part)
+static void place_box(triangle_mesh *mesh, vec3 half, float round, vec3 at, uint8_t part)
 {
     rounded_box box = {half, round * min_of(half.x, min_of(half.y, half.z))};
     uint32_t first = mesh->vertex_count;
@@ -82,16 +83,16 @@ static void place_box(scn_mesh *mesh, vec3 half, float round, vec3 at, uint8_t p
 }
 
 /* A disc lying in the xy plane, its edge rounded and its face a little hollow. */
-static void place_wheel(scn_mesh *mesh, float radius, float width, vec3 at, uint8_t part)
+static void place_wheel(triangle_mesh *mesh, float radius, float width, vec3 at, uint8_t part)
 {
     float hub = 0.6f * radius, points[4][2] = {{hub, -width}, {radius, -width}, {radius, width}, {hub, width}};
-    profile p = {0};
-    profile_add(&p, 0, -0.8f * width);
-    profile_add(&p, 0.9f * hub, -0.8f * width);
-    profile_add_corner(&p, points[0], points[1], points[2], 0.5f * width, 5);
-    profile_add_corner(&p, points[1], points[2], points[3], 0.5f * width, 5);
-    profile_add(&p, 0.9f * hub, 0.8f * width);
-    profile_add(&p, 0, 0.8f * width);
+    lathe_profile p = {0};
+    lathe_profile_add(&p, 0, -0.8f * width);
+    lathe_profile_add(&p, 0.9f * hub, -0.8f * width);
+    lathe_profile_add_corner(&p, points[0], points[1], points[2], 0.5f * width, 5);
+    lathe_profile_add_corner(&p, points[1], points[2], points[3], 0.5f * width, 5);
+    lathe_profile_add(&p, 0.9f * hub, 0.8f * width);
+    lathe_profile_add(&p, 0, 0.8f * width);
     uint32_t first = mesh->vertex_count;
     mat3 on_its_side = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
     mesh_add_lathe(mesh, &p, 48, part);
@@ -99,7 +100,7 @@ static void place_wheel(scn_mesh *mesh, float radius, float width, vec3 at, uint
 }
 
 /* A toy car, engine or cart along x: a body, perhaps a cabin and a bonnet, four or six wheels (part 2). */
-static void vehicle(rng *r, scn_mesh *mesh, shape_traits *traits)
+static void vehicle(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     float length = rng_range(r, 0.7f, 1), height = rng_range(r, 0.15f, 0.35f), width = rng_range(r, 0.3f, 0.5f);
     float round = rng_range(r, 0.05f, 0.9f), wheel = rng_range(r, 0.14f, 0.26f), thick = rng_range(r, 0.04f, 0.1f);
@@ -121,7 +122,7 @@ static void vehicle(rng *r, scn_mesh *mesh, shape_traits *traits)
     *traits = (shape_traits){.name = "union", .upright = true, .crease_cosine = 0.75f, .parts = 4};
 }
 
-void shape_union(rng *r, scn_mesh *mesh, shape_traits *traits)
+void shape_union(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     if (rng_uniform(r) < 0.1f) {
         vehicle(r, mesh, traits);

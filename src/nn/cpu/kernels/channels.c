@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 #include "nn/cpu/kernels/runs.h"
 
@@ -178,7 +179,7 @@ void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y)
 #pragma omp parallel for schedule(static) if (cpu_count(x) > CPU_PARALLEL_MIN)
     for (size_t at = 0; at < pixels; at += step) {
         float room_x[TILE], room_gate[TILE], room_y[TILE];
-        size_t n = cpu_min(step, pixels - at);
+        size_t n = min_size(step, pixels - at);
         const float *p = cpu_load(x, at * channels, n * channels, room_x), *g = cpu_load(gate, at, n, room_gate);
         float *q = cpu_target(y, at * channels, room_y, false);
         weigh(p, g, q, n, channels);
@@ -194,7 +195,7 @@ void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_te
 #pragma omp parallel for schedule(static) if (cpu_count(x) > CPU_PARALLEL_MIN)
     for (size_t at = 0; at < pixels; at += step) {
         float room_x[TILE], room_dy[TILE], room_gate[TILE], room_out[TILE];
-        size_t n = cpu_min(step, pixels - at);
+        size_t n = min_size(step, pixels - at);
         const float *d = cpu_load(dy, at * channels, n * channels, room_dy);
         if (dx && dx->data) {
             float *out = cpu_target(dx, at * channels, room_out, accumulate_x);

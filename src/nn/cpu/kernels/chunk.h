@@ -22,11 +22,6 @@ enum {
     CPU_PARALLEL_MIN = 16384, /* below this many elements waking a second thread costs more than it saves */
 };
 
-static inline size_t cpu_min(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 static inline size_t cpu_element_size(const cpu_tensor *t)
 {
     return t->type == NN_FLOAT32 ? sizeof(float) : sizeof(uint16_t);

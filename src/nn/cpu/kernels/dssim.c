@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 
 enum { REACH = 5, WINDOW = 2 * REACH + 1 };
@@ -98,15 +99,15 @@ static void find_rectangle(const operands *o, const float *mask, plane *p)
         if (first == width) continue;
         while (row[end - 1] == 0)
             end--;
-        top = cpu_min(top, y);
+        top = min_size(top, y);
         bottom = y + 1;
-        left = cpu_min(left, first);
+        left = min_size(left, first);
         right = right > end ? right : end;
     }
-    p->top = less(cpu_min(top, bottom));
-    p->left = less(cpu_min(left, right));
-    p->height = bottom ? cpu_min(bottom + REACH, height) - p->top : 0;
-    p->width = bottom ? cpu_min(right + REACH, width) - p->left : 0;
+    p->top = less(min_size(top, bottom));
+    p->left = less(min_size(left, right));
+    p->height = bottom ? min_size(bottom + REACH, height) - p->top : 0;
+    p->width = bottom ? min_size(right + REACH, width) - p->left : 0;
 }
 
 /* Where the plane's values of a tensor begin: those of a row lie t->c apart. */

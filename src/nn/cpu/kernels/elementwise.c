@@ -4,8 +4,9 @@
 
 #include <assert.h>
 
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
-#include "nn/cpu/kernels/functions.h"
+#include "nn/cpu/kernels/fast_math.h"
 
 /* out[i] = f(a[i], b[i]); the coefficients are f's own. */
 typedef struct affine {
@@ -19,7 +20,7 @@ static void map(const cpu_tensor *a, const cpu_tensor *b, cpu_tensor *out, bool 
 #pragma omp parallel for schedule(static) if (count > CPU_PARALLEL_MIN)
     for (size_t at = 0; at < count; at += CPU_CHUNK) {
         float room_a[CPU_CHUNK], room_b[CPU_CHUNK], room_out[CPU_CHUNK];
-        size_t n = cpu_min(CPU_CHUNK, count - at);
+        size_t n = min_size(CPU_CHUNK, count - at);
         const float *p = cpu_load(a, at, n, room_a);
         const float *q = b ? cpu_load(b, at, n, room_b) : NULL;
         float *r = cpu_target(out, at, room_out, accumulate);
@@ -34,7 +35,7 @@ void cpu_cast(const cpu_tensor *x, cpu_tensor *y, bool accumulate)
 #pragma omp parallel for schedule(static) if (count > CPU_PARALLEL_MIN)
     for (size_t at = 0; at < count; at += CPU_CHUNK) {
         float room[CPU_CHUNK];
-        size_t n = cpu_min(CPU_CHUNK, count - at);
+        size_t n = min_size(CPU_CHUNK, count - at);
         cpu_store(y, at, n, cpu_load(x, at, n, room), accumulate);
     }
 }
@@ -44,7 +45,7 @@ void cpu_zero(cpu_tensor *x)
     size_t bytes = cpu_count(x) * cpu_element_size(x), block = 1 << 16;
 #pragma omp parallel for schedule(static) if (bytes > 16 * block)
     for (size_t at = 0; at < bytes; at += block)
-        memset((char *)x->data + at, 0, cpu_min(block, bytes - at));
+        memset((char *)x->data + at, 0, min_size(block, bytes - at));
 }
 
 /* NaN passes, so that a broken run shows. */

@@ -6,6 +6,7 @@
 
 #include <float.h>
 
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 #include "optics/camera.h"
 #include "optics/light.h"
@@ -28,7 +29,7 @@ static camera camera_of(const cpu_render_view *view, size_t sample, float *relie
     *relief = 1;
     if (!view->lens.data) return c;
     const float *lens = (const float *)view->lens.data + 3 * sample;
-    c.fov = 2 * atanf(lens[0]) / CAMERA_RADIAN;
+    c.fov = 2 * atanf(lens[0]) / DEGREE;
     c.slant = (camera_slant){lens[1], lens[2]};
     *relief = lens[0] / camera_tangent(view->fov);
     return c;
@@ -83,12 +84,6 @@ static inline shade_input pixel_of(const span *s, size_t i)
 }
 
 /* To [0, 1]; what is not a number becomes 0. */
-static inline float clip(float x)
-{
-    float positive = x > 0 ? x : 0;
-    return positive < 1 ? positive : 1;
-}
-
 /* The loop bodies are functions of their own because gcc vectorizes a loop only if nothing declared inside it has its
  * address taken. */
 static inline void render_pixel(const span *s, size_t i, float *y)
@@ -96,9 +91,9 @@ static inline void render_pixel(const span *s, size_t i, float *y)
     shade_input in = pixel_of(s, i);
     vec3 radiance = shade_point(&in);
     float m = s->mask[i];
-    y[0] = clip(radiance.x) * m;
-    y[1] = clip(radiance.y) * m;
-    y[2] = clip(radiance.z) * m;
+    y[0] = clamp(radiance.x, 0, 1) * m;
+    y[1] = clamp(radiance.y, 0, 1) * m;
+    y[2] = clamp(radiance.z, 0, 1) * m;
 }
 
 static void render_span(const span *row, float *y)
@@ -190,7 +185,7 @@ void cpu_render_backward(const cpu_render_tensors *maps, const cpu_render_view *
         clear_row(&dmaps->depth, row, accumulate.depth);
         for (size_t first = 0; first < s.count; first += GRADIENT_TILE) {
             gradient_tile tile;
-            size_t n = cpu_min(GRADIENT_TILE, s.count - first), pixel = s.at + first;
+            size_t n = min_size(GRADIENT_TILE, s.count - first), pixel = s.at + first;
             differentiate(&s, first, n, (const float *)dy->data + 3 * pixel, &tile);
             store(&dmaps->albedo, pixel, n, tile.albedo, accumulate.albedo);
             store(&dmaps->normal, pixel, n, tile.normal, accumulate.normal);

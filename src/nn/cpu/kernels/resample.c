@@ -4,6 +4,7 @@
 
 #include <assert.h>
 
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 
 /* A row is worked through in tiles of columns that keep the buffers in the first cache; with the neighbour on either
@@ -58,7 +59,7 @@ void cpu_upsample_bilinear(const cpu_tensor *x, cpu_tensor *y)
     for (size_t row = 0; row < rows; row++)
         for (size_t at = 0; at < width; at += step) {
             float v[COLUMNS], room[2 * COLUMNS];
-            size_t n = cpu_min(step, width - at), to = 2 * (row * width + at) * channels;
+            size_t n = min_size(step, width - at), to = 2 * (row * width + at) * channels;
             mix_rows(x, row, at, n, v);
             float *out = cpu_target(y, to, room, false);
             mix_columns(v, out, n, channels);
@@ -86,7 +87,7 @@ static void gather_rows(const cpu_tensor *dy, size_t row, size_t at, size_t n, f
 {
     size_t channels = (size_t)dy->c, width = (size_t)dy->w, height = (size_t)dy->h / 2;
     size_t sample = row / height, i = row % height;
-    size_t first = at > 0 ? 2 * at - 1 : 0, last = cpu_min(2 * (at + n), width - 1);
+    size_t first = at > 0 ? 2 * at - 1 : 0, last = min_size(2 * (at + n), width - 1);
     size_t count = (last - first + 1) * channels;
     reach r = reach_of(i, height);
     memset(v, 0, (2 * n + 2) * channels * sizeof *v);
@@ -124,7 +125,7 @@ void cpu_upsample_bilinear_backward(const cpu_tensor *dy, cpu_tensor *dx, bool a
     for (size_t row = 0; row < rows; row++)
         for (size_t at = 0; at < width; at += step) {
             float v[2 * COLUMNS], room[COLUMNS];
-            size_t n = cpu_min(step, width - at), to = (row * width + at) * channels;
+            size_t n = min_size(step, width - at), to = (row * width + at) * channels;
             gather_rows(dy, row, at, n, v);
             float *q = cpu_target(dx, to, room, accumulate);
             gather_columns(v, q, at, n, width, channels);

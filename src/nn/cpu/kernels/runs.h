@@ -4,6 +4,7 @@
 #define MERLIN_NN_CPU_KERNELS_RUNS_H
 
 #include "base/inline.h"
+#include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 
 typedef struct run_copy { /* in elements */
@@ -51,7 +52,7 @@ static inline void copy_runs(const cpu_tensor *x, size_t from_at, cpu_tensor *y,
         float room[CPU_CHUNK];
         for (size_t i = 0; i < copy->count; i++)
             for (size_t c = 0; c < copy->run; c += CPU_CHUNK) {
-                size_t n = cpu_min(CPU_CHUNK, copy->run - c);
+                size_t n = min_size(CPU_CHUNK, copy->run - c);
                 const float *p = cpu_load(x, from_at + i * copy->from_stride + c, n, room);
                 cpu_store(y, to_at + i * copy->to_stride + c, n, p, true);
             }

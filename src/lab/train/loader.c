@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/train/loader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "lab/train/mixture.h"
+#include "lab/train/motion.h"
+#include "lab/train/prepare.h"
+#include "optics/orientation.h"
+
+enum { POINT_BUFFERS = 12, BOTH_BUFFERS = 15, BUFFERS = 24 };
+
+/* What one thread does for one place of the batch. */
+typedef struct item {
+    train_view view;
+    size_t sample;
+    uint64_t presentation;
+} item;
+
+struct train_loader {
+    train_source source;
+    bool validation;
+    size_t batch;
+    item *items;
+    float *light_code;     /* the program's input "light", or NULL */
+    float *spare[BUFFERS]; /* for targets the model has no input for */
+};
+
+/* Where the program wants each of the view's fields; a vector's pixels count as one. */
+typedef struct field {
+    const char *input; /* NULL: none */
+    int channels;
+    bool vector;
+    size_t offset; /* of the pointer in train_view */
+} field;
+
+static const field fields[BUFFERS] = {
+    {"albedo_true", 3, false, offsetof(train_view, albedo)},
+    {"normal_true", 3, false, offsetof(train_view, normal)},
+    {"roughness_true", 1, false, offsetof(train_view, roughness)},
+    {"depth_true", 1, false, offsetof(train_view, depth)},
+    {"mask", 1, false, offsetof(train_view, mask)},
+    {"direct_true", 3, false, offsetof(train_view, direct)},
+    {"indirect_true", 3, false, offsetof(train_view, indirect)},
+    {"image", 3, false, offsetof(train_view, image)},
+    {"reconstruction_true", 3, false, offsetof(train_view, reconstruction)},
+    {"relit_true", 3, false, offsetof(train_view, relit)},
+    {"loss_mask", 1, false, offsetof(train_view, loss_mask)},
+    {"light_position", 3, true, offsetof(train_view, light)},
+    /* for both lights only: */
+    {NULL, 3, false, offsetof(train_view, env)},
+    {"environment_true", MODEL_SH, true, offsetof(train_view, sh)},
+    {NULL, MODEL_SH, true, offsetof(train_view, target_sh)},
+    /* for any light only: */
+    {NULL, TRAIN_LAMPS *TRAIN_LAMP_VALUES, false, offsetof(train_view, lamps)},
+    {NULL, 3, false, offsetof(train_view, photo)},
+    {"sight", MODEL_SIGHT, false, offsetof(train_view, sight)},
+    {"lens", 3, true, offsetof(train_view, lens_values)},
+    {"lights_true", MODEL_LIGHTS, true, offsetof(train_view, lights)},
+    {"lamp_weight", 1, true, offsetof(train_view, lamp_weight)},
+    {"rest_weight", 1, true, offsetof(train_view, rest_weight)},
+    {"visibility_true", 1, false, offsetof(train_view, visibility)},
+    {"visibility_weight", 1, false, offsetof(train_view, visibility_weight)},
+};
+
+/* How many of them a kind of training has. */
+static int buffer_count(const train_source *source)
+{
+    if (source->any) return BUFFERS;
+    return source->environment ? BOTH_BUFFERS : POINT_BUFFERS;
+}
+
+static status connect(train_loader *l, nn_program *program, int which)
+{
+    const field *d = &fields[which];
+    size_t size = (size_t)l->source.config->size;
+    size_t stride = (size_t)d->channels * (d->vector ? 1 : size * size);
+    float *data = d->input ? nn_input_data(program, d->input) : NULL;
+    if (!data) data = l->spare[which] = calloc(l->batch * stride, sizeof *data);
+    if (!data) return fail(MERLIN_NO_MEMORY, "out of memory for a batch of %zu", l->batch);
+    for (size_t i = 0; i < l->batch; i++) {
+        float *place = data + i * stride;
+        memcpy((char *)&l->items[i].view + d->offset, &place, sizeof place);
+        l->items[i].view.size = (int)size;
+    }
+    return OK;
+}
+
+status train_loader_new(nn_program *program, const train_source *source, train_loader **out)
+{
+    *out = NULL;
+    train_loader *l = calloc(1, sizeof *l);
+    if (!l) return fail(MERLIN_NO_MEMORY, "out of memory for a batch");
+    l->source = *source;
+    l->batch = (size_t)source->batch;
+    l->items = calloc(l->batch, sizeof *l->items);
+    status s = l->items ? OK : fail(MERLIN_NO_MEMORY, "out of memory for a batch");
+    for (int i = 0; i < buffer_count(source) && s == OK; i++)
+        s = connect(l, program, i);
+    l->light_code = nn_input_data(program, "light");
+    if (s != OK) {
+        train_loader_free(l);
+        return s;
+    }
+    *out = l;
+    return OK;
+}
+
+void train_loader_free(train_loader *l)
+{
+    if (!l) return;
+    for (int i = 0; i < BUFFERS; i++)
+        free(l->spare[i]);
+    free(l->items);
+    free(l);
+}
+
+/* Validation's draws do not depend on the configuration, so that its losses compare between runs. */
+static uint64_t seed_of(const train_loader *l)
+{
+    return l->validation ? 0 : (uint64_t)l->source.config->seed;
+}
+
+/* The target's environment is another sample's, turned and exposed at random. Draws are of a stream of their own, so
+ * that the point setting's stay what they are. */
+static status draw_environments(const train_loader *l, const item *it, train_lighting *out)
+{
+    const train_source *from = &l->source;
+    rng r = rng_at(seed_of(l), 2 * it->presentation + l->validation, TRAIN_STREAM_ENVIRONMENT);
+    size_t first = l->validation ? from->training_count : 0;
+    size_t count = l->validation ? train_dataset_count(from->data) - first : from->training_count;
+    size_t other = first + (size_t)rng_below(&r, (int)count);
+    int orientation = rng_below(&r, ORIENTATIONS);
+    out->strength = train_draw_strength(&r);
+    float strength = train_draw_target_strength(l->validation ? 0 : (float)from->config->dark_target, &r);
+    status s = train_dataset_sh(from->data, other, orientation, out->target_sh);
+    for (int i = 0; i < MODEL_SH; i++)
+        out->target_sh[i / 3][i % 3] *= strength;
+    return s;
+}
+
+/* What configurations may ask for beside: draws of streams of their own, so that the others stay what they are. */
+static status add_faults(const train_loader *l, const item *it, train_camera *lens)
+{
+    const train_config *c = l->source.config;
+    rng faults = rng_at((uint64_t)c->seed, it->presentation, TRAIN_STREAM_FAULTS);
+    rng moving = rng_at((uint64_t)c->seed, it->presentation, TRAIN_STREAM_MOTION);
+    train_camera_degrade(c, &faults, lens);
+    train_motion motion = train_motion_draw(c, &moving);
+    return train_motion_moves(&motion) ? train_move(&it->view, &motion) : OK;
+}
+
+/* Under any light. Validation has the mixtures of every kind, too, by a perfect camera that exposes and balances. */
+static status fill_any(train_loader *l, item *it)
+{
+    const train_config *c = l->source.config;
+    rng r = rng_at(seed_of(l), it->presentation, l->validation ? TRAIN_STREAM_VALIDATION : TRAIN_STREAM_PRESENTATION);
+    rng light = rng_at(seed_of(l), 2 * it->presentation + l->validation, TRAIN_STREAM_MIXTURE);
+    const vec3 target = train_draw_light(&r);
+    int orientation = l->validation ? 0 : rng_below(&r, ORIENTATIONS);
+    train_camera lens = l->validation ? train_camera_perfect() : train_camera_draw(c, &r);
+    status s = train_dataset_get(l->source.data, it->sample, orientation, &it->view);
+    if (s == OK && !l->validation) s = add_faults(l, it, &lens);
+    if (s != OK) return s;
+    train_mixture mixture;
+    train_mixture_draw(&it->view, &light, &lens, &mixture);
+    if (!l->validation) train_camera_add_response(&light, &lens);
+    return train_prepare_any(&it->view, &mixture, &lens, target, &r);
+}
+
+static status fill_item(void *context, size_t i)
+{
+    train_loader *l = context;
+    item *it = &l->items[i];
+    if (l->source.any) return fill_any(l, it);
+    const train_config *c = l->source.config;
+    rng r = rng_at(seed_of(l), it->presentation, l->validation ? TRAIN_STREAM_VALIDATION : TRAIN_STREAM_PRESENTATION);
+    train_lighting lighting = {.target = train_draw_light(&r)};
+    int orientation = l->validation ? 0 : rng_below(&r, ORIENTATIONS);
+    train_camera lens = l->validation ? train_camera_perfect() : train_camera_draw(c, &r);
+    status s = train_dataset_get(l->source.data, it->sample, orientation, &it->view);
+    if (s == OK && l->source.environment) s = draw_environments(l, it, &lighting);
+    if (s == OK && !l->validation) s = add_faults(l, it, &lens);
+    return s == OK ? train_prepare(&it->view, l->source.input_global, &lens, &lighting, &r) : s;
+}
+
+static status fill(train_loader *l)
+{
+    status s = parallel_try(l->batch, fill_item, l);
+    if (s != OK) return s;
+    size_t code = l->source.environment ? 3 + MODEL_SH : 3;
+    for (size_t i = 0; i < l->batch && l->light_code; i++) {
+        memcpy(l->light_code + code * i, l->items[i].view.light, 3 * sizeof(float));
+        if (l->source.environment)
+            memcpy(l->light_code + code * i + 3, l->items[i].view.target_sh, MODEL_SH * sizeof(float));
+    }
+    return OK;
+}
+
+status train_loader_training(train_loader *l, train_order *order, uint64_t first)
+{
+    l->validation = false;
+    for (size_t i = 0; i < l->batch; i++) {
+        l->items[i].presentation = first + i;
+        l->items[i].sample = train_order_at(order, first + i);
+    }
+    return fill(l);
+}
+
+status train_loader_validation(train_loader *l, size_t first)
+{
+    l->validation = true;
+    for (size_t i = 0; i < l->batch; i++) {
+        l->items[i].presentation = first + i;
+        l->items[i].sample = l->source.training_count + first + i;
+    }
+    return fill(l);
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* Fills a training program's inputs with one batch, samples in parallel. */
+#ifndef MERLIN_LAB_TRAIN_LOADER_H
+#define MERLIN_LAB_TRAIN_LOADER_H
+
+#include "lab/train/dataset.h"
+#include "lab/train/schedule.h"
+#include "lab/train/train_config.h"
+
+typedef struct train_loader train_loader;
+
+/* The samples of the data set before `training_count` are for training, the others are held back. */
+typedef struct train_source {
+    train_dataset *data;
+    const train_config *config;
+    bool input_global;
+    bool environment; /* setting B; the data set has environments */
+    bool any;         /* any light, any lens; the data set has lamps */
+    size_t training_count;
+    int batch; /* of the program: a rank's share of the configuration's */
+} train_source;
+
+status train_loader_new(nn_program *program, const train_source *source, train_loader **out);
+void train_loader_free(train_loader *l);
+
+/* Presentations first .. first + batch - 1, turned and photographed at random from (seed, presentation). */
+status train_loader_training(train_loader *l, train_order *order, uint64_t first);
+/* Held-back samples first .. first + batch - 1 as they are, each under a target light of its own. */
+status train_loader_validation(train_loader *l, size_t first);
+
+#endif

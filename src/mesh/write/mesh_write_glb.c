@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+/* GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer; albedo, a tangent-space normal map and roughness as PNGs
+ * inside. Its roughness is that of docs/conventions.md: both square it to the width of the lobe.
+ *
+ * Vertex normals are the triangles'; the normal map holds what the photometric normals say beyond them, so that a mesh
+ * thinned out later keeps its shading. Tangents run along the picture's rows, x to the right and y up. */
+#include <cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "image/write/write.h"
+#include "mesh/write/mesh_formats.h"
+
+enum { FLOAT = 5126, UNSIGNED_INT = 5125, ARRAY_BUFFER = 34962, ELEMENT_ARRAY_BUFFER = 34963, TRIANGLES = 4 };
+enum { HEADER = 12, CHUNK_HEADER = 8, MOST_PARTS = 8 };
+static const size_t LARGEST_PICTURE = (size_t)1 << 30;
+
+/* One stretch of the buffer and how it is described. */
+typedef struct part {
+    const void *data;
+    size_t size, count;
+    const char *type; /* NULL: a picture */
+    int component, target;
+    float low[3], high[3];
+    bool bounded;
+} part;
+
+typedef struct glb {
+    part parts[MOST_PARTS];
+    int count;
+    float *tangent;
+    char *albedo, *normal, *roughness; /* PNG files in memory, or NULL */
+    int albedo_part, normal_part, roughness_part, tangent_part;
+    double scale; /* of the scene: viewers take a unit for a metre */
+} glb;
+
+/* ---- parts ---- */
+
+static int add_part(glb *g, part p)
+{
+    g->parts[g->count] = p;
+    return g->count++;
+}
+
+static vec3 vertex_normal(const surface_mesh *m, size_t v)
+{
+    return vec3_of(m->normal + 3 * v);
+}
+
+/* x to the right, made perpendicular to the normal. */
+static vec3 tangent_of(vec3 n)
+{
+    vec3 t = vec3_normalize(vec3_make(1 - n.x * n.x, -n.x * n.y, -n.x * n.z));
+    return vec3_dot(t, t) > (real)0.5 ? t : vec3_make(0, 0, -1);
+}
+
+static status add_tangents(glb *g, const surface_mesh *m)
+{
+    g->tangent = malloc(4 * m->vertices * sizeof *g->tangent);
+    if (!g->tangent) return fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", m->vertices);
+    for (size_t v = 0; v < m->vertices; v++) {
+        vec3 t = tangent_of(vertex_normal(m, v));
+        float *to = g->tangent + 4 * v;
+        vec3_put(t, to);
+        to[3] = 1;
+    }
+    g->tangent_part = add_part(g, (part){.data = g->tangent,
+                                         .size = 4 * m->vertices * sizeof(float),
+                                         .count = m->vertices,
+                                         .type = "VEC4",
+                                         .component = FLOAT,
+                                         .target = ARRAY_BUFFER});
+    return OK;
+}
+
+/* Parts 0 to 3: positions with their bounds, normals, texture coordinates, triangles. */
+static void add_geometry(glb *g, const surface_mesh *m)
+{
+    size_t n = m->vertices;
+    part position = {m->position, 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, true};
+    for (int c = 0; c < 3; c++) {
+        position.low[c] = position.high[c] = m->position[c];
+        for (size_t v = 1; v < n; v++) {
+            float x = m->position[3 * v + (size_t)c];
+            if (x < position.low[c]) position.low[c] = x;
+            if (x > position.high[c]) position.high[c] = x;
+        }
+    }
+    add_part(g, position);
+    add_part(g, (part){m->normal, 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
+    add_part(g, (part){m->texture, 2 * n * sizeof(float), n, "VEC2", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
+    add_part(g, (part){m->index,
+                       3 * m->triangles * sizeof *m->index,
+                       3 * m->triangles,
+                       "SCALAR",
+                       UNSIGNED_INT,
+                       ELEMENT_ARRAY_BUFFER,
+                       {0},
+                       {0},
+                       false});
+}
+
+/* ---- pictures ---- */
+
+/* The bytes of a PNG, by way of a temporary file beside the mesh. */
+static status png_bytes(const char *beside, const img *picture, img_encoding encoding, char **bytes, size_t *size)
+{
+    char *name = NULL, *temporary = NULL;
+    if (asprintf(&name, "%s.png", beside) < 0) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    status s = file_temporary(name, &temporary);
+    if (s == OK) {
+        s = img_write_png(temporary, picture, encoding);
+        if (s == OK) s = file_read(temporary, LARGEST_PICTURE, bytes, size);
+        file_discard(temporary);
+    }
+    free(name);
+    return s;
+}
+
+static status add_albedo(glb *g, const char *path, const img *albedo)
+{
+    img color = {0};
+    size_t size = 0;
+    status s = mesh_albedo(albedo, &color);
+    if (s == OK) s = png_bytes(path, &color, IMG_SRGB8, &g->albedo, &size);
+    img_free(&color);
+    if (s == OK) g->albedo_part = add_part(g, (part){.data = g->albedo, .size = size});
+    return s;
+}
+
+static void fill_normal_map(const surface_mesh *m, const mesh_source *from, img *map)
+{
+    size_t count = (size_t)map->width * (size_t)map->height;
+    for (size_t i = 0; i < count; i++) {
+        map->data[3 * i] = map->data[3 * i + 1] = 0.5f;
+        map->data[3 * i + 2] = 1;
+    }
+    for (size_t v = 0; v < m->vertices; v++) {
+        vec3 n = vertex_normal(m, v), t = tangent_of(n), b = vec3_cross(n, t);
+        vec3 wanted = surface_mesh_normal(m, from, v);
+        float *to = map->data + 3 * (size_t)m->pixel[v];
+        to[0] = 0.5f * (float)vec3_dot(wanted, t) + 0.5f;
+        to[1] = 0.5f * (float)vec3_dot(wanted, b) + 0.5f;
+        to[2] = 0.5f * (float)vec3_dot(wanted, n) + 0.5f;
+    }
+}
+
+static status add_normal_map(glb *g, const char *path, const surface_mesh *m, const mesh_source *from)
+{
+    img map = {0};
+    size_t size = 0;
+    status s = img_new(&map, from->normal->width, from->normal->height, 3);
+    if (s != OK) return s;
+    fill_normal_map(m, from, &map);
+    s = png_bytes(path, &map, IMG_LINEAR8, &g->normal, &size);
+    img_free(&map);
+    if (s == OK) g->normal_part = add_part(g, (part){.data = g->normal, .size = size});
+    return s;
+}
+
+/* glTF keeps roughness in green, and in blue what is metal. */
+static status add_roughness(glb *g, const char *path, const img *roughness)
+{
+    img map = {0};
+    size_t size = 0;
+    status s = img_new(&map, roughness->width, roughness->height, 3);
+    if (s != OK) return s;
+    size_t count = (size_t)map.width * (size_t)map.height;
+    for (size_t i = 0; i < count; i++)
+        map.data[3 * i + 1] = roughness->data[i];
+    s = png_bytes(path, &map, IMG_LINEAR8, &g->roughness, &size);
+    img_free(&map);
+    if (s == OK) g->roughness_part = add_part(g, (part){.data = g->roughness, .size = size});
+    return s;
+}
+
+/* ---- the JSON ---- */
+
+static size_t padded(size_t size)
+{
+    return (size + 3) & ~(size_t)3;
+}
+
+static cJSON *add_item(cJSON *array)
+{
+    cJSON *o = cJSON_CreateObject();
+    cJSON_AddItemToArray(array, o);
+    return o;
+}
+
+static void put_bounds(cJSON *accessor, const char *name, const float bound[3])
+{
+    cJSON *a = cJSON_AddArrayToObject(accessor, name);
+    for (int c = 0; c < 3; c++)
+        cJSON_AddItemToArray(a, cJSON_CreateNumber((double)bound[c]));
+}
+
+/* Accessors come first among the parts' numbers, so that an accessor has its view's number. Pictures follow. */
+static void put_parts(cJSON *root, const glb *g)
+{
+    cJSON *views = cJSON_AddArrayToObject(root, "bufferViews"), *accessors = cJSON_AddArrayToObject(root, "accessors");
+    size_t offset = 0;
+    for (int i = 0; i < g->count; i++) {
+        const part *p = &g->parts[i];
+        cJSON *view = add_item(views);
+        cJSON_AddNumberToObject(view, "buffer", 0);
+        cJSON_AddNumberToObject(view, "byteOffset", (double)offset);
+        cJSON_AddNumberToObject(view, "byteLength", (double)p->size);
+        offset += padded(p->size);
+        if (!p->type) continue;
+        cJSON_AddNumberToObject(view, "target", p->target);
+        cJSON *accessor = add_item(accessors);
+        cJSON_AddNumberToObject(accessor, "bufferView", i);
+        cJSON_AddNumberToObject(accessor, "componentType", p->component);
+        cJSON_AddNumberToObject(accessor, "count", (double)p->count);
+        cJSON_AddStringToObject(accessor, "type", p->type);
+        if (p->bounded) {
+            put_bounds(accessor, "min", p->low);
+            put_bounds(accessor, "max", p->high);
+        }
+    }
+    cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
+    cJSON_AddNumberToObject(add_item(buffers), "byteLength", (double)offset);
+}
+
+/* A texture of the picture in that part; does nothing without one. */
+static void put_texture(cJSON *root, cJSON *user, const char *name, int picture)
+{
+    if (picture < 0) return;
+    cJSON *images = cJSON_GetObjectItem(root, "images"), *textures = cJSON_GetObjectItem(root, "textures");
+    if (!images) images = cJSON_AddArrayToObject(root, "images");
+    if (!textures) textures = cJSON_AddArrayToObject(root, "textures");
+    int number = cJSON_GetArraySize(images);
+    cJSON *image = add_item(images);
+    cJSON_AddNumberToObject(image, "bufferView", picture);
+    cJSON_AddStringToObject(image, "mimeType", "image/png");
+    cJSON_AddNumberToObject(add_item(textures), "source", number);
+    cJSON_AddNumberToObject(cJSON_AddObjectToObject(user, name), "index", number);
+}
+
+static void put_material(cJSON *root, const glb *g)
+{
+    cJSON *material = add_item(cJSON_AddArrayToObject(root, "materials"));
+    cJSON_AddStringToObject(material, "name", "surface");
+    cJSON *pbr = cJSON_AddObjectToObject(material, "pbrMetallicRoughness");
+    cJSON_AddNumberToObject(pbr, "metallicFactor", 0);
+    cJSON_AddNumberToObject(pbr, "roughnessFactor", 1);
+    put_texture(root, pbr, "baseColorTexture", g->albedo_part);
+    put_texture(root, pbr, "metallicRoughnessTexture", g->roughness_part);
+    put_texture(root, material, "normalTexture", g->normal_part);
+    cJSON_AddBoolToObject(material, "doubleSided", true);
+}
+
+static void put_scene(cJSON *root, const glb *g)
+{
+    cJSON *asset = cJSON_AddObjectToObject(root, "asset");
+    cJSON_AddStringToObject(asset, "version", "2.0");
+    cJSON_AddStringToObject(asset, "generator", "merlin");
+    cJSON_AddNumberToObject(root, "scene", 0);
+    cJSON *nodes = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "scenes")), "nodes");
+    cJSON_AddItemToArray(nodes, cJSON_CreateNumber(0));
+    cJSON *node = add_item(cJSON_AddArrayToObject(root, "nodes"));
+    cJSON_AddNumberToObject(node, "mesh", 0);
+    cJSON_AddItemToObject(node, "scale", cJSON_CreateDoubleArray((const double[]){g->scale, g->scale, g->scale}, 3));
+    cJSON *primitives = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "meshes")), "primitives");
+    cJSON *primitive = add_item(primitives), *attributes = cJSON_AddObjectToObject(primitive, "attributes");
+    cJSON_AddNumberToObject(attributes, "POSITION", 0);
+    cJSON_AddNumberToObject(attributes, "NORMAL", 1);
+    cJSON_AddNumberToObject(attributes, "TEXCOORD_0", 2);
+    if (g->tangent_part >= 0) cJSON_AddNumberToObject(attributes, "TANGENT", g->tangent_part);
+    cJSON_AddNumberToObject(primitive, "indices", 3);
+    cJSON_AddNumberToObject(primitive, "material", 0);
+    cJSON_AddNumberToObject(primitive, "mode", TRIANGLES);
+}
+
+/* ---- the file ---- */
+
+static void put_u32(FILE *f, size_t x)
+{
+    uint8_t bytes[4] = {(uint8_t)x, (uint8_t)(x >> 8), (uint8_t)(x >> 16), (uint8_t)(x >> 24)};
+    fwrite(bytes, 1, 4, f);
+}
+
+static void put_padded(FILE *f, const void *data, size_t size, int filler)
+{
+    fwrite(data, 1, size, f);
+    for (size_t i = size; i < padded(size); i++)
+        fputc(filler, f);
+}
+
+/* The sizes that stand in the file's head, padded. */
+typedef struct chunks {
+    const glb *g;
+    const char *json;
+    size_t text, binary, total;
+} chunks;
+
+static void write_chunks(FILE *f, const void *context)
+{
+    const chunks *c = context;
+    fputs("glTF", f);
+    put_u32(f, 2);
+    put_u32(f, c->total);
+    put_u32(f, c->text);
+    fputs("JSON", f);
+    put_padded(f, c->json, strlen(c->json), ' ');
+    put_u32(f, c->binary);
+    fwrite("BIN", 1, 4, f);
+    for (int i = 0; i < c->g->count; i++)
+        put_padded(f, c->g->parts[i].data, c->g->parts[i].size, 0);
+}
+
+static status write_file(const char *path, const glb *g, const char *json)
+{
+    chunks c = {.g = g, .json = json, .text = padded(strlen(json))};
+    for (int i = 0; i < g->count; i++)
+        c.binary += padded(g->parts[i].size);
+    c.total = HEADER + 2 * (size_t)CHUNK_HEADER + c.text + c.binary;
+    if (c.total > UINT32_MAX)
+        return fail(MERLIN_CANNOT_WRITE, "cannot write %s: a GLB holds at most 4 GiB; use .ply", path);
+    return file_print(path, write_chunks, &c);
+}
+
+static status assemble(const char *path, const glb *g)
+{
+    cJSON *root = cJSON_CreateObject();
+    put_scene(root, g);
+    put_material(root, g);
+    put_parts(root, g);
+    char *json = cJSON_PrintUnformatted(root);
+    cJSON_Delete(root);
+    if (!json) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
+    status s = write_file(path, g, json);
+    free(json);
+    return s;
+}
+
+status mesh_write_glb(const char *path, const surface_mesh *m, const mesh_source *from)
+{
+    if (m->triangles == 0)
+        return fail(MERLIN_BAD_INPUT,
+                    "cannot write %s: the surface has no triangle; its mask is too thin, or depth jumps everywhere",
+                    path);
+    glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
+    int longest = from->depth->width > from->depth->height ? from->depth->width : from->depth->height;
+    if (!from->camera.perspective) g.scale = 1.0 / longest; /* positions are in pixels */
+    add_geometry(&g, m);
+    status s = from->normal ? add_tangents(&g, m) : OK;
+    if (s == OK && from->albedo) s = add_albedo(&g, path, from->albedo);
+    if (s == OK && from->normal) s = add_normal_map(&g, path, m, from);
+    if (s == OK && from->roughness) s = add_roughness(&g, path, from->roughness);
+    if (s == OK) s = assemble(path, &g);
+    free(g.tangent);
+    free(g.albedo);
+    free(g.normal);
+    free(g.roughness);
+    return s;
+}

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* OBJ with texture coordinates, its material beside it, and the material's albedo texture as PNG. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/text/decimal.h"
+#include "image/write/write.h"
+#include "mesh/write/mesh_formats.h"
+
+/* path with another ending of four characters, malloc'ed. */
+static char *with_ending(const char *path, const char *ending)
+{
+    char *out = strdup(path);
+    if (out) memcpy(out + strlen(out) - 4, ending, 4);
+    return out;
+}
+
+typedef struct obj {
+    const surface_mesh *mesh;
+    const mesh_source *from;
+    const char *material;
+} obj;
+
+static char *put_numbers(char *to, const char *kind, const double *number, int count, int digits)
+{
+    to = stpcpy(to, kind);
+    for (int i = 0; i < count; i++) {
+        *to++ = ' ';
+        to = decimal_put(to, number[i], digits);
+    }
+    *to++ = '\n';
+    return to;
+}
+
+static void print_vertex(FILE *f, const obj *o, size_t v)
+{
+    const float *p = o->mesh->position + 3 * v, *t = o->mesh->texture + 2 * v;
+    vec3 n = surface_mesh_normal(o->mesh, o->from, v);
+    const double place[] = {(double)p[0], (double)p[1], (double)p[2]}, texture[] = {(double)t[0], 1 - (double)t[1]};
+    const double normal[] = {(double)n.x, (double)n.y, (double)n.z};
+    char lines[9 * DECIMAL_ROOM], *end = put_numbers(lines, "v", place, 3, 7);
+    end = put_numbers(end, "vt", texture, 2, 7);
+    end = put_numbers(end, "vn", normal, 3, 5);
+    fwrite(lines, 1, (size_t)(end - lines), f);
+}
+
+/* Places, texture coordinates and normals have the same numbers. */
+static void print_triangle(FILE *f, const uint32_t *corner)
+{
+    char line[10 * DECIMAL_ROOM], *end = stpcpy(line, "f");
+    for (int k = 0; k < 3; k++)
+        for (int same = 0; same < 3; same++) {
+            *end++ = same ? '/' : ' ';
+            end = decimal_put_count(end, corner[k] + 1);
+        }
+    *end++ = '\n';
+    fwrite(line, 1, (size_t)(end - line), f);
+}
+
+static void print_mesh(FILE *f, const void *context)
+{
+    const obj *o = context;
+    const surface_mesh *m = o->mesh;
+    fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", file_name_of(o->material));
+    for (size_t v = 0; v < m->vertices; v++)
+        print_vertex(f, o, v);
+    for (size_t t = 0; t < m->triangles; t++)
+        print_triangle(f, m->index + 3 * t);
+}
+
+static status write_texture(const char *path, const img *albedo)
+{
+    img color = {0};
+    status s = mesh_albedo(albedo, &color);
+    if (s == OK) s = img_write_png(path, &color, IMG_SRGB8);
+    img_free(&color);
+    return s;
+}
+
+static status write_material(const char *path, const char *texture)
+{
+    char *text = NULL;
+    int length = asprintf(&text, "# written by merlin\nnewmtl surface\nKa 0 0 0\n%s\nKs 0 0 0\nillum 1\n%s%s%s",
+                          texture ? "Kd 1 1 1" : "Kd 0.6 0.6 0.6", texture ? "map_Kd " : "",
+                          texture ? file_name_of(texture) : "", texture ? "\n" : "");
+    if (length < 0) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
+    status s = file_write(path, text, (size_t)length);
+    free(text);
+    return s;
+}
+
+/* What the OBJ names is there before the OBJ is. */
+status mesh_write_obj(const char *path, const surface_mesh *m, const mesh_source *from)
+{
+    char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png");
+    status s = material && texture ? OK : fail(MERLIN_NO_MEMORY, "no memory for file names");
+    if (s == OK && from->albedo) s = write_texture(texture, from->albedo);
+    if (s == OK) s = write_material(material, from->albedo ? texture : NULL);
+    if (s == OK) s = file_print(path, print_mesh, &(obj){m, from, material});
+    free(material);
+    free(texture);
+    return s;
+}

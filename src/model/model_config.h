@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* A model's configuration, and as JSON. */
+#ifndef MERLIN_MODEL_MODEL_CONFIG_H
+#define MERLIN_MODEL_MODEL_CONFIG_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+enum { MODEL_LEVELS = 5, MODEL_SH = 27 };
+
+typedef enum model_relight { MODEL_RELIGHT_NETWORK, MODEL_RELIGHT_BRDF } model_relight;
+typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH, MODEL_LIGHT_ANY } model_lighting;
+
+typedef struct model_config {
+    char name[64];
+    bool input_global;     /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
+    int material_decoders; /* 1 or 4 */
+    bool feature_sharing;  /* relighting decoder sees the material decoder's features */
+    bool gated_attention;
+    model_relight relight; /* by network: has a relighting decoder */
+    bool global_illumination;
+    /* the paper's settings A (point) and B (point and environment), or any light and lens */
+    model_lighting lighting;
+    int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
+    int gi_widths[MODEL_LEVELS];
+    int encoder_blocks[MODEL_LEVELS];      /* residual blocks behind each level's convolutions */
+    int material_blocks[MODEL_LEVELS - 1]; /* behind each stage of the material decoders */
+} model_config;
+
+/* Parses JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
+ * range-checked; messages name the key. */
+status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
+/* Reads a file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files
+ * that it names (base/text/json_file.h). */
+status model_config_read(const char *path, model_config *out);
+/* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
+char *model_config_write(const model_config *config);
+
+/* Length of the lighting code: 3 or 30. */
+int model_light_size(const model_config *config);
+
+#endif

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Writes weights as they ship: half floats, but for batch norms, which are a few numbers whose variances span more.
+ *
+ *     const char *const metadata[][2] = {{"config", json}};
+ *     status s = model_export("weights.safetensors", params, metadata, 1);
+ */
+#ifndef MERLIN_MODEL_MODEL_EXPORT_H
+#define MERLIN_MODEL_MODEL_EXPORT_H
+
+#include "nn/nn.h"
+
+/* Writes all parameters under their names, and key, value pairs of metadata; atomically. */
+status model_export(const char *path, nn_params *params, const char *const (*metadata)[2], size_t metadata_count);
+
+#endif
