@@ -38,7 +38,7 @@ static float read_grey(const char *path)
 static void a_program_keeps_its_own_settings_of_libvips(void **state)
 {
     (void)state;
-    assert_int_equal(vips_init("test_start"), 0);
+    assert_int_equal(vips_init("test_vips_start"), 0);
     vips_concurrency_set(THREADS);
     vips_cache_set_max(KEPT);
     write_grey(scratch_path("grey.jpg"), 255);
