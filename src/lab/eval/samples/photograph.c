@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "estimate/relight/maps_surface.h"
 #include "estimate/surface/sight.h"
 #include "image/resize.h"
@@ -36,7 +37,7 @@ status eval_photo_take(const sample *s, const img *radiance, const img *mask, fl
         return st;
     }
     for (size_t i = 0; i < img_value_count(radiance); i++)
-        out->picture.data[i] = mask->data[i / 3] > 0 ? fminf(fmaxf(radiance->data[i] / white, 0), 1) : 0;
+        out->picture.data[i] = mask->data[i / 3] > 0 ? clamp(radiance->data[i] / white, 0, 1) : 0;
     find_frame(out);
     return OK;
 }
