@@ -78,7 +78,7 @@ static int open_descriptor(const char *path)
 status file_check_plain(const char *path)
 {
     struct stat s;
-    if (stat(path, &s) != 0) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
+    if (stat(path, &s) != 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot open %s", path);
     return S_ISREG(s.st_mode) ? OK : fail(MERLIN_BAD_INPUT, "%s is not a plain file", path);
 }
 
@@ -93,7 +93,7 @@ FILE *file_open(const char *path)
 status file_read(const char *path, size_t limit, char **data, size_t *size)
 {
     FILE *f = file_open(path);
-    if (!f) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
+    if (!f) return fail_by_errno(MERLIN_BAD_INPUT, "cannot open %s", path);
     status s = read_open(f, path, limit, data, size);
     fclose(f);
     return s;
@@ -132,7 +132,7 @@ static status map_open(int descriptor, const char *path, size_t limit, file_view
     status s = check_size(descriptor, path, limit, &size);
     if (s != OK || size == 0) return s;
     void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
-    if (data == MAP_FAILED) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (data == MAP_FAILED) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     *out = (file_view){data, size};
     return OK;
 }
@@ -141,7 +141,7 @@ status file_map(const char *path, size_t limit, file_view *out)
 {
     *out = (file_view){0};
     int descriptor = open_descriptor(path);
-    if (descriptor < 0) return fail(MERLIN_BAD_INPUT, "cannot open %s: %s", path, strerror(errno));
+    if (descriptor < 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot open %s", path);
     status s = map_open(descriptor, path, limit, out);
     close(descriptor);
     return s;
@@ -218,7 +218,7 @@ status file_commit(char *temporary, const char *path)
 {
     status s = OK;
     if (rename(temporary, path) != 0) {
-        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+        s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
         unlink(temporary);
     }
     forget(temporary);
@@ -232,7 +232,7 @@ static status write_through_temporary(const char *path, const void *data, size_t
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
     if (!f) {
-        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+        s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
         forget(temporary);
         return s;
     }
@@ -240,7 +240,7 @@ static status write_through_temporary(const char *path, const void *data, size_t
     if (written && durable) written = fflush(f) == 0 && fsync(fileno(f)) == 0;
     bool closed = fclose(f) == 0;
     if (!written || !closed) {
-        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+        s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
         file_discard(temporary);
         return s;
     }
@@ -253,7 +253,7 @@ status file_check_writable(const char *path)
     status s = file_temporary(path, &temporary);
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
-    if (!f) s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+    if (!f) s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
     if (f) fclose(f);
     file_discard(temporary);
     return s;
@@ -276,7 +276,7 @@ status file_print(const char *path, file_printer *print, const void *context)
     if (s != OK) return s;
     FILE *f = fopen(temporary, "wb");
     if (!f) {
-        s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+        s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
         forget(temporary);
         return s;
     }
@@ -290,6 +290,17 @@ status file_print(const char *path, file_printer *print, const void *context)
     return fail(MERLIN_CANNOT_WRITE, "cannot write %s: is the disk full?", path);
 }
 
+static status make_one(const char *path)
+{
+    if (mkdir(path, 0777) == 0) return OK;
+    const int why = errno;
+    if (file_is_folder(path)) return OK;
+    if (why == EEXIST)
+        return fail(MERLIN_CANNOT_WRITE, "cannot make the folder %s: a file of that name is in the way", path);
+    errno = why;
+    return fail_by_errno(MERLIN_CANNOT_WRITE, "cannot make the folder %s", path);
+}
+
 status file_make_folder(const char *path)
 {
     if (!*path) return fail(MERLIN_CANNOT_WRITE, "cannot make a folder that has no name");
@@ -300,10 +311,7 @@ status file_make_folder(const char *path)
         if (*p != '/' && *p != 0) continue;
         char end = *p;
         *p = 0;
-        int why = mkdir(copy, 0777) == 0 ? 0 : errno;
-        if (why && !file_is_folder(copy))
-            s = fail(MERLIN_CANNOT_WRITE, "cannot make the folder %s: %s", copy,
-                     why == EEXIST ? "a file of that name is in the way" : strerror(why));
+        s = make_one(copy);
         *p = end;
         if (end == 0) break;
     }
@@ -327,10 +335,9 @@ char *file_in_scratch(const char *name)
 
 bool file_is_in(const char *folder, const char *name)
 {
-    char *path = file_join(folder, name);
-    bool there = path && file_exists(path);
-    free(path);
-    return there;
+    char path[PATH_MAX];
+    const int length = snprintf(path, sizeof path, "%s/%s", folder, name); /* no memory, so that it cannot lack */
+    return length > 0 && (size_t)length < sizeof path && file_exists(path);
 }
 
 bool file_ends_in(const char *name, const char *ending)
@@ -391,7 +398,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
                         size_t *room)
 {
     DIR *d = opendir(folder);
-    if (!d) return fail(MERLIN_BAD_INPUT, "cannot open the folder %s: %s", folder, strerror(errno));
+    if (!d) return fail_by_errno(MERLIN_BAD_INPUT, "cannot open the folder %s", folder);
     status s = OK;
     for (struct dirent *e; s == OK && (errno = 0, e = readdir(d));) {
         if (e->d_name[0] == '.') continue; /* hidden files, temporary files among them */
@@ -407,7 +414,7 @@ static status list_into(const char *folder, const char *const *endings, bool dee
             s = fail(MERLIN_NO_MEMORY, "no memory for the names in %s", folder);
         }
     }
-    if (s == OK && errno) s = fail(MERLIN_BAD_INPUT, "cannot read the folder %s: %s", folder, strerror(errno));
+    if (s == OK && errno) s = fail_by_errno(MERLIN_BAD_INPUT, "cannot read the folder %s", folder);
     closedir(d);
     return s;
 }

@@ -80,6 +80,11 @@ static void remove_folder(int parent, const char *name)
     (void)unlinkat(parent, name, AT_REMOVEDIR);
 }
 
+void leftovers_remove_folder(const char *path)
+{
+    remove_folder(AT_FDCWD, path);
+}
+
 /* Parses a temporary name of either kind into its mark and process number. */
 static bool parse(const char *name, unsigned *mark, int *number, bool *is_folder)
 {

@@ -21,6 +21,8 @@ void leftovers_file_front(char front[LEFTOVERS_FRONT]);
 /* Writes the template of a temporary folder's name, for mkdtemp. */
 void leftovers_folder_name(char name[LEFTOVERS_NAME]);
 
+/* Removes a folder and the plain files in it. No memory is asked for. */
+void leftovers_remove_folder(const char *path);
 /* Removes stale temporary files from a folder; failures are ignored. */
 void leftovers_clear(const char *folder);
 /* Calls leftovers_clear unless the last call was for the same folder: cheap for many files in turn. */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/utf8.h"
+#include "base/json/json_put.h"
 
 /* bytes reserved behind the names for ", ... and 1234567 more" */
 enum { ROOM_FOR_MORE = 32 };
@@ -110,21 +110,16 @@ void skipped_print(const skipped_files *list, const char *command, const char *f
     warnings_print(&one, command, folder, 1);
 }
 
-static void put_text(cJSON *object, const char *key, const char *text)
-{
-    char *valid = utf8_valid(text);
-    if (valid) cJSON_AddStringToObject(object, key, valid);
-    free(valid);
-}
-
 void skipped_json(const skipped_files *list, const char *folder, cJSON *array)
 {
     for (size_t i = 0; i < list->count; i++) {
-        cJSON *one = cJSON_CreateObject();
+        cJSON *one = json_append_object(array);
         char *path = file_join(folder, list->at[i].name);
-        if (path) put_text(one, "file", path);
-        put_text(one, "why", list->at[i].why);
-        cJSON_AddItemToArray(array, one);
+        if (path)
+            json_put_text(one, "file", path);
+        else
+            json_put_item(one, "file", NULL);
+        json_put_text(one, "why", list->at[i].why);
         free(path);
     }
 }

@@ -5,7 +5,7 @@
  *     status s = skipped_add(&left, "a.jxl", "JPEG XL is not read");
  *     ...
  *     skipped_warn(&left, &doubts);      "2 files skipped: a.jxl, b.jxl (JPEG XL is not read)"
- *     skipped_json(&left, "photos", cJSON_AddArrayToObject(report, "skipped"));
+ *     skipped_json(&left, "photos", json_put_array(report, "skipped"));
  *     skipped_free(&left);
  */
 #ifndef MERLIN_BASE_SKIPPED_H

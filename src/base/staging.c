@@ -16,6 +16,7 @@
 struct staging {
     char *folder, *hidden;
     size_t kept; /* length of the part of folder's path that was there before */
+    DIR *files;  /* those of hidden, once they are to come into place */
     const char *inputs[STAGING_MOST_INPUTS];
 };
 
@@ -29,6 +30,7 @@ static bool is_input(const staging *t, const char *path)
 static void staging_free(staging *t)
 {
     if (t->hidden) leftovers_forget(t->hidden);
+    if (t->files) closedir(t->files);
     free(t->folder);
     free(t->hidden);
     free(t);
@@ -76,8 +78,7 @@ static status begin(staging *t)
     t->kept = existing_length(t->folder);
     status s = file_make_folder(t->folder);
     if (s == OK) leftovers_clear(t->folder);
-    if (s == OK && !mkdtemp(t->hidden))
-        s = fail(MERLIN_CANNOT_WRITE, "cannot write into %s: %s", t->folder, strerror(errno));
+    if (s == OK && !mkdtemp(t->hidden)) s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write into %s", t->folder);
     if (s != OK) remove_made(t);
     if (s == OK) leftovers_note(t->hidden, t->kept ? t->kept : 1);
     return s;
@@ -117,15 +118,6 @@ static bool is_dots(const char *name)
     return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
 }
 
-static void remove_hidden(const staging *t)
-{
-    DIR *d = opendir(t->hidden);
-    for (struct dirent *e; d && (e = readdir(d));)
-        if (!is_dots(e->d_name)) unlinkat(dirfd(d), e->d_name, 0);
-    if (d) closedir(d);
-    rmdir(t->hidden);
-}
-
 /* ---- what was written ---- */
 
 static int compare_names(const void *a, const void *b)
@@ -136,7 +128,7 @@ static int compare_names(const void *a, const void *b)
 static status add_size(staged_files *files, const char *path)
 {
     struct stat found;
-    if (stat(path, &found) != 0) return fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+    if (stat(path, &found) != 0) return fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
     files->bytes += (uint64_t)found.st_size;
     return OK;
 }
@@ -171,38 +163,41 @@ static status check(const staging *t, const char *from, const char *to, staged_f
 
 static status move(const char *from, const char *to)
 {
-    return rename(from, to) == 0 ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", to, strerror(errno));
-}
-
-static status check_or_move(const staging *t, const char *name, bool only_check, staged_files *written)
-{
-    char *from = file_join(t->hidden, name), *to = file_join(t->folder, name);
-    status s = !from || !to ? fail(MERLIN_NO_MEMORY, "no memory for a file name")
-               : only_check ? check(t, from, to, written)
-                            : move(from, to);
-    free(from);
-    free(to);
-    return s;
+    return rename(from, to) == 0 ? OK : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", to);
 }
 
 static status over_files(const staging *t, bool only_check, staged_files *written)
 {
-    DIR *d = opendir(t->hidden);
-    if (!d) return fail(MERLIN_CANNOT_WRITE, "cannot write into %s: %s", t->folder, strerror(errno));
+    char from[PATH_MAX], to[PATH_MAX];
+    const char *between = t->folder[0] && t->folder[strlen(t->folder) - 1] == '/' ? "" : "/";
     status s = OK;
-    for (struct dirent *e; s == OK && (e = readdir(d));)
-        if (!is_dots(e->d_name)) s = check_or_move(t, e->d_name, only_check, written);
-    closedir(d);
+    rewinddir(t->files);
+    for (struct dirent *e; s == OK && (e = readdir(t->files));) {
+        if (is_dots(e->d_name)) continue;
+        staging_path(t, e->d_name, from);
+        /* shorter than the other one, which fits (begin) */
+        snprintf(to, sizeof to, "%s%s%s", t->folder, between, e->d_name);
+        s = only_check ? check(t, from, to, written) : move(from, to);
+    }
     return s;
+}
+
+/* All that could be refused for lack of memory is had before anything is moved. */
+static status check_files(staging *t, staged_files *written)
+{
+    t->files = opendir(t->hidden);
+    return t->files ? over_files(t, true, written)
+                    : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write into %s", t->folder);
 }
 
 /* Looks at all before moving any. */
 status staging_commit_all(staging *const *t, int count, staged_files *written)
 {
     status s = OK;
-    for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < count && s == OK; i++)
-            s = over_files(t[i], pass == 0, written);
+    for (int i = 0; i < count && s == OK; i++)
+        s = check_files(t[i], written);
+    for (int i = 0; i < count && s == OK; i++)
+        s = over_files(t[i], false, NULL);
     if (s == OK && written && written->count > 1)
         qsort(written->at, written->count, sizeof *written->at, compare_names);
     for (int i = count - 1; i >= 0; i--) {
@@ -235,7 +230,7 @@ static status name_folder(const staging *t, status s)
 status staging_abort(staging *t, status s)
 {
     s = name_folder(t, s);
-    remove_hidden(t);
+    leftovers_remove_folder(t->hidden);
     remove_made(t);
     staging_free(t);
     return s;

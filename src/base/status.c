@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/status.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 /* static analysis replaces it by a macro (status.h) */
 #undef fail
 #undef fail_in
+#undef fail_by_errno
 
 enum { MESSAGE_SIZE = 1024 };
 
@@ -43,6 +45,22 @@ status fail_in(status s, const char *format, ...)
     if (used >= 0 && room > 0) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
     keep_one_line();
     return s;
+}
+
+status status_by_errno(status s)
+{
+    return errno == ENOMEM ? MERLIN_NO_MEMORY : s;
+}
+
+status fail_by_errno(status s, const char *format, ...)
+{
+    const int why = errno;
+    char words[MESSAGE_SIZE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(words, sizeof words, format, args);
+    va_end(args);
+    return fail(why == ENOMEM ? MERLIN_NO_MEMORY : s, "%s: %s", words, strerror(why));
 }
 
 const char *status_message(void)

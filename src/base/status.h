@@ -28,6 +28,13 @@ status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 
 /* Puts context in front of the recorded message ("context: message") and returns s. */
 status fail_in(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* What errno says of a refusal by the C library: MERLIN_NO_MEMORY if memory ran out, else s. Of a library that stands
+ * on it and does not say why it refused that can be told, too, if errno was 0 before. */
+status status_by_errno(status s);
+/* Records the message with what errno says behind it ("message: No such file or directory"), and returns
+ * status_by_errno(s). */
+status fail_by_errno(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 #ifdef __clang_analyzer__
 /* Tells static analysis, which does not see into status.c, that a failure is never OK. */
 static inline status status_given(status s, status recorded)
@@ -37,6 +44,7 @@ static inline status status_given(status s, status recorded)
 }
 #define fail(s, ...) status_given(s, fail(s, __VA_ARGS__))
 #define fail_in(s, ...) status_given(s, fail_in(s, __VA_ARGS__))
+#define fail_by_errno(s, ...) status_given(s, fail_by_errno(s, __VA_ARGS__))
 #endif
 
 /* Returns the message of this thread's last failure; "" if there was none. Valid until the thread's next fail. */

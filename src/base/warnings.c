@@ -3,11 +3,10 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/messages.h"
-#include "base/utf8.h"
 
 void warnings_add(warnings *list, const char *code, const char *format, ...)
 {
@@ -36,12 +35,9 @@ cJSON *warnings_json(const warnings *list)
 {
     cJSON *all = cJSON_CreateArray();
     for (size_t i = 0; i < list->count; i++) {
-        cJSON *one = cJSON_CreateObject();
-        char *message = utf8_valid(list->at[i].message);
-        cJSON_AddStringToObject(one, "code", list->at[i].code);
-        if (message) cJSON_AddStringToObject(one, "message", message);
-        free(message);
-        cJSON_AddItemToArray(all, one);
+        cJSON *one = json_append_object(all);
+        json_put_text(one, "code", list->at[i].code);
+        json_put_text(one, "message", list->at[i].message);
     }
     return all;
 }

@@ -5,7 +5,7 @@
  *     warnings doubts = {0};
  *     if (burnt_out >= 0.1) warnings_add(&doubts, "burnt_out", "%.0f %% of the object is burnt out", 100 * burnt_out);
  *     ...
- *     cJSON_AddItemToObject(report, "warnings", warnings_json(&doubts));      [{"code": ..., "message": ...}, ...]
+ *     json_put_item(report, "warnings", warnings_json(&doubts));      [{"code": ..., "message": ...}, ...]
  *     if (!quiet) warnings_print(&doubts, "estimate", photo, 3);              one line on standard error
  *
  * Nothing is allocated, so that no warning is lost when memory runs out, and lists can be copied. */

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "base/messages.h"
 #include "base/progress.h"
 #include "cli/check_replaced.h"
@@ -142,16 +143,16 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
 {
     char *text = maps_report(maps);
     cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
-    json_line_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
+    json_put_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written);
-    if (job->mask) json_line_text(report, "mask_file", job->mask);
+    if (job->mask) json_put_text(report, "mask_file", job->mask);
     if (!*r->told) photo_list_put(r->photos, report);
     *r->told = true;
-    cJSON_AddNumberToObject(seconds, "start", laps->start);
-    cJSON_AddNumberToObject(seconds, "model", laps->model);
-    cJSON_AddNumberToObject(seconds, "read", laps->read);
-    cJSON_AddNumberToObject(seconds, "write", laps->write);
-    cJSON_AddNumberToObject(report, "seconds_total", laps->total);
+    json_put_number(seconds, "start", laps->start);
+    json_put_number(seconds, "model", laps->model);
+    json_put_number(seconds, "read", laps->read);
+    json_put_number(seconds, "write", laps->write);
+    json_put_number(report, "seconds_total", laps->total);
     status s = json_line_print(report);
     cJSON_Delete(report);
     free(text);

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin info: what is in a weights file. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "cli/commands.h"
 #include "command/cli.h"
@@ -96,44 +98,44 @@ static void print_text(const weights_info *info, bool tensors)
  * look like a number. */
 static void add_text(cJSON *o, const char *key, const char *text)
 {
+    errno = 0;
     cJSON *value = strcmp(key, "note") != 0 ? cJSON_ParseWithOpts(text, NULL, true) : NULL;
-    if (value && (cJSON_IsNumber(value) || cJSON_IsObject(value))) {
-        cJSON_AddItemToObject(o, key, value);
+    if (cJSON_IsNumber(value) || cJSON_IsObject(value) || (!value && status_by_errno(OK) == MERLIN_NO_MEMORY)) {
+        json_put_item(o, key, value);
         return;
     }
     cJSON_Delete(value);
-    json_line_text(o, key, text);
+    json_put_text(o, key, text);
 }
 
 static void add_tensors(cJSON *o, const safetensors_file *file)
 {
-    cJSON *list = cJSON_AddArrayToObject(o, "tensors");
+    cJSON *list = json_put_array(o, "tensors");
     for (size_t i = 0; i < safetensors_count(file); i++) {
         const safetensors_tensor *t = safetensors_at(file, i);
-        cJSON *entry = cJSON_CreateObject();
-        json_line_text(entry, "name", t->name);
-        cJSON_AddStringToObject(entry, "type", safetensors_type_name(t->type));
-        cJSON *shape = cJSON_AddArrayToObject(entry, "shape");
+        cJSON *entry = json_append_object(list);
+        json_put_text(entry, "name", t->name);
+        json_put_text(entry, "type", safetensors_type_name(t->type));
+        cJSON *shape = json_put_array(entry, "shape");
         for (int k = 0; k < t->rank; k++)
-            cJSON_AddItemToArray(shape, cJSON_CreateNumber((double)t->shape[k]));
-        cJSON_AddItemToArray(list, entry);
+            json_append(shape, cJSON_CreateNumber((double)t->shape[k]));
     }
 }
 
 static status print_json(const weights_info *info, bool tensors)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(o, "model", info->config.name);
-    cJSON_AddNumberToObject(o, "parameters", (double)info->parameters);
-    cJSON_AddNumberToObject(o, "statistics", (double)info->statistics);
-    cJSON_AddNumberToObject(o, "gmac_256", info->gmac);
+    json_put_text(o, "model", info->config.name);
+    json_put_number(o, "parameters", (double)info->parameters);
+    json_put_number(o, "statistics", (double)info->statistics);
+    json_put_number(o, "gmac_256", info->gmac);
     add_text(o, "config", safetensors_metadata(info->file, "config"));
     for (int i = 0; i < PROVENANCE; i++) {
         const char *value = safetensors_metadata(info->file, provenance[i]);
         if (value) add_text(o, provenance[i], value);
     }
     if (tensors) add_tensors(o, info->file);
-    char *text = cJSON_Print(o);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return json_report_print(text);
 }

@@ -4,28 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/utf8.h"
-
-static cJSON *string_of(const char *text)
-{
-    char *valid = utf8_valid(text);
-    cJSON *string = valid ? cJSON_CreateString(valid) : NULL;
-    free(valid);
-    return string;
-}
-
-void json_line_text(cJSON *object, const char *key, const char *text)
-{
-    cJSON_AddItemToObject(object, key, string_of(text));
-}
+#include "base/json/json_put.h"
 
 void json_line_files(cJSON *object, const char *folder, const staged_files *written)
 {
-    json_line_text(object, "output", folder);
-    cJSON *list = cJSON_AddArrayToObject(object, "files");
+    json_put_text(object, "output", folder);
+    cJSON *list = json_put_array(object, "files");
     for (size_t i = 0; i < written->count; i++)
-        cJSON_AddItemToArray(list, string_of(written->at[i]));
-    cJSON_AddNumberToObject(object, "bytes", (double)written->bytes);
+        json_append_text(list, written->at[i]);
+    json_put_number(object, "bytes", (double)written->bytes);
 }
 
 status json_report_print(char *text)
@@ -39,5 +26,5 @@ status json_report_print(char *text)
 
 status json_line_print(const cJSON *report)
 {
-    return json_report_print(cJSON_PrintUnformatted(report));
+    return json_report_print(json_print_line(report));
 }

@@ -2,7 +2,7 @@
 /* What commands print with --json: one line of valid JSON, whatever bytes a file's name has.
  *
  *     cJSON *report = report_begin(&doubts);
- *     json_line_text(report, "input", path);
+ *     json_put_text(report, "input", path);
  *     json_line_files(report, folder, &written);
  *     json_line_print(report);
  *
@@ -18,8 +18,6 @@
 /* A report's own text, of several lines, which is freed; NULL: memory ran out. */
 status json_report_print(char *text);
 
-/* Adds a text, U+FFFD in the place of each byte that is not UTF-8. */
-void json_line_text(cJSON *object, const char *key, const char *text);
 /* Adds "output", "files" and "bytes". */
 void json_line_files(cJSON *object, const char *folder, const staged_files *written);
 status json_line_print(const cJSON *report);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/photo_folder.h"
@@ -260,21 +261,17 @@ void photo_list_tell(const photo_list *list, const char *command)
 void photo_list_put(const photo_list *list, cJSON *report)
 {
     warnings told = {0};
-    cJSON *all = cJSON_CreateArray();
+    cJSON *all = NULL;
     for (size_t i = 0; i < list->folders; i++) {
+        if (list->folder[i].skipped.count && !all) all = json_put_array(report, "skipped");
         skipped_warn(&list->folder[i].skipped, &told);
         skipped_json(&list->folder[i].skipped, list->folder[i].path, all);
     }
     for (size_t i = 0; i < told.count; i++) {
-        cJSON *one = cJSON_CreateObject();
-        json_line_text(one, "code", told.at[i].code);
-        json_line_text(one, "message", told.at[i].message);
-        cJSON_AddItemToArray(cJSON_GetObjectItem(report, "warnings"), one);
+        cJSON *one = json_append_object(cJSON_GetObjectItem(report, "warnings"));
+        json_put_text(one, "code", told.at[i].code);
+        json_put_text(one, "message", told.at[i].message);
     }
-    if (cJSON_GetArraySize(all))
-        cJSON_AddItemToObject(report, "skipped", all);
-    else
-        cJSON_Delete(all);
 }
 
 /* ---- options ---- */

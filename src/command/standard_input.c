@@ -16,7 +16,7 @@ static status keep_block(int to, const char *block, size_t size)
     while (size > 0) {
         ssize_t done = write(to, block, size);
         if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) return fail(MERLIN_NO_MEMORY, "no memory to keep standard input: %s", strerror(errno));
+        if (done <= 0) return fail_by_errno(MERLIN_NO_MEMORY, "no memory to keep standard input");
         block += done;
         size -= (size_t)done;
     }
@@ -29,7 +29,7 @@ static status keep_all(int to)
     size_t size = 0;
     for (ssize_t got; (got = read(STDIN_FILENO, block, sizeof block)) != 0;) {
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return fail(MERLIN_BAD_INPUT, "cannot read standard input: %s", strerror(errno));
+        if (got < 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read standard input");
         size += (size_t)got;
         if (size > MOST) return fail(MERLIN_BAD_INPUT, "standard input goes on beyond %d MB: give a file", MOST >> 20);
         status s = keep_block(to, block, (size_t)got);
@@ -43,7 +43,7 @@ status standard_input_take(char **argument)
     if (strcmp(*argument, "-") != 0) return OK;
     if (kept[0]) return fail(MERLIN_WRONG_USE, "standard input can be one file");
     int to = memfd_create("standard-input", MFD_CLOEXEC);
-    if (to < 0) return fail(MERLIN_NO_MEMORY, "no memory to keep standard input: %s", strerror(errno));
+    if (to < 0) return fail_by_errno(MERLIN_NO_MEMORY, "no memory to keep standard input");
     status s = keep_all(to);
     if (s != OK) {
         close(to);

@@ -4,6 +4,7 @@
 #include "nn/safetensors.h"
 
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <libdeflate.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -11,7 +12,6 @@
 
 #include "base/file.h"
 #include "base/half.h"
-#include "base/memory.h"
 #include "nn/safetensors_format.h"
 
 /* Files are mapped, not copied. Checkpoints are four times a model, and one that was written must be read again. */
@@ -227,8 +227,6 @@ static bool only_spaces(const char *begin, const char *end)
     return begin == end;
 }
 
-static const size_t for_header = (size_t)16 << 20; /* bytes: more than parsing asks for at once */
-
 static status read_header(safetensors_file *f, const unsigned char *bytes, size_t size)
 {
     uint64_t length = 0;
@@ -240,8 +238,9 @@ static status read_header(safetensors_file *f, const unsigned char *bytes, size_
     if (length > size - SAFETENSORS_PREFIX)
         return fail(MERLIN_BAD_INPUT, "%s is truncated: %zu bytes do not hold its header", f->where, size);
     const char *header = (const char *)bytes + SAFETENSORS_PREFIX, *end = NULL;
+    errno = 0;
     f->header = cJSON_ParseWithLengthOpts(header, (size_t)length, &end, false);
-    if (!f->header && !memory_is_left(for_header)) /* cJSON does not say why */
+    if (!f->header && status_by_errno(MERLIN_BAD_INPUT) == MERLIN_NO_MEMORY)
         return fail(MERLIN_NO_MEMORY, "no memory to read the header of %s", f->where);
     if (!cJSON_IsObject(f->header) || !only_spaces(end, header + length))
         return fail(MERLIN_BAD_INPUT, "%s is not a safetensors file: its header is not a JSON object", f->where);

@@ -2,40 +2,31 @@
 /* Writing: the whole file is put together in memory and written at once. */
 #include "nn/safetensors.h"
 
-#include <cjson/cJSON.h>
 #include <libdeflate.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "nn/safetensors_format.h"
 
-static bool add_number(cJSON *array, double value)
+static void describe(cJSON *header, const safetensors_tensor *t, size_t begin)
 {
-    return cJSON_AddItemToArray(array, cJSON_CreateNumber(value));
-}
-
-static bool describe(cJSON *header, const safetensors_tensor *t, size_t begin)
-{
-    cJSON *item = cJSON_AddObjectToObject(header, t->name);
-    if (!item || !cJSON_AddStringToObject(item, "dtype", safetensors_type_name(t->type))) return false;
-    cJSON *shape = cJSON_AddArrayToObject(item, "shape"), *offsets = cJSON_AddArrayToObject(item, "data_offsets");
-    if (!shape || !offsets) return false;
+    cJSON *item = json_put_object(header, t->name);
+    json_put_text(item, "dtype", safetensors_type_name(t->type));
+    cJSON *shape = json_put_array(item, "shape"), *offsets = json_put_array(item, "data_offsets");
     for (int i = 0; i < t->rank; i++)
-        if (!add_number(shape, (double)t->shape[i])) return false;
-    return add_number(offsets, (double)begin) && add_number(offsets, (double)(begin + safetensors_bytes_of(t)));
+        json_append(shape, cJSON_CreateNumber((double)t->shape[i]));
+    json_append(offsets, cJSON_CreateNumber((double)begin));
+    json_append(offsets, cJSON_CreateNumber((double)(begin + safetensors_bytes_of(t))));
 }
 
-static bool describe_metadata(cJSON *header, const char *const (*metadata)[2], size_t count, const char *checksum)
+static void describe_metadata(cJSON *header, const char *const (*metadata)[2], size_t count, const char *checksum)
 {
-    cJSON *item = cJSON_AddObjectToObject(header, "__metadata__");
-    if (!item) return false;
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(metadata[i][0], SAFETENSORS_CHECKSUM) == 0) continue;
-        if (!cJSON_AddStringToObject(item, metadata[i][0], metadata[i][1])) return false;
-    }
-    return cJSON_AddStringToObject(item, SAFETENSORS_CHECKSUM, checksum);
+    cJSON *item = json_put_object(header, "__metadata__");
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(metadata[i][0], SAFETENSORS_CHECKSUM) != 0) json_put_text(item, metadata[i][0], metadata[i][1]);
+    json_put_text(item, SAFETENSORS_CHECKSUM, checksum);
 }
 
 /* malloc'ed JSON; NULL when memory runs out. */
@@ -44,18 +35,17 @@ static char *header_of(const safetensors_tensor *tensors, size_t count, const ch
 {
     uint32_t sum = 0;
     cJSON *header = cJSON_CreateObject();
-    bool good = header;
     size_t at = 0;
-    for (size_t i = 0; good && i < count; i++) {
-        good = describe(header, &tensors[i], at);
+    for (size_t i = 0; i < count; i++) {
+        describe(header, &tensors[i], at);
         at += safetensors_bytes_of(&tensors[i]);
         /* it starts over when given no buffer, as an empty tensor has none */
         if (tensors[i].count > 0) sum = libdeflate_crc32(sum, tensors[i].data, safetensors_bytes_of(&tensors[i]));
     }
     char checksum[SAFETENSORS_CHECKSUM_SIZE];
     safetensors_format_checksum(sum, checksum);
-    good = good && describe_metadata(header, metadata, metadata_count, checksum);
-    char *text = good ? cJSON_PrintUnformatted(header) : NULL;
+    describe_metadata(header, metadata, metadata_count, checksum);
+    char *text = json_print_line(header);
     cJSON_Delete(header);
     return text;
 }

@@ -6,29 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/utf8.h"
+#include "base/json/json_put.h"
 #include "estimate/light/found_light.h"
 #include "optics/camera.h"
-
-/* A text, U+FFFD in the place of each byte that is not UTF-8. */
-static void put_text(cJSON *to, const char *key, const char *text)
-{
-    char *valid = utf8_valid(text);
-    if (valid) cJSON_AddStringToObject(to, key, valid);
-    free(valid);
-}
 
 static cJSON *list_of(const float *values, int count)
 {
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < count; i++)
-        cJSON_AddItemToArray(list, cJSON_CreateNumber((double)values[i]));
+        json_append(list, cJSON_CreateNumber((double)values[i]));
     return list;
 }
 
 static void put_list(cJSON *to, const char *key, const float *values, int count)
 {
-    cJSON_AddItemToObject(to, key, list_of(values, count));
+    json_put_item(to, key, list_of(values, count));
 }
 
 static void put_range(cJSON *to, const char *key, view_range r)
@@ -38,68 +30,68 @@ static void put_range(cJSON *to, const char *key, view_range r)
 
 static void put_photograph(cJSON *root, const merlin_maps *maps)
 {
-    cJSON *o = cJSON_AddObjectToObject(root, "photograph");
-    cJSON_AddNumberToObject(o, "width", maps->mask.width);
-    cJSON_AddNumberToObject(o, "height", maps->mask.height);
-    cJSON_AddNumberToObject(o, "side", maps->crop.side);
+    cJSON *o = json_put_object(root, "photograph");
+    json_put_number(o, "width", maps->mask.width);
+    json_put_number(o, "height", maps->mask.height);
+    json_put_number(o, "side", maps->crop.side);
 }
 
 static void put_camera(cJSON *root, const surface *s)
 {
     const camera_lens lens = surface_lens(s);
-    cJSON_AddNumberToObject(root, "tangent", (double)camera_tangent(lens.fov));
+    json_put_number(root, "tangent", (double)camera_tangent(lens.fov));
     put_list(root, "slant", (const float[]){lens.slant.right, lens.slant.up}, 2);
 }
 
 static void put_caster(cJSON *root, const shadow_caster *c, view_range range)
 {
-    cJSON *o = cJSON_AddObjectToObject(root, "caster");
-    cJSON_AddNumberToObject(o, "side", c->depth.width);
+    cJSON *o = json_put_object(root, "caster");
+    json_put_number(o, "side", c->depth.width);
     put_range(o, "depth", range);
-    cJSON_AddNumberToObject(o, "nearest", (double)c->nearest);
-    cJSON_AddNumberToObject(o, "farthest", (double)c->farthest);
+    json_put_number(o, "nearest", (double)c->nearest);
+    json_put_number(o, "farthest", (double)c->farthest);
 }
 
 static void put_lamp(cJSON *list, const lamp *l, bool fixed)
 {
-    cJSON *o = cJSON_CreateObject();
+    cJSON *o = json_append_object(list);
     put_list(o, "at", (const float[]){l->at.x, l->at.y, l->at.z}, 3);
     put_list(o, "tint", (const float[]){l->tint.x, l->tint.y, l->tint.z}, 3);
-    cJSON_AddBoolToObject(o, "distant", l->distant);
-    cJSON_AddBoolToObject(o, "fixed", fixed);
-    cJSON_AddItemToArray(list, o);
+    json_put_bool(o, "distant", l->distant);
+    json_put_bool(o, "fixed", fixed);
 }
 
 /* The light that was found in the photograph, null where nothing is known. */
 static void put_light(cJSON *root, const merlin_found_light *light)
 {
     found_lights found;
-    if (!light->known || found_light_stand(light, 0, &found) != OK) {
-        cJSON_AddNullToObject(root, "light");
+    const status s = light->known ? found_light_stand(light, 0, &found) : MERLIN_BAD_INPUT;
+    if (s != OK) {
+        json_put_item(root, "light", s == MERLIN_NO_MEMORY ? NULL : cJSON_CreateNull());
         return;
     }
-    cJSON *o = cJSON_AddObjectToObject(root, "light"), *lamps = cJSON_AddArrayToObject(o, "lamps");
-    cJSON *rest = cJSON_AddArrayToObject(o, "rest");
+    cJSON *o = json_put_object(root, "light"), *lamps = json_put_array(o, "lamps");
+    cJSON *rest = json_put_array(o, "rest");
     for (int i = 0; i < found.count; i++)
         put_lamp(lamps, &found.lamps[i], i < found.fixed);
     for (int i = 0; i < 9; i++)
-        cJSON_AddItemToArray(rest, list_of(light->rest[i], 3));
+        json_append(rest, list_of(light->rest[i], 3));
     env_map_free(&found.rest);
 }
 
 static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_params *params, const stage *s,
                     const view_ranges *ranges, float white)
 {
-    put_text(root, "name", params->name ? params->name : "object");
-    put_text(root, "folder", params->folder ? params->folder : "FOLDER");
-    cJSON_AddNumberToObject(root, "side", s->full.mask.width);
-    cJSON_AddNumberToObject(root, "low", s->low.mask.width);
+    json_put_text(root, "name", params->name ? params->name : "object");
+    json_put_text(root, "folder", params->folder ? params->folder : "FOLDER");
+    json_put_number(root, "side", s->full.mask.width);
+    json_put_number(root, "low", s->low.mask.width);
     put_photograph(root, maps);
     put_camera(root, &s->full);
-    cJSON_AddBoolToObject(root, "matte", s->full.matte);
-    cJSON_AddBoolToObject(root, "metered", params->captured != 0);
-    cJSON_AddNumberToObject(root, "white", (double)white);
-    cJSON_AddNumberToObject(root, "ev", log2((double)s->white / (double)white));
+    json_put_bool(root, "matte", s->full.matte);
+    json_put_bool(root, "metered", params->captured != 0);
+    json_put_number(root, "white", (double)white);
+    json_put_number(root, "ev", log2((double)s->white / (double)white));
     put_range(root, "depth", ranges->covered);
     put_range(root, "object", ranges->object);
     put_caster(root, &s->caster, ranges->caster);
@@ -129,8 +121,8 @@ status view_scene_text(const merlin_maps *maps, const merlin_view_params *params
                        const view_ranges *ranges, float white, char **text)
 {
     cJSON *root = cJSON_CreateObject();
-    if (root) put_all(root, maps, params, s, ranges, white);
-    char *printed = root ? cJSON_PrintUnformatted(root) : NULL;
+    put_all(root, maps, params, s, ranges, white);
+    char *printed = json_print_line(root);
     *text = printed ? without_tags(printed) : NULL;
     free(printed);
     cJSON_Delete(root);

@@ -2,6 +2,7 @@
 #include "base/text/json.h"
 
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,9 +23,12 @@ status json_parse(const char *text, size_t size, const char *where, json_object 
     if (!o) return fail(MERLIN_NO_MEMORY, "%s: out of memory", where);
     strncpy(o->where, where, JSON_WHERE - 1);
     const char *end = NULL;
+    errno = 0;
     o->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
     status s = OK;
-    if (!o->root) {
+    if (!o->root && status_by_errno(MERLIN_BAD_INPUT) == MERLIN_NO_MEMORY) {
+        s = fail(MERLIN_NO_MEMORY, "%s: out of memory", where);
+    } else if (!o->root) {
         size_t at = end && end >= text ? (size_t)(end - text) : 0;
         s = fail(MERLIN_BAD_INPUT, "%s is not JSON (near byte %zu)", where, at);
     } else if (!cJSON_IsObject(o->root)) {

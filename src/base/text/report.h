@@ -3,8 +3,7 @@
 #ifndef MERLIN_BASE_TEXT_REPORT_H
 #define MERLIN_BASE_TEXT_REPORT_H
 
-#include <cJSON.h>
-
+#include "base/json/json_put.h"
 #include "base/warnings.h"
 
 /* Changes when a name goes or means something else; more names come without. */

@@ -134,7 +134,7 @@ status relight_output(const relight_job *job, relight_result *result)
 static status print(const uint8_t *data, size_t size)
 {
     bool done = fwrite(data, 1, size, stdout) == size && fflush(stdout) == 0;
-    return done ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write to standard output: %s", strerror(errno));
+    return done ? OK : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write to standard output");
 }
 
 status relight_print(const relight_job *job, relight_result *result)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "base/progress.h"
 #include "base/text/report.h"
 #include "cli/check_replaced.h"
@@ -222,8 +223,8 @@ static void put_words(cJSON *report, const char *input, const stereo_result *res
 {
     warnings all = result->doubts;
     skipped_warn(&result->skipped, &all);
-    cJSON_AddItemToObject(report, "warnings", warnings_json(&all));
-    if (result->skipped.count) skipped_json(&result->skipped, input, cJSON_AddArrayToObject(report, "skipped"));
+    json_put_item(report, "warnings", warnings_json(&all));
+    if (result->skipped.count) skipped_json(&result->skipped, input, json_put_array(report, "skipped"));
 }
 
 /* What the stages cost beside one another is about the same for pictures of any number and size: seconds that twenty of
@@ -259,18 +260,18 @@ static status work(request *r, const char *output, cJSON *report)
     plan(r, &bar);
     const watch shown = stage_bar_watch(&bar);
     r->folder.watch = r->folder.read.watch = &shown;
-    json_line_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
+    json_put_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
     status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
     r->folder.watch = r->folder.read.watch = NULL; /* it ends with this function */
     float scale = 1;
     if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
     if (s == OK) {
-        cJSON_AddNumberToObject(report, "albedo_scale", (double)scale);
-        cJSON_AddStringToObject(report, "error_map", result.error_name);
-        cJSON_AddNumberToObject(report, "error_map_white", (double)result.error_white);
-        cJSON_AddStringToObject(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
+        json_put_number(report, "albedo_scale", (double)scale);
+        json_put_text(report, "error_map", result.error_name);
+        json_put_number(report, "error_map_white", (double)result.error_white);
+        json_put_text(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
         put_words(report, r->input, &result);
-        cJSON_AddNumberToObject(report, "seconds_total", clock_seconds() - began);
+        json_put_number(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
         files.folder = output;
         files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};

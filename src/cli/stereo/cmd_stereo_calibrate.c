@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/progress.h"
 #include "base/staging.h"
 #include "base/text/report.h"
@@ -79,21 +80,20 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     warnings all = c->doubts;
     skipped_warn(&c->skipped, &all);
     cJSON *report = report_begin(&all);
-    if (c->skipped.count) skipped_json(&c->skipped, r->input, cJSON_AddArrayToObject(report, "skipped"));
-    json_line_text(report, "input", r->input);
+    if (c->skipped.count) skipped_json(&c->skipped, r->input, json_put_array(report, "skipped"));
+    json_put_text(report, "input", r->input);
     json_line_files(report, r->output, written);
-    cJSON_AddNumberToObject(report, "lights", c->count);
-    cJSON_AddStringToObject(report, "sphere", c->ball == PST_CHROME ? "chrome" : "matte");
-    cJSON_AddItemToObject(report, "circle",
-                          cJSON_CreateFloatArray((const float[]){c->circle.x, c->circle.y, c->circle.radius}, 3));
-    cJSON_AddBoolToObject(report, "from_mask", c->from_mask);
-    cJSON *directions = cJSON_AddArrayToObject(report, "directions");
+    json_put_number(report, "lights", c->count);
+    json_put_text(report, "sphere", c->ball == PST_CHROME ? "chrome" : "matte");
+    json_put_item(report, "circle",
+                  cJSON_CreateFloatArray((const float[]){c->circle.x, c->circle.y, c->circle.radius}, 3));
+    json_put_bool(report, "from_mask", c->from_mask);
+    cJSON *directions = json_put_array(report, "directions");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];
-        cJSON_AddItemToArray(directions,
-                             cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
+        json_append(directions, cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
     }
-    cJSON_AddNumberToObject(report, "seconds_total", seconds);
+    json_put_number(report, "seconds_total", seconds);
     status s = json_line_print(report);
     cJSON_Delete(report);
     return s;

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "base/json/json_put.h"
 #include "base/progress.h"
 #include "command/json_line.h"
 #include "stereo/doubts/doubts.h"
@@ -45,10 +46,10 @@ static void put_statistics(cJSON *report, const char *name, double *values, size
     double sum = 0;
     for (size_t i = 0; i < count; i++)
         sum += values[i];
-    cJSON *o = cJSON_AddObjectToObject(report, name);
-    cJSON_AddNumberToObject(o, "mean", count ? sum / (double)count : 0);
-    cJSON_AddNumberToObject(o, "median", count ? of_rank(values, count, count / 2) : 0);
-    cJSON_AddNumberToObject(o, "pixels", (double)count);
+    cJSON *o = json_put_object(report, name);
+    json_put_number(o, "mean", count ? sum / (double)count : 0);
+    json_put_number(o, "median", count ? of_rank(values, count, count / 2) : 0);
+    json_put_number(o, "pixels", (double)count);
 }
 
 static size_t take_errors(const stereo_result *r, double *values)
@@ -75,16 +76,15 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
 static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s)
 {
     const pst_light *light = s->light;
-    cJSON *list = cJSON_AddArrayToObject(report, "lights_found");
+    cJSON *list = json_put_array(report, "lights_found");
     for (int i = 0; i < c->count; i++) {
-        cJSON *o = cJSON_CreateObject();
-        cJSON_AddItemToArray(list, o);
-        json_line_text(o, "name", c->name[i]);
+        cJSON *o = json_append_object(list);
+        json_put_text(o, "name", c->name[i]);
         const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
-        cJSON_AddItemToObject(o, "direction", cJSON_CreateFloatArray(d, 3));
+        json_put_item(o, "direction", cJSON_CreateFloatArray(d, 3));
         const float at[3] = {light[i].position.x, light[i].position.y, light[i].position.z};
-        if (s->lights_near) cJSON_AddItemToObject(o, "position", cJSON_CreateFloatArray(at, 3));
-        cJSON_AddItemToObject(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
+        if (s->lights_near) json_put_item(o, "position", cJSON_CreateFloatArray(at, 3));
+        json_put_item(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
     }
 }
 
@@ -92,19 +92,19 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
 {
     double *values = malloc((size_t)c->width * (size_t)c->height * sizeof *values);
     if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a report");
-    cJSON_AddStringToObject(report, "method", pst_method_name(s->method));
-    cJSON_AddNumberToObject(report, "pictures", c->count);
-    cJSON_AddNumberToObject(report, "width", c->width);
-    cJSON_AddNumberToObject(report, "height", c->height);
-    cJSON_AddNumberToObject(report, "channels", c->channels);
+    json_put_text(report, "method", pst_method_name(s->method));
+    json_put_number(report, "pictures", c->count);
+    json_put_number(report, "width", c->width);
+    json_put_number(report, "height", c->height);
+    json_put_number(report, "channels", c->channels);
     put_statistics(report, "residual", values, take_errors(r, values));
     if (c->normal_true.data)
         put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
-    if (c->lights_in_order) cJSON_AddTrueToObject(report, "lights_in_order");
+    if (c->lights_in_order) json_put_bool(report, "lights_in_order", true);
     if (s->light) put_lights(report, c, s);
-    if (s->method == PST_SEMI) cJSON_AddBoolToObject(report, "strengths_unsure", s->strengths_unsure);
-    if (s->method == PST_NEAR_LIGHTS) cJSON_AddBoolToObject(report, "distance_unsure", s->distance_unsure);
-    if (s->method == PST_UNCALIBRATED) cJSON_AddBoolToObject(report, "lights_unsure", s->lights_unsure);
+    if (s->method == PST_SEMI) json_put_bool(report, "strengths_unsure", s->strengths_unsure);
+    if (s->method == PST_NEAR_LIGHTS) json_put_bool(report, "distance_unsure", s->distance_unsure);
+    if (s->method == PST_UNCALIBRATED) json_put_bool(report, "lights_unsure", s->lights_unsure);
     free(values);
     return OK;
 }
@@ -139,8 +139,8 @@ static status solve(const stereo_folder *f, const pst_capture *c, stereo_result 
     if (s == OK) s = take_surface(c, &surface, out);
     if (s == OK) s = put_report(report, c, &surface, out);
     out->doubts = doubts;
-    cJSON_AddNumberToObject(report, "seconds_solve", solved - began);
-    cJSON_AddNumberToObject(report, "seconds_integrate", clock_seconds() - solved);
+    json_put_number(report, "seconds_solve", solved - began);
+    json_put_number(report, "seconds_integrate", clock_seconds() - solved);
     pst_surface_free(&surface);
     return s;
 }
@@ -152,7 +152,7 @@ status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *rep
     double began = clock_seconds();
     status s = pst_capture_read(f->folder, &f->read, &c);
     if (s != OK) return s;
-    cJSON_AddNumberToObject(report, "seconds_read", clock_seconds() - began);
+    json_put_number(report, "seconds_read", clock_seconds() - began);
     bool any = f->method == PST_AUTO || f->method == PST_NEAR_LIGHTS;
     if (c.about_object && any) s = pst_place_lights(&c, f->watch);
     if (s == OK) s = solve(f, &c, out, report);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "base/parallel.h"
 #include "cli/stereo/stereo_view.h"
 #include "estimate/files/map_png.h"
@@ -119,7 +120,7 @@ static status write_mesh(const stereo_result *r, const char *path)
 
 static status write_report(const cJSON *report, const char *path)
 {
-    char *text = cJSON_Print(report);
+    char *text = json_print(report);
     if (!text) return fail(MERLIN_NO_MEMORY, "no memory for a report");
     status s = file_write(path, text, strlen(text));
     free(text);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "command/photo_ahead.h"
 #include "estimate/photo/doubts.h"
 #include "estimate/photo/model_pair.h"
@@ -107,14 +108,14 @@ static void average_all(const work *w, stereo_result *out, cJSON *report)
         left += believe_network(w, i, out);
         count++;
     }
-    cJSON_AddStringToObject(report, "model", merlin_model_name(w->model));
-    cJSON_AddNumberToObject(report, "lights", RELIT_LIGHTS);
-    cJSON_AddNumberToObject(report, "draws", DRAW_MOST);
-    cJSON_AddNumberToObject(report, "lights_a_draw", DRAW_PICTURES);
-    cJSON_AddNumberToObject(report, "object_pixels", count);
-    cJSON_AddNumberToObject(report, "normal_spread_mean_degrees", count > 0 ? spread / count : 0);
-    cJSON_AddNumberToObject(report, "angle_to_network_normal_mean_degrees", count > 0 ? off / count : 0);
-    cJSON_AddNumberToObject(report, "pixels_left_to_the_network", left);
+    json_put_text(report, "model", merlin_model_name(w->model));
+    json_put_number(report, "lights", RELIT_LIGHTS);
+    json_put_number(report, "draws", DRAW_MOST);
+    json_put_number(report, "lights_a_draw", DRAW_PICTURES);
+    json_put_number(report, "object_pixels", count);
+    json_put_number(report, "normal_spread_mean_degrees", count > 0 ? spread / count : 0);
+    json_put_number(report, "angle_to_network_normal_mean_degrees", count > 0 ? off / count : 0);
+    json_put_number(report, "pixels_left_to_the_network", left);
 }
 
 static status result_new(work *w, stereo_result *out)

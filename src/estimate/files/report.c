@@ -3,6 +3,7 @@
 #include <cJSON.h>
 #include <math.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/light/found_light.h"
@@ -40,24 +41,24 @@ static double mean(const range *r)
 
 static void put_range(cJSON *to, const char *name, const range *r)
 {
-    cJSON *o = cJSON_AddObjectToObject(to, name);
-    cJSON_AddNumberToObject(o, "min", r->low);
-    cJSON_AddNumberToObject(o, "mean", mean(r));
-    cJSON_AddNumberToObject(o, "max", r->high);
+    cJSON *o = json_put_object(to, name);
+    json_put_number(o, "min", r->low);
+    json_put_number(o, "mean", mean(r));
+    json_put_number(o, "max", r->high);
 }
 
 static void put_statistics(cJSON *root, const merlin_maps *maps)
 {
-    cJSON *o = cJSON_AddObjectToObject(root, "statistics");
-    cJSON *albedo = cJSON_AddArrayToObject(o, "albedo_mean");
+    cJSON *o = json_put_object(root, "statistics");
+    cJSON *albedo = json_put_array(o, "albedo_mean");
     range roughness = range_of(maps, &maps->roughness, 0), depth = range_of(maps, &maps->depth, 0);
     for (int c = 0; c < 3; c++) {
         range r = range_of(maps, &maps->albedo, c);
-        cJSON_AddItemToArray(albedo, cJSON_CreateNumber(mean(&r)));
+        json_append(albedo, cJSON_CreateNumber(mean(&r)));
     }
     put_range(o, "roughness", &roughness);
     put_range(o, "depth", &depth);
-    cJSON_AddNumberToObject(o, "object_pixels", (double)depth.count);
+    json_put_number(o, "object_pixels", (double)depth.count);
 }
 
 static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
@@ -72,48 +73,48 @@ static void put_reconstruction_error(cJSON *root, const merlin_maps *maps)
         double seen = fmin(scale * photo.data[i], 1), made = maps->reconstruction.data[i];
         add(&r, (seen - made) * (seen - made));
     }
-    cJSON_AddNumberToObject(root, "reconstruction_rmse", sqrt(mean(&r)));
+    json_put_number(root, "reconstruction_rmse", sqrt(mean(&r)));
 }
 
 static void put_timing(cJSON *root, const merlin_timing *t)
 {
-    cJSON *o = cJSON_AddObjectToObject(root, "seconds");
-    cJSON_AddNumberToObject(o, "mask", t->mask);
-    cJSON_AddNumberToObject(o, "compile", t->compile);
-    cJSON_AddNumberToObject(o, "prepare", t->prepare);
-    cJSON_AddNumberToObject(o, "choose", t->choose);
-    cJSON_AddNumberToObject(o, "network", t->network);
-    cJSON_AddNumberToObject(o, "upsample", t->upsample);
+    cJSON *o = json_put_object(root, "seconds");
+    json_put_number(o, "mask", t->mask);
+    json_put_number(o, "compile", t->compile);
+    json_put_number(o, "prepare", t->prepare);
+    json_put_number(o, "choose", t->choose);
+    json_put_number(o, "network", t->network);
+    json_put_number(o, "upsample", t->upsample);
 }
 
 /* Nine coefficients of three channels. */
 static void put_environment(cJSON *root, const merlin_maps *maps)
 {
     if (!maps->has_environment) return;
-    cJSON *all = cJSON_AddArrayToObject(root, "environment");
+    cJSON *all = json_put_array(root, "environment");
     for (int i = 0; i < 9; i++) {
         cJSON *channels = cJSON_CreateArray();
         for (int c = 0; c < 3; c++)
-            cJSON_AddItemToArray(channels, cJSON_CreateNumber((double)maps->environment[i][c]));
-        cJSON_AddItemToArray(all, channels);
+            json_append(channels, cJSON_CreateNumber((double)maps->environment[i][c]));
+        json_append(all, channels);
     }
 }
 
 /* The lens of the crop, and where the lens's axis is. */
 static void put_lens(cJSON *root, const merlin_maps *maps)
 {
-    cJSON_AddStringToObject(root, "lens", maps->fov > 0 ? "known" : "assumed");
-    cJSON_AddNumberToObject(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)CAMERA_FOV);
-    cJSON *slant = cJSON_AddArrayToObject(root, "slant");
+    json_put_text(root, "lens", maps->fov > 0 ? "known" : "assumed");
+    json_put_number(root, "field_of_view", maps->fov > 0 ? (double)maps->fov : (double)CAMERA_FOV);
+    cJSON *slant = json_put_array(root, "slant");
     for (int i = 0; i < 2; i++)
-        cJSON_AddItemToArray(slant, cJSON_CreateNumber((double)maps->slant[i]));
+        json_append(slant, cJSON_CreateNumber((double)maps->slant[i]));
 }
 
 static void put_numbers(cJSON *to, const char *name, const float *values, int count)
 {
-    cJSON *all = cJSON_AddArrayToObject(to, name);
+    cJSON *all = json_put_array(to, name);
     for (int i = 0; i < count; i++)
-        cJSON_AddItemToArray(all, cJSON_CreateNumber((double)values[i]));
+        json_append(all, cJSON_CreateNumber((double)values[i]));
 }
 
 /* What a model of any light sees. */
@@ -121,16 +122,16 @@ static void put_light(cJSON *root, const merlin_found_light *l)
 {
     char words[LIGHT_WORDS];
     if (!l->known) return;
-    cJSON *light = cJSON_AddObjectToObject(root, "light");
+    cJSON *light = json_put_object(root, "light");
     const found_light_shares share = found_light_share(l);
     light_words(l, words);
-    cJSON_AddStringToObject(light, "words", words);
+    json_put_text(light, "words", words);
     put_numbers(light, "shares", (const float[]){share.flash, share.lamp, share.rest}, 3);
-    cJSON_AddNumberToObject(light, "flash", (double)l->flash);
-    cJSON_AddNumberToObject(light, "lamp_sure", (double)l->lamp_sure);
+    json_put_number(light, "flash", (double)l->flash);
+    json_put_number(light, "lamp_sure", (double)l->lamp_sure);
     if (l->lamp[0] != 0 || l->lamp[1] != 0 || l->lamp[2] != 0) {
         put_numbers(light, "lamp", l->lamp, 3);
-        cJSON_AddNumberToObject(light, "lamp_distance", (double)l->lamp_distance);
+        json_put_number(light, "lamp_distance", (double)l->lamp_distance);
         put_numbers(light, "lamp_strength", l->lamp_strength, 3);
     }
     put_numbers(light, "rest", &l->rest[0][0], 27);
@@ -148,27 +149,27 @@ char *maps_report(const merlin_maps *maps)
     warnings doubts = {0};
     doubts_list(maps, &doubts);
     cJSON *root = report_begin(&doubts);
-    cJSON_AddStringToObject(root, "model", maps->model);
-    cJSON_AddNumberToObject(root, "width", maps->albedo.width);
-    cJSON_AddNumberToObject(root, "height", maps->albedo.height);
-    cJSON *square = cJSON_AddObjectToObject(root, "crop");
-    cJSON_AddNumberToObject(square, "x", maps->crop.x);
-    cJSON_AddNumberToObject(square, "y", maps->crop.y);
-    cJSON_AddNumberToObject(square, "side", maps->crop.side);
-    cJSON_AddNumberToObject(root, "network_size", maps->size);
-    cJSON_AddNumberToObject(root, "exposure_gain", maps->gain);
-    cJSON_AddNumberToObject(root, "burnt_out", maps->burnt_out);
-    cJSON_AddStringToObject(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
-    cJSON_AddNumberToObject(root, "mask_confidence", maps->mask_confidence);
-    cJSON_AddNumberToObject(root, "light_elsewhere", maps->light_elsewhere);
+    json_put_text(root, "model", maps->model);
+    json_put_number(root, "width", maps->albedo.width);
+    json_put_number(root, "height", maps->albedo.height);
+    cJSON *square = json_put_object(root, "crop");
+    json_put_number(square, "x", maps->crop.x);
+    json_put_number(square, "y", maps->crop.y);
+    json_put_number(square, "side", maps->crop.side);
+    json_put_number(root, "network_size", maps->size);
+    json_put_number(root, "exposure_gain", maps->gain);
+    json_put_number(root, "burnt_out", maps->burnt_out);
+    json_put_text(root, "mask", maps->mask_source == MERLIN_MASK_FOUND ? "found" : "given");
+    json_put_number(root, "mask_confidence", maps->mask_confidence);
+    json_put_number(root, "light_elsewhere", maps->light_elsewhere);
     put_lens(root, maps);
     put_light(root, &maps->light);
-    cJSON_AddStringToObject(root, "albedo_scale", is_scale_known(maps) ? "known" : "unsure");
+    json_put_text(root, "albedo_scale", is_scale_known(maps) ? "known" : "unsure");
     put_environment(root, maps);
     put_statistics(root, maps);
     put_reconstruction_error(root, maps);
     put_timing(root, &maps->timing);
-    char *text = cJSON_Print(root);
+    char *text = json_print(root);
     cJSON_Delete(root);
     return text;
 }

@@ -17,24 +17,29 @@ static const char *const single_outputs[] = {"albedo",           "normal", "roug
 static const char *const normal_outputs[] = {"normal", NULL};
 static const char *const light_outputs[] = {"lights", NULL};
 
-static bool is_same_config(const model_config *a, const model_config *b)
+/* Callers know the configuration already, so that it must be what it was when the file was opened. */
+static status check_config(const network *n, const model_config *now)
 {
-    char *one = model_config_write(a), *other = model_config_write(b);
-    bool same = one && other && strcmp(one, other) == 0;
+    char *one = model_config_write(now), *other = model_config_write(&n->config);
+    status s = OK;
+    if (!one || !other)
+        s = fail(MERLIN_NO_MEMORY, "no memory to read %s", n->weights);
+    else if (strcmp(one, other) != 0)
+        s = fail(MERLIN_BAD_INPUT, "%s was replaced by other weights since it was opened", n->weights);
     free(one);
     free(other);
-    return same;
+    return s;
 }
 
-/* Callers know the configuration already, so that it must be what it was when the file was opened. */
 static status load_params(network *n)
 {
     model_config now;
     status s = model_load(n->weights, &now, &n->params);
-    if (s != OK || is_same_config(&now, &n->config)) return s;
+    if (s == OK) s = check_config(n, &now);
+    if (s == OK) return OK;
     nn_params_free(n->params);
     n->params = NULL;
-    return fail(MERLIN_BAD_INPUT, "%s was replaced by other weights since it was opened", n->weights);
+    return s;
 }
 
 status network_open_later(const char *weights, network **out)

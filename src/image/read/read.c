@@ -20,7 +20,7 @@
 static status check_plain(const char *path)
 {
     struct stat about;
-    if (stat(path, &about) != 0) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (stat(path, &about) != 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     if (S_ISDIR(about.st_mode)) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is a folder, not a picture", path);
     return S_ISREG(about.st_mode) ? OK : fail(MERLIN_BAD_INPUT, "cannot read %s: it is not a plain file", path);
 }
@@ -31,7 +31,7 @@ static status look_at(const char *path, picture_kind *kind)
     status s = check_plain(path); /* before it is opened: a device may already do something then */
     if (s != OK) return s;
     FILE *f = file_open(path);
-    if (!f) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, strerror(errno));
+    if (!f) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     bool empty = getc(f) == EOF;
     fclose(f);
     if (empty) return fail(MERLIN_BAD_INPUT, "cannot read %s: the file is empty", path);

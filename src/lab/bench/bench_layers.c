@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text/report.h"
@@ -152,41 +153,39 @@ void bench_layers_print(const bench_layers *layers, FILE *stream)
 
 static void add_layer(cJSON *parent, const bench_layer_run *run, const bench_layer *l)
 {
-    cJSON *o = cJSON_CreateObject();
-    cJSON_AddItemToArray(parent, o);
-    cJSON_AddStringToObject(o, "pass", l->pass);
-    cJSON_AddStringToObject(o, "operation", l->operation);
-    cJSON_AddStringToObject(o, "name", l->name);
+    cJSON *o = json_append_object(parent);
+    json_put_text(o, "pass", l->pass);
+    json_put_text(o, "operation", l->operation);
+    json_put_text(o, "name", l->name);
     const int shape[] = {l->n, l->h, l->w, l->c};
-    cJSON_AddItemToObject(o, "shape", cJSON_CreateIntArray(shape, 4));
-    cJSON_AddNumberToObject(o, "seconds", l->seconds);
-    cJSON_AddNumberToObject(o, "gflop", l->flops * 1e-9);
-    cJSON_AddNumberToObject(o, "share_of_peak", share_of_peak(run, l));
-    cJSON_AddNumberToObject(o, "filtered", l->filtered);
-    cJSON_AddNumberToObject(o, "summed", l->summed);
+    json_put_item(o, "shape", cJSON_CreateIntArray(shape, 4));
+    json_put_number(o, "seconds", l->seconds);
+    json_put_number(o, "gflop", l->flops * 1e-9);
+    json_put_number(o, "share_of_peak", share_of_peak(run, l));
+    json_put_number(o, "filtered", l->filtered);
+    json_put_number(o, "summed", l->summed);
 }
 
 char *bench_layers_json(const bench_layers *layers)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(o, "model", layers->model);
-    cJSON_AddNumberToObject(o, "threads", layers->threads);
-    cJSON *runs = cJSON_AddArrayToObject(o, "runs");
+    json_put_text(o, "model", layers->model);
+    json_put_number(o, "threads", layers->threads);
+    cJSON *runs = json_put_array(o, "runs");
     for (int i = 0; i < layers->runs; i++) {
         const bench_layer_run *run = &layers->run[i];
-        cJSON *one = cJSON_CreateObject();
-        cJSON_AddItemToArray(runs, one);
-        cJSON_AddStringToObject(one, "purpose", run->options.purpose == NN_TRAIN ? "training" : "inference");
-        cJSON_AddStringToObject(one, "type", bench_type_name(run->options.type));
-        cJSON_AddNumberToObject(one, "batch", run->options.batch);
-        cJSON_AddNumberToObject(one, "size", run->options.width);
-        cJSON_AddNumberToObject(one, "peak", run->peak * 1e-9);
-        cJSON_AddNumberToObject(one, "seconds", run->seconds);
-        cJSON *list = cJSON_AddArrayToObject(one, "layers");
+        cJSON *one = json_append_object(runs);
+        json_put_text(one, "purpose", run->options.purpose == NN_TRAIN ? "training" : "inference");
+        json_put_text(one, "type", bench_type_name(run->options.type));
+        json_put_number(one, "batch", run->options.batch);
+        json_put_number(one, "size", run->options.width);
+        json_put_number(one, "peak", run->peak * 1e-9);
+        json_put_number(one, "seconds", run->seconds);
+        cJSON *list = json_put_array(one, "layers");
         for (size_t k = 0; k < run->count; k++)
             add_layer(list, run, &run->layer[k]);
     }
-    char *text = cJSON_Print(o);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <cjson/cJSON.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/bench/bench.h"
 #include "lab/bench/bench_network.h"
@@ -87,61 +88,61 @@ void bench_print_table(const bench_report *r, FILE *stream)
 
 static void add_network(cJSON *parent, const char *key, const bench_network *n, double least)
 {
-    cJSON *o = cJSON_AddObjectToObject(parent, key);
-    cJSON_AddNumberToObject(o, "seconds", n->seconds);
-    cJSON_AddNumberToObject(o, "gflop", n->flops * 1e-9);
-    cJSON_AddNumberToObject(o, "gflop_per_second", n->flops / n->seconds * 1e-9);
-    cJSON_AddNumberToObject(o, "share_of_peak", n->share);
-    cJSON_AddNumberToObject(o, "planned_bytes", (double)n->bytes);
-    cJSON_AddNumberToObject(o, "resident_bytes", (double)n->resident_bytes);
-    cJSON_AddNumberToObject(o, "goal", least);
-    cJSON_AddBoolToObject(o, "holds", n->share >= least);
+    cJSON *o = json_put_object(parent, key);
+    json_put_number(o, "seconds", n->seconds);
+    json_put_number(o, "gflop", n->flops * 1e-9);
+    json_put_number(o, "gflop_per_second", n->flops / n->seconds * 1e-9);
+    json_put_number(o, "share_of_peak", n->share);
+    json_put_number(o, "planned_bytes", (double)n->bytes);
+    json_put_number(o, "resident_bytes", (double)n->resident_bytes);
+    json_put_number(o, "goal", least);
+    json_put_bool(o, "holds", n->share >= least);
 }
 
 static void add_type(cJSON *parent, const bench_report *r, int t)
 {
-    cJSON *o = cJSON_AddObjectToObject(parent, bench_type_name((nn_type)t));
-    cJSON_AddNumberToObject(o, "peak_forward", r->peak[t].forward * 1e-9);
-    cJSON_AddNumberToObject(o, "peak_backward_data", r->peak[t].backward_data * 1e-9);
-    cJSON_AddNumberToObject(o, "peak_backward_weights", r->peak[t].backward_weights * 1e-9);
-    cJSON_AddNumberToObject(o, "peak_training", bench_peak_for(&r->peak[t], NN_TRAIN) * 1e-9);
+    cJSON *o = json_put_object(parent, bench_type_name((nn_type)t));
+    json_put_number(o, "peak_forward", r->peak[t].forward * 1e-9);
+    json_put_number(o, "peak_backward_data", r->peak[t].backward_data * 1e-9);
+    json_put_number(o, "peak_backward_weights", r->peak[t].backward_weights * 1e-9);
+    json_put_number(o, "peak_training", bench_peak_for(&r->peak[t], NN_TRAIN) * 1e-9);
     add_network(o, "inference_256", &r->inference[t], least_inference_share);
     add_network(o, "training_128", &r->training[t], least_training_share);
 }
 
 static void add_relight(cJSON *parent, const bench_relighting *b)
 {
-    cJSON *relight = cJSON_AddObjectToObject(parent, "relight_256");
+    cJSON *relight = json_put_object(parent, "relight_256");
     for (int i = 0; i < BENCH_WAYS; i++) {
-        cJSON *way = cJSON_AddObjectToObject(relight, way_keys[i]);
-        cJSON_AddNumberToObject(way, "stage_seconds", b->stage_seconds[i]);
-        cJSON_AddNumberToObject(way, "light_seconds", b->light_seconds[i]);
+        cJSON *way = json_put_object(relight, way_keys[i]);
+        json_put_number(way, "stage_seconds", b->stage_seconds[i]);
+        json_put_number(way, "light_seconds", b->light_seconds[i]);
     }
 }
 
 char *bench_report_json(const bench_report *r)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(o, "model", r->model);
-    cJSON_AddNumberToObject(o, "threads", r->threads);
-    cJSON_AddNumberToObject(o, "training_batch", r->batch);
-    cJSON_AddNumberToObject(o, "copy_bytes_per_second", r->copy_rate);
+    json_put_text(o, "model", r->model);
+    json_put_number(o, "threads", r->threads);
+    json_put_number(o, "training_batch", r->batch);
+    json_put_number(o, "copy_bytes_per_second", r->copy_rate);
     for (int t = 0; t < BENCH_TYPES; t++)
         if (r->measured[t]) add_type(o, r, t);
-    cJSON *estimate = cJSON_AddObjectToObject(o, "estimate_256");
+    cJSON *estimate = json_put_object(o, "estimate_256");
     const bench_estimation *e = &r->estimate;
-    cJSON_AddNumberToObject(estimate, "seconds", e->seconds);
-    cJSON *parts = cJSON_AddObjectToObject(estimate, "parts");
+    json_put_number(estimate, "seconds", e->seconds);
+    cJSON *parts = json_put_object(estimate, "parts");
     for (int i = 0; i < BENCH_PARTS; i++)
-        cJSON_AddNumberToObject(parts, e->part[i].name, e->part[i].seconds);
-    cJSON_AddNumberToObject(estimate, "resident_bytes", (double)e->bytes);
-    cJSON_AddBoolToObject(estimate, "holds",
-                          e->seconds <= most_estimate_seconds && megabytes(e->bytes) <= most_estimate_megabytes);
+        json_put_number(parts, e->part[i].name, e->part[i].seconds);
+    json_put_number(estimate, "resident_bytes", (double)e->bytes);
+    json_put_bool(estimate, "holds",
+                  e->seconds <= most_estimate_seconds && megabytes(e->bytes) <= most_estimate_megabytes);
     add_relight(o, &r->relight);
-    cJSON *rendering = cJSON_AddObjectToObject(o, "rendering_128");
-    cJSON_AddNumberToObject(rendering, "samples_per_second", (double)r->samples / r->render_seconds);
-    cJSON_AddNumberToObject(rendering, "rays_per_second", (double)r->rays / r->render_seconds);
-    char *text = cJSON_Print(o);
+    cJSON *rendering = json_put_object(o, "rendering_128");
+    json_put_number(rendering, "samples_per_second", (double)r->samples / r->render_seconds);
+    json_put_number(rendering, "rays_per_second", (double)r->rays / r->render_seconds);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

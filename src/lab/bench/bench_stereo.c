@@ -4,6 +4,7 @@
 #include <cjson/cJSON.h>
 #include <stdlib.h>
 
+#include "base/json/json_put.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -132,25 +133,24 @@ void bench_stereo_print(const bench_stereo_report *r, FILE *stream)
 char *bench_stereo_json(const bench_stereo_report *r)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddNumberToObject(o, "threads", r->threads);
-    cJSON_AddNumberToObject(o, "copy_bytes_per_second", r->copy_rate);
-    cJSON_AddNumberToObject(o, "width", r->width);
-    cJSON_AddNumberToObject(o, "height", r->height);
-    cJSON_AddNumberToObject(o, "channels", r->channels);
-    cJSON *runs = cJSON_AddArrayToObject(o, "least_squares");
+    json_put_number(o, "threads", r->threads);
+    json_put_number(o, "copy_bytes_per_second", r->copy_rate);
+    json_put_number(o, "width", r->width);
+    json_put_number(o, "height", r->height);
+    json_put_number(o, "channels", r->channels);
+    cJSON *runs = json_put_array(o, "least_squares");
     for (int i = 0; i < BENCH_STEREO_RUNS; i++) {
         const bench_stereo_run *run = &r->run[i];
-        cJSON *one = cJSON_CreateObject();
-        cJSON_AddItemToArray(runs, one);
-        cJSON_AddNumberToObject(one, "pictures", run->pictures);
-        cJSON_AddBoolToObject(one, "shadows", run->shadows);
-        cJSON_AddNumberToObject(one, "seconds", run->seconds);
-        cJSON_AddNumberToObject(one, "input_bytes", (double)run->input_bytes);
-        cJSON_AddNumberToObject(one, "bytes_per_second", rate(run));
-        cJSON_AddNumberToObject(one, "share_of_copy_rate", rate(run) / r->copy_rate);
-        cJSON_AddNumberToObject(one, "working_bytes", (double)run->working_bytes);
+        cJSON *one = json_append_object(runs);
+        json_put_number(one, "pictures", run->pictures);
+        json_put_bool(one, "shadows", run->shadows);
+        json_put_number(one, "seconds", run->seconds);
+        json_put_number(one, "input_bytes", (double)run->input_bytes);
+        json_put_number(one, "bytes_per_second", rate(run));
+        json_put_number(one, "share_of_copy_rate", rate(run) / r->copy_rate);
+        json_put_number(one, "working_bytes", (double)run->working_bytes);
     }
-    char *text = cJSON_Print(o);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

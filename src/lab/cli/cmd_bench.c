@@ -119,7 +119,7 @@ static status run_with_random_weights(const request *r)
     int file = mkstemps(path, (int)strlen(".safetensors"));
     status s = OK;
     if (file < 0) {
-        s = fail(MERLIN_CANNOT_WRITE, "cannot make the file %s: %s (TMPDIR says where)", path, strerror(errno));
+        s = fail_by_errno(MERLIN_CANNOT_WRITE, "cannot make the file %s (TMPDIR says where)", path);
     } else {
         close(file);
         s = write_random_weights(r->config, path);

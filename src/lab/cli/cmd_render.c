@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "command/check_files.h"
 #include "command/cli.h"
@@ -161,18 +162,18 @@ static status print_json(const request *r, const render_stats *stats, double sam
     skipped_warn(&stats->skipped_meshes, &told);
     cJSON *report = report_begin(&told);
     if (told.count) {
-        cJSON *all = cJSON_AddArrayToObject(report, "skipped");
+        cJSON *all = json_put_array(report, "skipped");
         skipped_json(&stats->skipped_maps, r->options.environment_folder, all);
         skipped_json(&stats->skipped_materials, r->options.material_folder, all);
         skipped_json(&stats->skipped_meshes, r->options.mesh_folder, all);
     }
-    json_line_text(report, "output", r->options.folder);
-    cJSON_AddNumberToObject(report, "rendered", (double)stats->rendered);
-    cJSON_AddNumberToObject(report, "kept", (double)stats->kept);
-    cJSON_AddNumberToObject(report, "seconds", stats->seconds);
-    cJSON_AddNumberToObject(report, "samples_per_second", samples);
-    cJSON_AddNumberToObject(report, "rays", (double)stats->rays);
-    cJSON_AddNumberToObject(report, "rays_per_second", rays);
+    json_put_text(report, "output", r->options.folder);
+    json_put_number(report, "rendered", (double)stats->rendered);
+    json_put_number(report, "kept", (double)stats->kept);
+    json_put_number(report, "seconds", stats->seconds);
+    json_put_number(report, "samples_per_second", samples);
+    json_put_number(report, "rays", (double)stats->rays);
+    json_put_number(report, "rays_per_second", rays);
     status s = json_line_print(report);
     cJSON_Delete(report);
     return s;

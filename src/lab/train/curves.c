@@ -34,7 +34,7 @@ static void write_header(FILE *f)
 status train_curve_append(const char *path, const train_curve_row *row, const train_losses *l)
 {
     FILE *f = fopen(path, "a");
-    if (!f) return fail(MERLIN_CANNOT_WRITE, "cannot append to %s: %s", path, strerror(errno));
+    if (!f) return fail_by_errno(MERLIN_CANNOT_WRITE, "cannot append to %s", path);
     struct stat before;
     if (fstat(fileno(f), &before) == 0 && before.st_size == 0) write_header(f);
     double n = l->count ? (double)l->count : 1;
@@ -48,17 +48,17 @@ status train_curve_append(const char *path, const train_curve_row *row, const tr
     }
     fputc('\n', f);
     bool bad = ferror(f) != 0;
-    if (fclose(f) != 0 || bad) return fail(MERLIN_CANNOT_WRITE, "cannot append to %s: %s", path, strerror(errno));
+    if (fclose(f) != 0 || bad) return fail_by_errno(MERLIN_CANNOT_WRITE, "cannot append to %s", path);
     return OK;
 }
 
 status train_curve_keep(const char *path)
 {
     int file = open(path, O_RDONLY);
-    if (file < 0) return errno == ENOENT ? OK : fail(MERLIN_CANNOT_WRITE, "cannot open %s: %s", path, strerror(errno));
+    if (file < 0) return errno == ENOENT ? OK : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot open %s", path);
     bool good = fsync(file) == 0;
     close(file);
-    return good ? OK : fail(MERLIN_CANNOT_WRITE, "cannot write %s: %s", path, strerror(errno));
+    return good ? OK : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write %s", path);
 }
 
 status train_curve_truncate(const char *path, int64_t step)

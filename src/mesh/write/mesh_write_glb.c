@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json/json_put.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
 
@@ -183,46 +184,39 @@ static size_t padded(size_t size)
     return (size + 3) & ~(size_t)3;
 }
 
-static cJSON *add_item(cJSON *array)
-{
-    cJSON *o = cJSON_CreateObject();
-    cJSON_AddItemToArray(array, o);
-    return o;
-}
-
 static void put_bounds(cJSON *accessor, const char *name, const float bound[3])
 {
-    cJSON *a = cJSON_AddArrayToObject(accessor, name);
+    cJSON *a = json_put_array(accessor, name);
     for (int c = 0; c < 3; c++)
-        cJSON_AddItemToArray(a, cJSON_CreateNumber((double)bound[c]));
+        json_append(a, cJSON_CreateNumber((double)bound[c]));
 }
 
 /* Accessors come first among the parts' numbers, so that an accessor has its view's number. Pictures follow. */
 static void put_parts(cJSON *root, const glb *g)
 {
-    cJSON *views = cJSON_AddArrayToObject(root, "bufferViews"), *accessors = cJSON_AddArrayToObject(root, "accessors");
+    cJSON *views = json_put_array(root, "bufferViews"), *accessors = json_put_array(root, "accessors");
     size_t offset = 0;
     for (int i = 0; i < g->count; i++) {
         const part *p = &g->parts[i];
-        cJSON *view = add_item(views);
-        cJSON_AddNumberToObject(view, "buffer", 0);
-        cJSON_AddNumberToObject(view, "byteOffset", (double)offset);
-        cJSON_AddNumberToObject(view, "byteLength", (double)p->size);
+        cJSON *view = json_append_object(views);
+        json_put_number(view, "buffer", 0);
+        json_put_number(view, "byteOffset", (double)offset);
+        json_put_number(view, "byteLength", (double)p->size);
         offset += padded(p->size);
         if (!p->type) continue;
-        cJSON_AddNumberToObject(view, "target", p->target);
-        cJSON *accessor = add_item(accessors);
-        cJSON_AddNumberToObject(accessor, "bufferView", i);
-        cJSON_AddNumberToObject(accessor, "componentType", p->component);
-        cJSON_AddNumberToObject(accessor, "count", (double)p->count);
-        cJSON_AddStringToObject(accessor, "type", p->type);
+        json_put_number(view, "target", p->target);
+        cJSON *accessor = json_append_object(accessors);
+        json_put_number(accessor, "bufferView", i);
+        json_put_number(accessor, "componentType", p->component);
+        json_put_number(accessor, "count", (double)p->count);
+        json_put_text(accessor, "type", p->type);
         if (p->bounded) {
             put_bounds(accessor, "min", p->low);
             put_bounds(accessor, "max", p->high);
         }
     }
-    cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
-    cJSON_AddNumberToObject(add_item(buffers), "byteLength", (double)offset);
+    cJSON *buffers = json_put_array(root, "buffers");
+    json_put_number(json_append_object(buffers), "byteLength", (double)offset);
 }
 
 /* A texture of the picture in that part; does nothing without one. */
@@ -230,49 +224,49 @@ static void put_texture(cJSON *root, cJSON *user, const char *name, int picture)
 {
     if (picture < 0) return;
     cJSON *images = cJSON_GetObjectItem(root, "images"), *textures = cJSON_GetObjectItem(root, "textures");
-    if (!images) images = cJSON_AddArrayToObject(root, "images");
-    if (!textures) textures = cJSON_AddArrayToObject(root, "textures");
+    if (!images) images = json_put_array(root, "images");
+    if (!textures) textures = json_put_array(root, "textures");
     int number = cJSON_GetArraySize(images);
-    cJSON *image = add_item(images);
-    cJSON_AddNumberToObject(image, "bufferView", picture);
-    cJSON_AddStringToObject(image, "mimeType", "image/png");
-    cJSON_AddNumberToObject(add_item(textures), "source", number);
-    cJSON_AddNumberToObject(cJSON_AddObjectToObject(user, name), "index", number);
+    cJSON *image = json_append_object(images);
+    json_put_number(image, "bufferView", picture);
+    json_put_text(image, "mimeType", "image/png");
+    json_put_number(json_append_object(textures), "source", number);
+    json_put_number(json_put_object(user, name), "index", number);
 }
 
 static void put_material(cJSON *root, const glb *g)
 {
-    cJSON *material = add_item(cJSON_AddArrayToObject(root, "materials"));
-    cJSON_AddStringToObject(material, "name", "surface");
-    cJSON *pbr = cJSON_AddObjectToObject(material, "pbrMetallicRoughness");
-    cJSON_AddNumberToObject(pbr, "metallicFactor", 0);
-    cJSON_AddNumberToObject(pbr, "roughnessFactor", 1);
+    cJSON *material = json_append_object(json_put_array(root, "materials"));
+    json_put_text(material, "name", "surface");
+    cJSON *pbr = json_put_object(material, "pbrMetallicRoughness");
+    json_put_number(pbr, "metallicFactor", 0);
+    json_put_number(pbr, "roughnessFactor", 1);
     put_texture(root, pbr, "baseColorTexture", g->albedo_part);
     put_texture(root, pbr, "metallicRoughnessTexture", g->roughness_part);
     put_texture(root, material, "normalTexture", g->normal_part);
-    cJSON_AddBoolToObject(material, "doubleSided", true);
+    json_put_bool(material, "doubleSided", true);
 }
 
 static void put_scene(cJSON *root, const glb *g)
 {
-    cJSON *asset = cJSON_AddObjectToObject(root, "asset");
-    cJSON_AddStringToObject(asset, "version", "2.0");
-    cJSON_AddStringToObject(asset, "generator", "merlin");
-    cJSON_AddNumberToObject(root, "scene", 0);
-    cJSON *nodes = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "scenes")), "nodes");
-    cJSON_AddItemToArray(nodes, cJSON_CreateNumber(0));
-    cJSON *node = add_item(cJSON_AddArrayToObject(root, "nodes"));
-    cJSON_AddNumberToObject(node, "mesh", 0);
-    cJSON_AddItemToObject(node, "scale", cJSON_CreateDoubleArray((const double[]){g->scale, g->scale, g->scale}, 3));
-    cJSON *primitives = cJSON_AddArrayToObject(add_item(cJSON_AddArrayToObject(root, "meshes")), "primitives");
-    cJSON *primitive = add_item(primitives), *attributes = cJSON_AddObjectToObject(primitive, "attributes");
-    cJSON_AddNumberToObject(attributes, "POSITION", 0);
-    cJSON_AddNumberToObject(attributes, "NORMAL", 1);
-    cJSON_AddNumberToObject(attributes, "TEXCOORD_0", 2);
-    if (g->tangent_part >= 0) cJSON_AddNumberToObject(attributes, "TANGENT", g->tangent_part);
-    cJSON_AddNumberToObject(primitive, "indices", 3);
-    cJSON_AddNumberToObject(primitive, "material", 0);
-    cJSON_AddNumberToObject(primitive, "mode", TRIANGLES);
+    cJSON *asset = json_put_object(root, "asset");
+    json_put_text(asset, "version", "2.0");
+    json_put_text(asset, "generator", "merlin");
+    json_put_number(root, "scene", 0);
+    cJSON *nodes = json_put_array(json_append_object(json_put_array(root, "scenes")), "nodes");
+    json_append(nodes, cJSON_CreateNumber(0));
+    cJSON *node = json_append_object(json_put_array(root, "nodes"));
+    json_put_number(node, "mesh", 0);
+    json_put_item(node, "scale", cJSON_CreateDoubleArray((const double[]){g->scale, g->scale, g->scale}, 3));
+    cJSON *primitives = json_put_array(json_append_object(json_put_array(root, "meshes")), "primitives");
+    cJSON *primitive = json_append_object(primitives), *attributes = json_put_object(primitive, "attributes");
+    json_put_number(attributes, "POSITION", 0);
+    json_put_number(attributes, "NORMAL", 1);
+    json_put_number(attributes, "TEXCOORD_0", 2);
+    if (g->tangent_part >= 0) json_put_number(attributes, "TANGENT", g->tangent_part);
+    json_put_number(primitive, "indices", 3);
+    json_put_number(primitive, "material", 0);
+    json_put_number(primitive, "mode", TRIANGLES);
 }
 
 /* ---- the file ---- */
@@ -329,7 +323,7 @@ static status assemble(const char *path, const glb *g)
     put_scene(root, g);
     put_material(root, g);
     put_parts(root, g);
-    char *json = cJSON_PrintUnformatted(root);
+    char *json = json_print_line(root);
     cJSON_Delete(root);
     if (!json) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
     status s = write_file(path, g, json);

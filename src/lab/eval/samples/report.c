@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 
 typedef struct row_text {
@@ -235,25 +236,25 @@ void eval_print_table(const eval_report *report, FILE *stream)
 
 static void add_number(cJSON *o, const char *key, double value)
 {
-    if (!isnan(value)) cJSON_AddNumberToObject(o, key, value);
+    if (!isnan(value)) json_put_number(o, key, value);
 }
 
 static void add_scores(cJSON *o, const eval_scores *scores)
 {
-    cJSON_AddNumberToObject(o, "samples", (double)scores->samples);
-    cJSON_AddNumberToObject(o, "saturated_share", scores->saturated / (double)scores->samples);
+    json_put_number(o, "samples", (double)scores->samples);
+    json_put_number(o, "saturated_share", scores->saturated / (double)scores->samples);
     for (int row = 0; row < EVAL_ROWS; row++) {
         if (isnan(eval_best_trivial(scores, (eval_row)row))) continue;
-        cJSON *r = cJSON_AddObjectToObject(o, rows[row].key);
+        cJSON *r = json_put_object(o, rows[row].key);
         for (int answer = 0; answer < EVAL_ANSWERS; answer++)
             add_number(r, answers[answer], eval_score(scores, (eval_row)row, (eval_answer)answer));
         eval_verdict v = eval_judge(scores, (eval_row)row);
         add_number(r, "ratio", v.ratio);
         add_number(r, "margin", v.margin);
-        if (rows[row].paper > 0) cJSON_AddNumberToObject(r, "paper", rows[row].paper);
+        if (rows[row].paper > 0) json_put_number(r, "paper", rows[row].paper);
         if (v.kind == EVAL_NO_GOAL) continue;
-        cJSON_AddNumberToObject(r, "goal", v.goal);
-        cJSON_AddBoolToObject(r, "holds", v.holds);
+        json_put_number(r, "goal", v.goal);
+        json_put_bool(r, "holds", v.holds);
     }
 }
 
@@ -262,10 +263,10 @@ static void add_regions(cJSON *o, const eval_scores *scores)
     for (int i = 0; i < EVAL_REGIONS; i++) {
         const eval_region *r = &scores->regions[i];
         if (!r->pixels) continue;
-        cJSON *region = cJSON_AddObjectToObject(o, regions[i].key);
-        cJSON_AddNumberToObject(region, "pixels", (double)r->pixels);
+        cJSON *region = json_put_object(o, regions[i].key);
+        json_put_number(region, "pixels", (double)r->pixels);
         for (int k = 0; k < MAPS; k++) {
-            cJSON *map = cJSON_AddObjectToObject(region, rows[maps[k]].key);
+            cJSON *map = json_put_object(region, rows[maps[k]].key);
             for (int answer = 0; answer <= EVAL_INFLATED; answer++)
                 add_number(map, answers[answer], eval_region_error(r, maps[k], (eval_answer)answer));
             add_number(map, "ratio", region_ratio(r, maps[k]));
@@ -276,27 +277,27 @@ static void add_regions(cJSON *o, const eval_scores *scores)
 char *eval_report_json(const eval_report *report)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(o, "model", report->model);
-    cJSON_AddNumberToObject(o, "size", report->size);
-    cJSON_AddBoolToObject(o, "raw", report->raw);
-    cJSON_AddNumberToObject(o, "views", report->views);
-    cJSON_AddNumberToObject(o, "white", (double)report->white);
-    cJSON *list = cJSON_AddArrayToObject(o, "given");
+    json_put_text(o, "model", report->model);
+    json_put_number(o, "size", report->size);
+    json_put_bool(o, "raw", report->raw);
+    json_put_number(o, "views", report->views);
+    json_put_number(o, "white", (double)report->white);
+    cJSON *list = json_put_array(o, "given");
     for (size_t i = 0; i < sizeof given / sizeof *given; i++)
-        if (report->given & given[i].map) cJSON_AddItemToArray(list, cJSON_CreateString(given[i].name));
-    cJSON_AddBoolToObject(o, "means_from_data", report->means_from_data);
-    cJSON_AddNumberToObject(o, "means_samples", (double)report->means_samples);
-    cJSON_AddNumberToObject(o, "environments", (double)environments(report));
-    add_scores(cJSON_AddObjectToObject(o, "all"), &report->all);
-    cJSON *classes = cJSON_AddObjectToObject(o, "classes");
+        if (report->given & given[i].map) json_append_text(list, given[i].name);
+    json_put_bool(o, "means_from_data", report->means_from_data);
+    json_put_number(o, "means_samples", (double)report->means_samples);
+    json_put_number(o, "environments", (double)environments(report));
+    add_scores(json_put_object(o, "all"), &report->all);
+    cJSON *classes = json_put_object(o, "classes");
     for (int c = 0; c < report->class_count; c++)
-        add_scores(cJSON_AddObjectToObject(classes, report->class_names[c]), &report->classes[c]);
-    cJSON *by_saturation = cJSON_AddObjectToObject(o, "saturated");
+        add_scores(json_put_object(classes, report->class_names[c]), &report->classes[c]);
+    cJSON *by_saturation = json_put_object(o, "saturated");
     for (int i = 0; i < EVAL_SATURATIONS; i++)
         if (report->saturations[i].samples)
-            add_scores(cJSON_AddObjectToObject(by_saturation, saturations[i].key), &report->saturations[i]);
-    add_regions(cJSON_AddObjectToObject(o, "regions"), &report->all);
-    char *text = cJSON_Print(o);
+            add_scores(json_put_object(by_saturation, saturations[i].key), &report->saturations[i]);
+    add_regions(json_put_object(o, "regions"), &report->all);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/stereo/picture_table.h"
@@ -60,35 +61,33 @@ void picture_table_print(const picture_table *t, FILE *stream)
 
 static void add_picture(cJSON *all, const picture_score *p)
 {
-    cJSON *o = cJSON_CreateObject();
-    cJSON_AddItemToArray(all, o);
-    cJSON_AddStringToObject(o, "name", p->name);
-    cJSON_AddNumberToObject(o, "normal_angle_degrees", p->error);
-    if (!isnan(p->aside)) cJSON_AddNumberToObject(o, "light_aside_degrees", p->aside);
-    if (!isnan(p->light)) cJSON_AddNumberToObject(o, "light_direction_degrees", p->light);
-    cJSON_AddBoolToObject(o, "seen_as_flash_alone", p->as_flash);
+    cJSON *o = json_append_object(all);
+    json_put_text(o, "name", p->name);
+    json_put_number(o, "normal_angle_degrees", p->error);
+    if (!isnan(p->aside)) json_put_number(o, "light_aside_degrees", p->aside);
+    if (!isnan(p->light)) json_put_number(o, "light_direction_degrees", p->light);
+    json_put_bool(o, "seen_as_flash_alone", p->as_flash);
 }
 
 char *picture_table_json(const picture_table *t)
 {
     cJSON *root = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(root, "model", t->model);
-    cJSON_AddNumberToObject(root, "seconds", t->seconds);
-    cJSON *objects = cJSON_AddArrayToObject(root, "objects");
+    json_put_text(root, "model", t->model);
+    json_put_number(root, "seconds", t->seconds);
+    cJSON *objects = json_put_array(root, "objects");
     for (size_t i = 0; i < t->count; i++) {
         const picture_column *column = &t->object[i];
         const summary s = sum_up(column);
-        cJSON *o = cJSON_CreateObject();
-        cJSON_AddItemToArray(objects, o);
-        cJSON_AddStringToObject(o, "name", column->name);
-        cJSON_AddBoolToObject(o, "true_normals", column->true_normals);
-        cJSON_AddNumberToObject(o, "frontal_degrees", s.frontal);
-        cJSON_AddNumberToObject(o, "mean_degrees", s.mean);
-        cJSON *all = cJSON_AddArrayToObject(o, "pictures");
+        cJSON *o = json_append_object(objects);
+        json_put_text(o, "name", column->name);
+        json_put_bool(o, "true_normals", column->true_normals);
+        json_put_number(o, "frontal_degrees", s.frontal);
+        json_put_number(o, "mean_degrees", s.mean);
+        cJSON *all = json_put_array(o, "pictures");
         for (int k = 0; k < column->count; k++)
             add_picture(all, &column->picture[k]);
     }
-    char *text = cJSON_PrintUnformatted(root);
+    char *text = json_print_line(root);
     cJSON_Delete(root);
     return text;
 }

@@ -2,6 +2,7 @@
 /* solver_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/eval/stereo/solver_table.h"
 
@@ -86,25 +87,24 @@ void solver_table_print(const solver_table *t, FILE *stream)
 
 char *solver_table_json(const solver_table *t)
 {
-    cJSON *o = report_begin(&(warnings){0}), *mean = cJSON_AddObjectToObject(o, "mean");
-    cJSON *goal = cJSON_AddObjectToObject(o, "goal"), *list = cJSON_AddArrayToObject(o, "objects");
-    cJSON_AddNumberToObject(o, "lights", SOLVER_LIGHTS);
+    cJSON *o = report_begin(&(warnings){0}), *mean = json_put_object(o, "mean");
+    cJSON *goal = json_put_object(o, "goal"), *list = json_put_array(o, "objects");
+    json_put_number(o, "lights", SOLVER_LIGHTS);
     for (int f = 0; f < SOLVER_FIGURES; f++) {
-        cJSON_AddNumberToObject(mean, words[f].key, solver_table_mean(t, (solver_figure)f));
-        if (words[f].goal > 0) cJSON_AddNumberToObject(goal, words[f].key, words[f].goal);
+        json_put_number(mean, words[f].key, solver_table_mean(t, (solver_figure)f));
+        if (words[f].goal > 0) json_put_number(goal, words[f].key, words[f].goal);
     }
     for (size_t i = 0; i < t->count; i++) {
         const solver_row *row = &t->object[i];
-        cJSON *one = cJSON_CreateObject();
-        cJSON_AddItemToArray(list, one);
-        cJSON_AddStringToObject(one, "name", row->name);
-        cJSON_AddNumberToObject(one, "pixels", (double)row->pixels);
-        cJSON_AddNumberToObject(one, "roughness", (double)row->roughness);
+        cJSON *one = json_append_object(list);
+        json_put_text(one, "name", row->name);
+        json_put_number(one, "pixels", (double)row->pixels);
+        json_put_number(one, "roughness", (double)row->roughness);
         for (int f = 0; f < SOLVER_FIGURES; f++)
-            cJSON_AddNumberToObject(one, words[f].key, row->figure[f]);
+            json_put_number(one, words[f].key, row->figure[f]);
     }
-    cJSON_AddNumberToObject(o, "seconds", t->seconds);
-    char *text = cJSON_Print(o);
+    json_put_number(o, "seconds", t->seconds);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

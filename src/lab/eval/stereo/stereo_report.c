@@ -2,11 +2,10 @@
 /* stereo_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
-#include "base/utf8.h"
 #include "lab/eval/stereo/stereo_table.h"
 #include "photo_stereo/draws.h"
 
@@ -101,23 +100,21 @@ static const char *const keys[STEREO_ROWS] = {"single_image", "relit_images", "r
 
 static void add_number(cJSON *o, const char *key, double value)
 {
-    if (!isnan(value)) cJSON_AddNumberToObject(o, key, value);
+    if (!isnan(value)) json_put_number(o, key, value);
 }
 
 static cJSON *object_json(const stereo_column *column)
 {
     cJSON *o = cJSON_CreateObject();
-    char *name = utf8_valid(column->name); /* a folder's */
-    cJSON_AddStringToObject(o, "name", name ? name : "");
-    free(name);
-    cJSON_AddNumberToObject(o, "pixels", (double)column->pixels);
-    cJSON_AddNumberToObject(o, "real_pictures", column->pictures);
+    json_put_text(o, "name", column->name);
+    json_put_number(o, "pixels", (double)column->pixels);
+    json_put_number(o, "real_pictures", column->pictures);
     for (int row = 0; row < STEREO_ROWS; row++) {
-        cJSON *r = cJSON_AddObjectToObject(o, keys[row]);
+        cJSON *r = json_put_object(o, keys[row]);
         add_number(r, "error_degrees", column->row[row].error);
         if (row == STEREO_SINGLE) continue;
-        cJSON_AddNumberToObject(r, "spread_of_draws", column->row[row].spread);
-        cJSON_AddNumberToObject(r, "failed_draws", column->row[row].failed);
+        json_put_number(r, "spread_of_draws", column->row[row].spread);
+        json_put_number(r, "failed_draws", column->row[row].failed);
     }
     return o;
 }
@@ -125,17 +122,17 @@ static cJSON *object_json(const stereo_column *column)
 char *stereo_table_json(const stereo_table *t)
 {
     cJSON *o = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(o, "model", t->model);
-    cJSON_AddNumberToObject(o, "draws", DRAW_MOST);
-    cJSON_AddNumberToObject(o, "pictures_a_draw", DRAW_PICTURES);
-    cJSON *mean = cJSON_AddObjectToObject(o, "mean");
+    json_put_text(o, "model", t->model);
+    json_put_number(o, "draws", DRAW_MOST);
+    json_put_number(o, "pictures_a_draw", DRAW_PICTURES);
+    cJSON *mean = json_put_object(o, "mean");
     for (int row = 0; row < STEREO_ROWS; row++)
         add_number(mean, keys[row], stereo_table_mean(t, (stereo_row)row));
-    cJSON *list = cJSON_AddArrayToObject(o, "objects");
+    cJSON *list = json_put_array(o, "objects");
     for (size_t i = 0; i < t->count; i++)
-        cJSON_AddItemToArray(list, object_json(&t->object[i]));
-    cJSON_AddNumberToObject(o, "seconds", t->seconds);
-    char *text = cJSON_Print(o);
+        json_append(list, object_json(&t->object[i]));
+    json_put_number(o, "seconds", t->seconds);
+    char *text = json_print(o);
     cJSON_Delete(o);
     return text;
 }

@@ -2,6 +2,7 @@
 /* detail_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "estimate/photo/network.h"
 #include "lab/eval/tables/detail_table.h"
@@ -43,18 +44,18 @@ void detail_table_print(const detail_table *t, FILE *stream)
 char *detail_table_json(const detail_table *t)
 {
     cJSON *root = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(root, "model", t->model);
-    cJSON_AddNumberToObject(root, "samples", (double)t->samples);
-    cJSON_AddNumberToObject(root, "size", t->size);
-    cJSON_AddNumberToObject(root, "larger", t->larger);
-    cJSON_AddNumberToObject(root, "views", t->views);
-    cJSON_AddNumberToObject(root, "seconds", t->seconds);
+    json_put_text(root, "model", t->model);
+    json_put_number(root, "samples", (double)t->samples);
+    json_put_number(root, "size", t->size);
+    json_put_number(root, "larger", t->larger);
+    json_put_number(root, "views", t->views);
+    json_put_number(root, "seconds", t->seconds);
     for (int way = 0; way < DETAIL_WAYS; way++) {
-        cJSON *o = cJSON_AddObjectToObject(root, ways[way]);
+        cJSON *o = json_put_object(root, ways[way]);
         for (int f = 0; f < DETAIL_FIGURES; f++)
-            cJSON_AddNumberToObject(o, words[f].key, t->mean[way][f]);
+            json_put_number(o, words[f].key, t->mean[way][f]);
     }
-    char *text = cJSON_PrintUnformatted(root);
+    char *text = json_print_line(root);
     cJSON_Delete(root);
     return text;
 }

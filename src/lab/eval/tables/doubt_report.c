@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* doubt_table.h's table as text and as JSON. */
 #include <cJSON.h>
-#include <stdlib.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
-#include "base/utf8.h"
 #include "lab/eval/tables/doubt_table.h"
 
 static const struct {
@@ -52,48 +51,46 @@ void doubt_table_print(const doubt_table *t, FILE *stream)
 static cJSON *cues_json(const light_cues *c)
 {
     cJSON *o = cJSON_CreateObject();
-    cJSON_AddBoolToObject(o, "known", c->known);
-    cJSON_AddNumberToObject(o, "fall", c->fall);
-    cJSON_AddNumberToObject(o, "tilt", c->tilt);
-    cJSON_AddNumberToObject(o, "rest", c->rest);
-    cJSON_AddNumberToObject(o, "black", c->black);
-    cJSON_AddNumberToObject(o, "outward", c->outward);
-    cJSON_AddNumberToObject(o, "inward", c->inward);
-    cJSON_AddNumberToObject(o, "rise", c->rise);
+    json_put_bool(o, "known", c->known);
+    json_put_number(o, "fall", c->fall);
+    json_put_number(o, "tilt", c->tilt);
+    json_put_number(o, "rest", c->rest);
+    json_put_number(o, "black", c->black);
+    json_put_number(o, "outward", c->outward);
+    json_put_number(o, "inward", c->inward);
+    json_put_number(o, "rise", c->rise);
     return o;
 }
 
 static cJSON *row_json(const doubt_row *row)
 {
     cJSON *o = cJSON_CreateObject();
-    char *name = utf8_valid(row->name);
-    cJSON_AddStringToObject(o, "name", name ? name : "");
-    free(name);
-    cJSON_AddStringToObject(o, "kind", kinds[row->kind].key);
-    cJSON_AddNumberToObject(o, "light_elsewhere", row->elsewhere);
-    cJSON *doubts = cJSON_AddArrayToObject(o, "doubts");
+    json_put_text(o, "name", row->name);
+    json_put_text(o, "kind", kinds[row->kind].key);
+    json_put_number(o, "light_elsewhere", row->elsewhere);
+    cJSON *doubts = json_put_array(o, "doubts");
     for (unsigned bit = 1; bit <= row->doubts; bit <<= 1)
-        if (row->doubts & bit) cJSON_AddItemToArray(doubts, cJSON_CreateString(merlin_doubt_code((merlin_doubt)bit)));
-    cJSON_AddItemToObject(o, "cues", cues_json(&row->cues));
+        if (row->doubts & bit) json_append_text(doubts, merlin_doubt_code((merlin_doubt)bit));
+    json_put_item(o, "cues", cues_json(&row->cues));
     return o;
 }
 
 char *doubt_table_json(const doubt_table *t)
 {
     cJSON *root = report_begin(&(warnings){0});
-    cJSON *counts = cJSON_AddObjectToObject(root, "counts"), *list = cJSON_AddArrayToObject(root, "pictures");
+    cJSON *counts = json_put_object(root, "counts"), *list = json_put_array(root, "pictures");
     for (int k = 0; k < DOUBT_KINDS; k++) {
         doubt_counts c = doubt_table_count(t, (doubt_kind)k);
         if (!c.pictures) continue;
-        cJSON *o = cJSON_AddObjectToObject(counts, kinds[k].key);
-        cJSON_AddBoolToObject(o, "right", kinds[k].right);
-        cJSON_AddNumberToObject(o, "pictures", (double)c.pictures);
-        cJSON_AddNumberToObject(o, "light_doubted", (double)c.light);
-        cJSON_AddNumberToObject(o, "any_doubt", (double)c.any);
+        cJSON *o = json_put_object(counts, kinds[k].key);
+        json_put_bool(o, "right", kinds[k].right);
+        json_put_number(o, "pictures", (double)c.pictures);
+        json_put_number(o, "light_doubted", (double)c.light);
+        json_put_number(o, "any_doubt", (double)c.any);
     }
     for (size_t i = 0; i < t->count; i++)
-        cJSON_AddItemToArray(list, row_json(&t->row[i]));
-    char *text = cJSON_PrintUnformatted(root);
+        json_append(list, row_json(&t->row[i]));
+    char *text = json_print_line(root);
     cJSON_Delete(root);
     return text;
 }

@@ -3,6 +3,7 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/eval/tables/light_table.h"
 
@@ -64,19 +65,19 @@ void light_table_print(const light_table *t, FILE *stream)
 char *light_table_json(const light_table *t)
 {
     cJSON *root = report_begin(&(warnings){0});
-    cJSON_AddStringToObject(root, "model", t->model);
-    if (*t->flash_model) cJSON_AddStringToObject(root, "flash_model", t->flash_model);
-    cJSON_AddNumberToObject(root, "samples", (double)t->samples);
-    cJSON_AddNumberToObject(root, "seconds", t->seconds);
-    cJSON *kinds = cJSON_AddObjectToObject(root, "lights");
+    json_put_text(root, "model", t->model);
+    if (*t->flash_model) json_put_text(root, "flash_model", t->flash_model);
+    json_put_number(root, "samples", (double)t->samples);
+    json_put_number(root, "seconds", t->seconds);
+    cJSON *kinds = json_put_object(root, "lights");
     for (int kind = 0; kind < LIGHT_KINDS; kind++) {
         if (t->count[kind] == 0) continue;
-        cJSON *o = cJSON_AddObjectToObject(kinds, names[kind]);
-        cJSON_AddNumberToObject(o, "photographs", (double)t->count[kind]);
+        cJSON *o = json_put_object(kinds, names[kind]);
+        json_put_number(o, "photographs", (double)t->count[kind]);
         for (int f = 0; f < (t->directions ? LIGHT_FIGURES : LIGHT_AS_FLASH); f++)
-            if (!isnan(t->mean[kind][f])) cJSON_AddNumberToObject(o, words[f].key, t->mean[kind][f]);
+            if (!isnan(t->mean[kind][f])) json_put_number(o, words[f].key, t->mean[kind][f]);
     }
-    char *text = cJSON_PrintUnformatted(root);
+    char *text = json_print_line(root);
     cJSON_Delete(root);
     return text;
 }

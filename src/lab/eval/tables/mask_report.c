@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* mask_table.h's table as text and as JSON. */
 #include <cJSON.h>
-#include <stdlib.h>
 
+#include "base/json/json_put.h"
 #include "base/text/report.h"
-#include "base/utf8.h"
 #include "lab/eval/tables/mask_table.h"
 
 /* Above any confidence. */
@@ -78,36 +77,34 @@ status mask_table_print(const mask_table *t, FILE *stream)
 static void add_counts(cJSON *list, const char *name, double low, double high, const mask_counts *c)
 {
     cJSON *o = cJSON_CreateObject();
-    if (name) cJSON_AddStringToObject(o, "kind", name);
-    if (!name) cJSON_AddNumberToObject(o, "confidence_from", low);
-    if (!name) cJSON_AddNumberToObject(o, "confidence_to", high > 1 ? 1 : high);
-    cJSON_AddNumberToObject(o, "pictures", (double)c->pictures);
-    cJSON_AddNumberToObject(o, "iou_median", c->median);
-    cJSON_AddNumberToObject(o, "right", (double)c->right);
-    cJSON_AddNumberToObject(o, "sure", (double)c->sure);
-    cJSON_AddNumberToObject(o, "sure_right", (double)c->sure_right);
-    cJSON_AddNumberToObject(o, "warned", (double)c->told);
-    cJSON_AddItemToArray(list, o);
+    if (name) json_put_text(o, "kind", name);
+    if (!name) json_put_number(o, "confidence_from", low);
+    if (!name) json_put_number(o, "confidence_to", high > 1 ? 1 : high);
+    json_put_number(o, "pictures", (double)c->pictures);
+    json_put_number(o, "iou_median", c->median);
+    json_put_number(o, "right", (double)c->right);
+    json_put_number(o, "sure", (double)c->sure);
+    json_put_number(o, "sure_right", (double)c->sure_right);
+    json_put_number(o, "warned", (double)c->told);
+    json_append(list, o);
 }
 
 static cJSON *row_json(const mask_row *row)
 {
     cJSON *o = cJSON_CreateObject();
-    char *name = utf8_valid(row->name);
-    cJSON_AddStringToObject(o, "name", name ? name : "");
-    free(name);
-    cJSON_AddStringToObject(o, "kind", kind_name(row->kind));
-    cJSON_AddBoolToObject(o, "found", row->found);
-    cJSON_AddNumberToObject(o, "iou", row->iou);
-    cJSON_AddNumberToObject(o, "confidence", row->confidence);
+    json_put_text(o, "name", row->name);
+    json_put_text(o, "kind", kind_name(row->kind));
+    json_put_bool(o, "found", row->found);
+    json_put_number(o, "iou", row->iou);
+    json_put_number(o, "confidence", row->confidence);
     return o;
 }
 
 char *mask_table_json(const mask_table *t)
 {
     cJSON *root = report_begin(&(warnings){0});
-    cJSON *kinds = cJSON_AddArrayToObject(root, "kinds"), *bins = cJSON_AddArrayToObject(root, "reliability");
-    cJSON *list = cJSON_AddArrayToObject(root, "pictures");
+    cJSON *kinds = json_put_array(root, "kinds"), *bins = json_put_array(root, "reliability");
+    cJSON *list = json_put_array(root, "pictures");
     mask_counts c = {0};
     for (int kind = 0; kind <= MASK_KINDS; kind++) {
         int which = kind < MASK_KINDS ? kind : -1;
@@ -120,8 +117,8 @@ char *mask_table_json(const mask_table *t)
         if (mask_table_count(t, -1, low, high, &c) == OK) add_counts(bins, NULL, low, high, &c);
     }
     for (size_t i = 0; i < t->count; i++)
-        cJSON_AddItemToArray(list, row_json(&t->row[i]));
-    char *text = cJSON_PrintUnformatted(root);
+        json_append(list, row_json(&t->row[i]));
+    char *text = json_print_line(root);
     cJSON_Delete(root);
     return text;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/utf8.h"
+#include "base/json/utf8.h"
 
 #include <stdlib.h>
 #include <string.h>

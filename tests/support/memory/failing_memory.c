@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT */
+#include "failing_memory.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <execinfo.h>
+#include <link.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+/* ---- whose calls count ---- */
+
+typedef struct range {
+    uintptr_t first, end;
+} range;
+
+enum { MOST_RANGES = 16 };
+static range counted[MOST_RANGES]; /* the program's own stands first */
+static int counted_count;
+
+static bool is_counted(const char *library)
+{
+    static const char *const names[] = {
+        "/libc.so",         "/libcjson.so",    "/libpng16.so", "/libjpeg.so",    "/libdeflate.so",
+        "/libOpenEXRCore-", "/libfreetype.so", "/libz.so",     "/libcholmod.so", "/libsuitesparseconfig.so"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strstr(library, names[i])) return true;
+    return false;
+}
+
+/* The program comes first, without a name. */
+static int add_range(struct dl_phdr_info *object, size_t size, void *context)
+{
+    (void)size;
+    (void)context;
+    if (counted_count && !is_counted(object->dlpi_name)) return 0;
+    for (int i = 0; i < object->dlpi_phnum; i++) {
+        const ElfW(Phdr) *part = &object->dlpi_phdr[i];
+        if (part->p_type != PT_LOAD || !(part->p_flags & PF_X) || counted_count == MOST_RANGES) continue;
+        uintptr_t first = object->dlpi_addr + part->p_vaddr;
+        counted[counted_count++] = (range){first, first + part->p_memsz};
+    }
+    return 0;
+}
+
+static bool counts(const void *caller)
+{
+    uintptr_t at = (uintptr_t)caller;
+    for (int i = 0; i < counted_count; i++)
+        if (at >= counted[i].first && at < counted[i].end) return true;
+    return false;
+}
+
+/* ---- ways through the program ---- */
+
+/* Frames that are looked through; of them the function that allocates and those above it in the program make the way,
+ * and the first ones are this file's own. */
+enum { DEEP = 20, WAY = 6, OWN = 3, MOST_WAYS = 1 << 18 };
+typedef struct way {
+    uint32_t at[WAY]; /* from the program's beginning, the innermost call first */
+} way;
+static way *ways;
+
+static __attribute__((noinline)) void keep_way(size_t n)
+{
+    if (n >= MOST_WAYS) return;
+    void *frames[DEEP];
+    int all = backtrace(frames, DEEP), found = 0;
+    for (int i = OWN; i < all && found < WAY; i++) {
+        uintptr_t at = (uintptr_t)frames[i];
+        if (at >= counted[0].first && at < counted[0].end) ways[n].at[found++] = (uint32_t)(at - counted[0].first);
+    }
+}
+
+/* FNV-1a */
+uint64_t failing_memory_way(size_t n)
+{
+    uint64_t sum = 0xcbf29ce484222325;
+    if (n >= MOST_WAYS) return n;
+    for (int i = 0; i < WAY; i++)
+        sum = (sum ^ ways[n].at[i]) * 0x100000001b3;
+    return sum;
+}
+
+void failing_memory_print_way(size_t n)
+{
+    uintptr_t base = 0;
+    Dl_info about;
+    if (dladdr((void *)counted[0].first, &about)) base = counted[0].first - (uintptr_t)about.dli_fbase;
+    for (int i = 0; n < MOST_WAYS && i < WAY && ways[n].at[i]; i++)
+        fprintf(stderr, " %#zx", (size_t)(ways[n].at[i] + base - 1));
+    fputc('\n', stderr);
+}
+
+/* ---- what fails ---- */
+
+static enum { PASSING, COUNTING, FAILING } mode;
+static atomic_size_t calls;
+static size_t fails_at;
+static bool fails_behind;
+static _Thread_local bool inside; /* of what is called below */
+
+static __attribute__((noinline)) bool fails(const void *caller)
+{
+    if (mode == PASSING || inside || !counts(caller)) return false;
+    size_t n = atomic_fetch_add(&calls, 1) + 1;
+    if (mode == COUNTING) {
+        inside = true;
+        keep_way(n);
+        inside = false;
+        return false;
+    }
+    if (n != fails_at && !(fails_behind && n > fails_at)) return false;
+    errno = ENOMEM;
+    return true;
+}
+
+static void begin(void)
+{
+    counted_count = 0;
+    dl_iterate_phdr(add_range, NULL);
+    atomic_store(&calls, 0);
+}
+
+void failing_memory_count(void)
+{
+    begin();
+    if (!ways) ways = malloc(MOST_WAYS * sizeof *ways);
+    if (!ways) abort();
+    memset(ways, 0, MOST_WAYS * sizeof *ways);
+    void *once[1];
+    backtrace(once, 1); /* loads what it needs */
+    mode = COUNTING;
+}
+
+void failing_memory_begin(size_t n, bool and_all_behind)
+{
+    begin();
+    fails_at = n;
+    fails_behind = and_all_behind;
+    mode = FAILING;
+}
+
+size_t failing_memory_end(void)
+{
+    mode = PASSING;
+    return atomic_load(&calls);
+}
+
+/* ---- in front of the system's ---- */
+
+/* By name, since the sanitizer's stand between these and the C library's. */
+#define NEXT(name)                                                                                                     \
+    static __typeof__(&name) next;                                                                                     \
+    if (!next) *(void **)&next = dlsym(RTLD_NEXT, #name)
+
+void *malloc(size_t size)
+{
+    NEXT(malloc);
+    return fails(__builtin_return_address(0)) ? NULL : next(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+    NEXT(calloc);
+    return fails(__builtin_return_address(0)) ? NULL : next(count, size);
+}
+
+void *realloc(void *block, size_t size)
+{
+    NEXT(realloc);
+    return fails(__builtin_return_address(0)) ? NULL : next(block, size);
+}
+
+void *mmap(void *at, size_t size, int protection, int flags, int file, off_t offset)
+{
+    NEXT(mmap);
+    return fails(__builtin_return_address(0)) ? MAP_FAILED : next(at, size, protection, flags, file, offset);
+}
+
+/* The sanitizer's would not call malloc. */
+char *strndup(const char *text, size_t most)
+{
+    size_t length = strnlen(text, most);
+    NEXT(malloc);
+    char *copy = fails(__builtin_return_address(0)) ? NULL : next(length + 1);
+    if (!copy) return NULL;
+    copy[length] = 0;
+    return memcpy(copy, text, length);
+}
+
+char *strdup(const char *text)
+{
+    size_t length = strlen(text);
+    NEXT(malloc);
+    char *copy = fails(__builtin_return_address(0)) ? NULL : next(length + 1);
+    return copy ? memcpy(copy, text, length + 1) : NULL;
+}
