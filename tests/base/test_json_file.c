@@ -40,7 +40,7 @@ static int whole(json_object *o, const char *key)
 static json_object *inner(json_object *o, const char *key)
 {
     char *text;
-    json_object *in;
+    json_object *in = NULL;
     if (json_inner(o, key, &text) != OK || json_parse(text, strlen(text), key, &in) != OK)
         fail_msg("%s", status_message());
     free(text);
