@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin/stereo: the surface of an object from pictures of it under many lights.
+/* merlin/stereo: photometric stereo, the surface of an object from pictures of it under many lights.
  *
  *     merlin_capture *capture;
  *     merlin_surface surface;
@@ -8,12 +8,13 @@
  *         merlin_mesh_write("owl.glb", &surface))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
- * One camera, one still object, one light at a time: photographed, or made from a single photograph by a merlin_stage.
- * Images, space, errors and who frees what are as in merlin.h. */
+ * One camera, one still object, one light at a time. Images, space, errors and who frees what are as in merlin.h. */
 #ifndef MERLIN_STEREO_H
 #define MERLIN_STEREO_H
 
-#include <merlin/merlin.h>
+#include <merlin/camera.h>
+#include <merlin/image.h>
+#include <merlin/status.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,7 +25,7 @@ extern "C" {
 typedef enum merlin_lighting {
     MERLIN_DISTANT_LIGHTS, /* their directions are known */
     MERLIN_NEAR_LIGHTS,    /* their positions are known */
-    MERLIN_UNKNOWN_LIGHTS
+    MERLIN_UNKNOWN_LIGHTS  /* nothing is known but, perhaps, how strong they are */
 } merlin_lighting;
 
 /* A diffuse white surface appears with the value intensity * cos, or near ones' intensity * cos / distance^2. */
@@ -51,6 +52,9 @@ typedef struct merlin_capture_files {
     float field_of_view; /* horizontal, degrees; 0: not known */
     float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known. For near
                           * lights or a known field of view alone */
+    int (*stop)(void);   /* asked between pictures; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* told of the pictures that are read, "reading"; may be NULL */
+    void *progress_context;
 } merlin_capture_files;
 
 /* PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones
@@ -79,16 +83,22 @@ void merlin_capture_free(merlin_capture *capture);
 typedef enum merlin_stereo_method {
     MERLIN_STEREO_AUTO,         /* by what is known of the lights: near, robust, semi or uncalibrated */
     MERLIN_STEREO_LS,           /* distant: Lambertian least squares (Woodham 1980) without shadows and saturation */
-    MERLIN_STEREO_ROBUST,       /* distant: for gloss and cast shadows */
+    MERLIN_STEREO_ROBUST,       /* distant: a specular lobe a pixel; cast shadows as outliers */
     MERLIN_STEREO_NEAR,         /* near: depth and normals by turns */
     MERLIN_STEREO_SEMI,         /* distant: directions known, intensities not */
-    MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near */
+    MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near, of one strength or on one albedo */
 } merlin_stereo_method;
 
 typedef struct merlin_stereo_params {
     merlin_stereo_method method;
     int keep_edges; /* 1: depth may jump where the normals say so; else it is the least-squares surface of the normals.
                        Lights with places are solved with depth, which may jump in any case */
+    int integrate;  /* 1: depth that is solved with the normals is integrated from them once more, held near what it was
+                     */
+    int iterations; /* of MERLIN_STEREO_NEAR and _SEMI, at most; 0: the method's own */
+    int (*stop)(void);        /* asked all along; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* told "solving", then "integrating"; may be NULL */
+    void *progress_context;
 } merlin_stereo_params;
 
 /* All of the pictures' size, zero where mask is. */
@@ -99,13 +109,13 @@ typedef struct merlin_surface {
                          * away; each separate piece of the mask has its own distance */
     merlin_image residual; /* 1, root mean square of what the fit leaves, as a share of it */
     merlin_image mask;     /* 1, 0 or 1 */
-    struct {
-        float focal, x, y; /* focal length and principal point in pixels; 0: far away */
-    } camera;
+    merlin_camera camera;
     merlin_stereo_method method; /* the one used */
     merlin_light
         *lights; /* light_count, one a picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED found them; else NULL */
     int light_count;
+    int lights_near;      /* MERLIN_STEREO_UNCALIBRATED: the lights have positions, too, in the unit of camera.distance
+                           * (1 if that is not known) */
     int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat, or with too few pictures (3), to tell how strong
                              lights are: normals may be far off */
     int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance, and with too few lights, or lights too much

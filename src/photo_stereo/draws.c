@@ -7,13 +7,13 @@
 
 enum { SEED = 1, STREAM_DRAW = 2 };
 
-int draw_count(const pst_capture *all)
+int draw_count(const merlin_capture *all)
 {
     return all->count > DRAW_PICTURES ? DRAW_MOST : 1;
 }
 
 /* Borrows what it chooses: the first of a shuffled order. */
-static void choose(const pst_capture *all, int draw, pst_capture *some)
+static void choose(const merlin_capture *all, int draw, merlin_capture *some)
 {
     rng r = rng_at(SEED, (uint64_t)draw, STREAM_DRAW);
     for (int i = 0; i < all->count; i++) {
@@ -24,7 +24,7 @@ static void choose(const pst_capture *all, int draw, pst_capture *some)
     for (int i = 0; i < some->count; i++) {
         int other = i + rng_below(&r, all->count - i);
         uint16_t *picture = some->picture[i];
-        pst_light light = some->light[i];
+        merlin_light light = some->light[i];
         char *name = some->name[i];
         some->picture[i] = some->picture[other];
         some->light[i] = some->light[other];
@@ -35,10 +35,10 @@ static void choose(const pst_capture *all, int draw, pst_capture *some)
     }
 }
 
-status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surface *out)
+status draw_solve(const merlin_capture *all, int draw, merlin_stereo_method method, merlin_surface *out)
 {
-    *out = (pst_surface){0};
-    pst_capture some = *all;
+    *out = (merlin_surface){0};
+    merlin_capture some = *all;
     size_t count = (size_t)all->count;
     some.picture = calloc(count, sizeof *some.picture);
     some.light = calloc(count, sizeof *some.light);
@@ -49,8 +49,8 @@ status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surfa
     } else {
         if (some.count > DRAW_PICTURES) some.count = DRAW_PICTURES;
         choose(all, draw, &some);
-        if (method == PST_UNCALIBRATED) pst_capture_forget_lights(&some);
-        s = pst_solve(&some, &(pst_options){.method = method}, out);
+        if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
+        s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);
     }
     free(some.picture);
     free(some.light);

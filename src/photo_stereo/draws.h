@@ -2,8 +2,8 @@
 /* Photometric stereo from a random part of a capture: the paper's protocol draws 32 of 50 pictures, five times.
  *
  *     for (int i = 0; i < draw_count(&capture); i++) {
- *         pst_surface found;
- *         status s = draw_solve(&capture, i, PST_AUTO, &found);
+ *         merlin_surface found;
+ *         status s = draw_solve(&capture, i, MERLIN_STEREO_AUTO, &found);
  *         ...
  *     }
  */
@@ -15,8 +15,9 @@
 enum { DRAW_MOST = 5, DRAW_PICTURES = 32 };
 
 /* DRAW_MOST, or 1 for a capture of no more than DRAW_PICTURES, which is always taken whole. */
-int draw_count(const pst_capture *all);
-/* Draw number `draw`, the same for every capture of as many pictures. PST_UNCALIBRATED is not told the lights. */
-status draw_solve(const pst_capture *all, int draw, pst_method method, pst_surface *out);
+int draw_count(const merlin_capture *all);
+/* Draw number `draw`, the same for every capture of as many pictures. MERLIN_STEREO_UNCALIBRATED is not told the
+ * lights. */
+status draw_solve(const merlin_capture *all, int draw, merlin_stereo_method method, merlin_surface *out);
 
 #endif

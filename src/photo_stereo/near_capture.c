@@ -8,24 +8,25 @@
 #include "optics/brdf.h"
 #include "optics/light.h"
 
-status near_capture_new(const img *mask, const img *depth, float field_of_view, pst_capture *out)
+status near_capture_new(const img *mask, const img *depth, float field_of_view, merlin_capture *out)
 {
     int side = mask->width;
-    *out = (pst_capture){.width = side,
-                         .height = mask->height,
-                         .channels = 3,
-                         .lighting = PST_NEAR,
-                         .intensities_known = true,
-                         .camera = pinhole_of(side, mask->height, field_of_view)};
-    out->camera.mean_distance = (float)img_mean_within(depth, mask);
+    *out = (merlin_capture){.width = side,
+                            .height = mask->height,
+                            .channels = 3,
+                            .lighting = MERLIN_NEAR_LIGHTS,
+                            .intensities_known = true,
+                            .camera = pinhole_of(side, mask->height, field_of_view)};
+    out->camera.distance = (float)img_mean_within(depth, mask);
     status s = img_copy(&out->mask, mask);
     for (size_t i = 0, n = (size_t)side * (size_t)mask->height; s == OK && i < n; i++)
         out->mask.data[i] = mask->data[i] > 0.5f;
     return s;
 }
 
-status near_capture_add(pst_capture *c, const img *picture, vec3 light)
+status near_capture_add(merlin_capture *c, const img *picture, vec3 light)
 {
     float power = (float)LIGHT_POWER / (NEAR_CAPTURE_WHITE * (float)PI);
-    return pst_capture_add(c, picture, &(pst_light){.position = light, .intensity = {power, power, power}});
+    return pst_capture_add(
+        c, picture, &(merlin_light){.position = {light.x, light.y, light.z}, .intensity = {power, power, power}});
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Captures made of pictures in memory: the camera of docs/conventions.md, point lights of the training data's power.
  *
- *     pst_capture c;
+ *     merlin_capture c;
  *     status s = near_capture_new(&mask, &depth, 60, &c);
  *     if (s == OK) s = near_capture_add(&c, &picture, light);      picture in units of NEAR_CAPTURE_WHITE
  *     pst_capture_free(&c);
@@ -15,9 +15,9 @@
 #define NEAR_CAPTURE_WHITE 8.0f
 
 /* mask: 1 channel, square, hardened here; depth: 1 channel, whose mean over the mask becomes the camera's
- * mean_distance; field_of_view: horizontal, degrees. pst_capture_free also after a failure. */
-status near_capture_new(const img *mask, const img *depth, float field_of_view, pst_capture *out);
+ * distance; field_of_view: horizontal, degrees. pst_capture_free also after a failure. */
+status near_capture_new(const img *mask, const img *depth, float field_of_view, merlin_capture *out);
 /* picture: 3 channels, radiance / NEAR_CAPTURE_WHITE, clipped to [0, 1]. */
-status near_capture_add(pst_capture *c, const img *picture, vec3 light);
+status near_capture_add(merlin_capture *c, const img *picture, vec3 light);
 
 #endif

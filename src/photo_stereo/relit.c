@@ -17,7 +17,7 @@ static vec3 light_at(int i)
     return frontal_light(u1, u2);
 }
 
-static status relight_all(network *n, const stage *st, int (*stop)(void), pst_capture *c)
+static status relight_all(network *n, const stage *st, int (*stop)(void), merlin_capture *c)
 {
     status s = near_capture_new(&st->full.mask, &st->full.depth, CAMERA_FOV, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {

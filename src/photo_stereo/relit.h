@@ -16,8 +16,8 @@
 enum { RELIT_LIGHTS = 50 };
 
 typedef struct relit {
-    pst_capture capture; /* RELIT_LIGHTS pictures of the maps' crop; its mean_distance is the maps' mean depth */
-    surface maps;        /* what they were made from, of the same size */
+    merlin_capture capture; /* RELIT_LIGHTS pictures of the maps' crop; its camera.distance is the maps' mean depth */
+    surface maps;           /* what they were made from, of the same size */
 } relit;
 
 /* The maps' crop, side × side pixels, under lights of the frontal hemisphere that a fixed seed draws: rendered by the

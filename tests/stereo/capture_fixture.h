@@ -10,7 +10,7 @@
 #include "image/exr/exr.h"
 #include "stereo/capture/capture.h"
 
-static const pst_read_options PLAIN = {0};
+static const merlin_capture_files PLAIN = {0};
 
 static inline void three_pictures(img_encoding encoding)
 {
@@ -20,9 +20,9 @@ static inline void three_pictures(img_encoding encoding)
     write_text("lights.txt", "0 0 2\n3 0 4\n0 -1 0\n");
 }
 
-static inline void assert_refused(const pst_read_options *options, const char *words)
+static inline void assert_refused(const merlin_capture_files *options, const char *words)
 {
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, options, &c), MERLIN_BAD_INPUT);
     assert_says(words);
     assert_null(c.picture);

@@ -118,18 +118,18 @@ static void a_chrome_ball_tells_its_lights(void **state)
 {
     (void)state;
     write_balls(chrome, IMG_SRGB8);
-    assert_lights_found(PST_CHROME, false, 0.5f, 1);
+    assert_lights_found(MERLIN_CHROME_BALL, false, 0.5f, 1);
     write_mask();
-    assert_lights_found(PST_CHROME, true, 0.5f, 1);
+    assert_lights_found(MERLIN_CHROME_BALL, true, 0.5f, 1);
 }
 
 static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
 {
     (void)state;
     write_balls(matte, IMG_LINEAR16);
-    assert_lights_found(PST_MATTE, false, 0.5f, 2);
+    assert_lights_found(MERLIN_MATTE_BALL, false, 0.5f, 2);
     write_mask();
-    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+    assert_lights_found(MERLIN_MATTE_BALL, true, 0.5f, 2);
 }
 
 /* More than 2 degrees off where the room's light counts as the lamp's. */
@@ -138,7 +138,7 @@ static void a_matte_ball_tells_its_lights_in_a_lit_room(void **state)
     (void)state;
     write_balls(matte_in_a_room, IMG_LINEAR16);
     write_mask();
-    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+    assert_lights_found(MERLIN_MATTE_BALL, true, 0.5f, 2);
 }
 
 static void what_one_channel_clips_is_no_shading(void **state)
@@ -147,15 +147,14 @@ static void what_one_channel_clips_is_no_shading(void **state)
     /* red twice as strong as what a picture holds, blue weak */
     write_tinted_balls(matte, (const float[]){3.2f, 0.8f, 0.4f}, 3, IMG_LINEAR16);
     write_mask();
-    assert_lights_found(PST_MATTE, true, 0.5f, 2);
+    assert_lights_found(MERLIN_MATTE_BALL, true, 0.5f, 2);
 }
 
 /* A matte ball in the corner of a wide picture, where it looks like an egg: 1.06 times as long as wide. */
 static float corner_pixel(const pinhole *camera, float x, float y, vec3 l)
 {
     vec3 center = vec3_scale(vec3_normalize(vec3_make(-0.29f, 0.26f, -1)), 8);
-    vec3 ray =
-        vec3_normalize(vec3_make((x - camera->center_x) / camera->focal, (camera->center_y - y) / camera->focal, -1));
+    vec3 ray = vec3_normalize(vec3_make((x - camera->x) / camera->focal, (camera->y - y) / camera->focal, -1));
     float along = vec3_dot(center, ray), rest = along * along - vec3_dot(center, center) + 1;
     if (!(rest > 0)) return 0.02f;
     vec3 n = vec3_sub(vec3_scale(ray, along - sqrtf(rest)), center);
@@ -184,7 +183,8 @@ static void a_ball_beside_the_axis_tells_its_lights(void **state)
     img_free(&p);
     pst_calibration c;
     assert_int_equal(
-        pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = PST_MATTE, .field_of_view = 50}, &c), OK);
+        pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = MERLIN_MATTE_BALL, .field_of_view = 50}, &c),
+        OK);
     for (int i = 0; i < LIGHTS; i++)
         /* half a pixel of its radius of 40; 2 to 4 as a circle about the ball's center */
         if (degrees(c.direction[i], light(i)) > 0.7f)
@@ -204,10 +204,10 @@ static void what_shades_like_no_matte_ball_is_told(void **state)
 {
     (void)state;
     write_balls(chrome, IMG_SRGB8);
-    assert_doubted(PST_MATTE, "shading_unlike");
+    assert_doubted(MERLIN_MATTE_BALL, "shading_unlike");
     write_balls(matte, IMG_LINEAR16);
     write_mask_at(CENTER_X, CENTER_Y + 20, 0.5f * RADIUS, false);
-    assert_doubted(PST_MATTE, "shading_unlike");
+    assert_doubted(MERLIN_MATTE_BALL, "shading_unlike");
 }
 
 static void a_picture_that_is_there_twice_is_told(void **state)
@@ -216,7 +216,7 @@ static void a_picture_that_is_there_twice_is_told(void **state)
     write_balls(chrome, IMG_SRGB8);
     assert_int_equal(unlink(scratch_path("02.png")), 0);
     assert_int_equal(link(scratch_path("01.png"), scratch_path("02.png")), 0);
-    assert_doubted(PST_CHROME, "same_pictures");
+    assert_doubted(MERLIN_CHROME_BALL, "same_pictures");
 }
 
 static void a_mask_that_is_not_the_balls_is_told(void **state)
@@ -224,14 +224,14 @@ static void a_mask_that_is_not_the_balls_is_told(void **state)
     (void)state;
     write_balls(chrome, IMG_SRGB8);
     write_mask_at(CENTER_X, CENTER_Y, RADIUS, true);
-    assert_doubted(PST_CHROME, "mask_not_round");
+    assert_doubted(MERLIN_CHROME_BALL, "mask_not_round");
     write_mask_at(CENTER_X - 0.3f * RADIUS, CENTER_Y, RADIUS, false);
-    assert_doubted(PST_CHROME, "circle_unsure");
+    assert_doubted(MERLIN_CHROME_BALL, "circle_unsure");
     write_mask_at(CENTER_X, CENTER_Y, 1.2f * RADIUS, false);
-    assert_doubted(PST_CHROME, "circle_unsure");
+    assert_doubted(MERLIN_CHROME_BALL, "circle_unsure");
     write_balls(matte, IMG_LINEAR16);
     write_mask_at(CENTER_X + 0.3f * RADIUS, CENTER_Y, RADIUS, false);
-    assert_doubted(PST_MATTE, "circle_unsure");
+    assert_doubted(MERLIN_MATTE_BALL, "circle_unsure");
 }
 
 static void what_was_found_is_written(void **state)
@@ -239,7 +239,7 @@ static void what_was_found_is_written(void **state)
     (void)state;
     write_balls(chrome, IMG_SRGB8);
     pst_calibration c;
-    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = PST_CHROME}, &c), OK);
+    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = MERLIN_CHROME_BALL}, &c), OK);
     assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
     light_list list;
     assert_int_equal(light_list_read(scratch_path("lights.txt"), &list), OK);
@@ -250,7 +250,7 @@ static void what_was_found_is_written(void **state)
     light_list_free(&list);
     pst_calibration_free(&c);
     /* and the folder is a capture now, its own picture left out */
-    pst_capture capture;
+    merlin_capture capture;
     assert_int_equal(pst_capture_read(scratch, NULL, &capture), OK);
     assert_int_equal(capture.count, LIGHTS);
     pst_capture_free(&capture);
@@ -259,7 +259,7 @@ static void what_was_found_is_written(void **state)
 static void pictures_without_a_ball_or_its_light_are_refused(void **state)
 {
     (void)state;
-    pst_calibrate_options options = {.ball = PST_CHROME};
+    pst_calibrate_options options = {.ball = MERLIN_CHROME_BALL};
     pst_calibration c;
     for (int i = 0; i < 3; i++)
         write_flat((const char *[]){"0.png", "1.png", "2.png"}[i], 64, 64, 3, 0.5f, IMG_LINEAR16);
@@ -275,7 +275,7 @@ static void pictures_without_a_ball_or_its_light_are_refused(void **state)
     write_mask();
     assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: no highlight");
-    options.ball = PST_MATTE;
+    options.ball = MERLIN_MATTE_BALL;
     assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: the ball is not lit");
 }
@@ -301,7 +301,7 @@ static void write_failed_flash(const char *name)
 static void a_highlight_that_does_not_stand_out_is_refused(void **state)
 {
     (void)state;
-    pst_calibrate_options options = {.ball = PST_CHROME};
+    pst_calibrate_options options = {.ball = MERLIN_CHROME_BALL};
     pst_calibration c;
     write_balls(chrome, IMG_LINEAR16);
     write_failed_flash("99.png");
@@ -348,7 +348,7 @@ static void real_balls_agree_with_their_published_lights(void **state)
     assert_int_equal(light_list_read(lights, &truth), OK);
     for (int i = 0; i < 2; i++) {
         char *folder = file_join(where, names[i]);
-        pst_calibrate_options options = {.ball = i == 0 ? PST_CHROME : PST_MATTE, .linear = true};
+        pst_calibrate_options options = {.ball = i == 0 ? MERLIN_CHROME_BALL : MERLIN_MATTE_BALL, .linear = true};
         pst_calibration c;
         assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
         float off = median_off(&c, &truth);
@@ -362,10 +362,10 @@ static void real_balls_agree_with_their_published_lights(void **state)
 }
 
 /* Mean angle to the sphere that the circle is the outline of. */
-static double ball_angle(const pst_capture *capture, const pst_circle *ball, pst_method method)
+static double ball_angle(const merlin_capture *capture, const pst_circle *ball, merlin_stereo_method method)
 {
-    pst_surface found;
-    assert_int_equal(pst_solve(capture, &(pst_options){.method = method}, &found), OK);
+    merlin_surface found;
+    assert_int_equal(pst_solve(capture, &(merlin_stereo_params){.method = method}, &found), OK);
     double sum = 0, count = 0;
     for (int y = 0; y < capture->height; y++)
         for (int x = 0; x < capture->width; x++) {
@@ -376,7 +376,7 @@ static double ball_angle(const pst_capture *capture, const pst_circle *ball, pst
             sum += (double)degrees(vec3_make(n[0], n[1], n[2]), vec3_make(u, v, sqrtf(rest)));
             count++;
         }
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     print_message("gray, %s: %.2f degrees over %.0f pixels\n", pst_method_name(method), sum / count, count);
     return sum / count;
 }
@@ -393,20 +393,21 @@ static void a_real_matte_ball_comes_out_round(void **state)
         return;
     }
     pst_calibration c;
-    pst_calibrate_options options = {.ball = PST_MATTE, .linear = true};
+    pst_calibrate_options options = {.ball = MERLIN_MATTE_BALL, .linear = true};
     assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
     assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
     char *lights[] = {file_join(scratch, "lights.txt"), file_join(where, "lights.txt")};
     for (int i = 0; i < 2; i++) {
-        pst_capture capture;
-        assert_int_equal(pst_capture_read(folder, &(pst_read_options){.lights = lights[i], .linear = true}, &capture),
-                         OK);
-        double ls = ball_angle(&capture, &c.circle, PST_LS), robust = ball_angle(&capture, &c.circle, PST_ROBUST);
+        merlin_capture capture;
+        assert_int_equal(
+            pst_capture_read(folder, &(merlin_capture_files){.lights = lights[i], .linear = true}, &capture), OK);
+        double ls = ball_angle(&capture, &c.circle, MERLIN_STEREO_LS),
+               robust = ball_angle(&capture, &c.circle, MERLIN_STEREO_ROBUST);
         /* 4.4 and 5.2 measured; least squares 4.6 and 5.5 */
         assert_true(robust < ls);
         assert_true(robust < 5.5);
         /* the goal */
-        assert_true(i == 1 || ball_angle(&capture, &c.circle, PST_AUTO) < 5);
+        assert_true(i == 1 || ball_angle(&capture, &c.circle, MERLIN_STEREO_AUTO) < 5);
         pst_capture_free(&capture);
         free(lights[i]);
     }

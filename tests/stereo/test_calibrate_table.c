@@ -45,7 +45,7 @@ static float shaded(const scene *s, vec3 n, vec3 l)
 static float seen_at(const scene *s, float x, float y, vec3 l)
 {
     float u = (x - s->x) / s->radius, v = (s->y - y) / s->radius, rest = 1 - u * u - v * v;
-    bool chrome = s->ball == PST_CHROME;
+    bool chrome = s->ball == MERLIN_CHROME_BALL;
     if (rest > 0) return (chrome ? mirrored : shaded)(s, vec3_make(u, v, sqrtf(rest)), l);
     float p = (x - s->other_x) / 30, q = (s->y - y) / 30, left = 1 - p * p - q * q;
     if (s->other_x > 0 && left > 0) return (chrome ? shaded : mirrored)(s, vec3_make(p, q, sqrtf(left)), l);
@@ -96,7 +96,8 @@ static void assert_found(const scene *s, const char *doubt)
     pst_calibration_free(&c);
 }
 
-static const scene plain = {.x = 84.3f, .y = 71.6f, .radius = 44.7f, .ball = PST_CHROME, .table = 0.5f, .room = 0.02f};
+static const scene plain = {
+    .x = 84.3f, .y = 71.6f, .radius = 44.7f, .ball = MERLIN_CHROME_BALL, .table = 0.5f, .room = 0.02f};
 
 static void the_horizon_in_a_mirror_ball_is_not_its_outline(void **state)
 {
@@ -141,7 +142,7 @@ static void a_matte_ball_on_a_table_is_found(void **state)
 {
     (void)state;
     scene s = plain;
-    s.ball = PST_MATTE;
+    s.ball = MERLIN_MATTE_BALL;
     s.grain = 0.05f;
     assert_found(&s, NULL);
     s.table = 0.05f;

@@ -5,20 +5,20 @@ static void sixteen_bit_pictures_are_taken_as_they_are(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     assert_int_equal(c.width, 6);
     assert_int_equal(c.height, 4);
     assert_int_equal(c.channels, 3);
-    assert_int_equal(c.lighting, PST_DISTANT);
+    assert_int_equal(c.lighting, MERLIN_DISTANT_LIGHTS);
     assert_string_equal(c.name[1], "b.png");
     /* a code's rounding there and back */
     assert_in_range(c.picture[1][0], 32767, 32769);
     assert_in_range(c.picture[2][71], 49150, 49152);
-    assert_float_equal(c.light[0].direction.z, 1, 1e-6);
-    assert_float_equal(c.light[1].direction.x, 0.6, 1e-6);
-    assert_float_equal(c.light[2].direction.y, -1, 1e-6);
+    assert_float_equal(c.light[0].direction[2], 1, 1e-6);
+    assert_float_equal(c.light[1].direction[0], 0.6, 1e-6);
+    assert_float_equal(c.light[2].direction[1], -1, 1e-6);
     assert_float_equal(c.light[2].intensity[1], 1, 0);
     assert_float_equal(*img_at(&c.mask, 3, 3), 1, 0);
     pst_capture_free(&c);
@@ -28,12 +28,12 @@ static void eight_bit_pictures_are_decoded_unless_they_are_linear(void **state)
 {
     (void)state;
     three_pictures(IMG_SRGB8);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     /* half a step of 8-bit sRGB at 0.5 is 0.0035 */
     assert_float_equal(c.picture[1][0] / 65535.0, 0.5, 0.0036);
     pst_capture_free(&c);
-    pst_read_options linear = {.linear = true};
+    merlin_capture_files linear = {.linear = true};
     assert_int_equal(pst_capture_read(scratch, &linear, &c), OK);
     assert_float_equal(c.picture[1][0] / 65535.0, srgb_encode(0.5f), 0.002);
     pst_capture_free(&c);
@@ -45,7 +45,7 @@ static void ambient_light_is_subtracted_and_clipping_stays(void **state)
     three_pictures(IMG_LINEAR16);
     write_flat("c.png", 6, 4, 3, 1, IMG_LINEAR16);
     write_flat("ambient.png", 6, 4, 3, 0.3f, IMG_LINEAR16);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     assert_int_equal(c.picture[0][5], 0);
@@ -67,7 +67,7 @@ static void an_ambient_picture_is_darker_than_what_lamps_add_to(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    pst_capture c;
+    merlin_capture c;
     write_flat("ambient.png", 6, 4, 3, 0.01f, IMG_LINEAR16);
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_null(warnings_find(&c.noticed, "ambient_brighter"));
@@ -108,7 +108,7 @@ static void floats_share_one_scale_below_saturation(void **state)
     (void)state;
     for (float gain = 0.0001f; gain < 2; gain *= 100) {
         three_float_pictures((const float[]){0.5f * gain, 8 * gain, 2 * gain});
-        pst_capture c;
+        merlin_capture c;
         assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
         assert_true(c.picture[1][0] < 0.98 * 65535);
         /* rounding to codes of at most half a unit in 300, and to half floats */
@@ -138,12 +138,12 @@ static void an_lp_file_says_which_picture_has_which_light(void **state)
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
     write_text("dome.lp", "2\nphotos/c.png 0 0 1\nD:\\my set\\A.PNG 0 3 4\n");
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 2);
     assert_string_equal(c.name[0], "c.png");
     assert_string_equal(c.name[1], "a.png");
-    assert_float_equal(c.light[1].direction.y, 0.6, 1e-6);
+    assert_float_equal(c.light[1].direction[1], 0.6, 1e-6);
     pst_capture_free(&c);
     write_text("dome.lp", "2\nc.png 0 0 1\nd.png 0 3 4\n");
     assert_refused(&PLAIN, "names d.png");
@@ -160,12 +160,12 @@ static void a_dome_s_lights_go_to_other_pictures_in_their_order(void **state)
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
     write_text("dome.lp", "3\nball 9.jpg 0 0 1\nball 10.jpg 0 3 4\nD:\\dome\\ball 11.jpg 1 0 0\n");
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     assert_true(c.lights_in_order);
     assert_string_equal(c.name[1], "b.png");
-    assert_float_equal(c.light[1].direction.y, 0.6, 1e-6);
+    assert_float_equal(c.light[1].direction[1], 0.6, 1e-6);
     pst_capture_free(&c);
     write_text("dome.lp", "2\nball 1.jpg 0 0 1\nball 2.jpg 0 3 4\n");
     assert_refused(&PLAIN, "3 pictures");
@@ -179,16 +179,16 @@ static void near_lights_have_positions_and_a_camera(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    pst_read_options options = {.near = true};
-    pst_capture c;
+    merlin_capture_files options = {.near_lights = 1};
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_int_equal(c.lighting, PST_NEAR);
-    assert_float_equal(c.light[1].position.z, 4, 0);
-    assert_float_equal(c.light[1].direction.z, 0, 0);
-    assert_true(c.camera.perspective);
+    assert_int_equal(c.lighting, MERLIN_NEAR_LIGHTS);
+    assert_float_equal(c.light[1].position[2], 4, 0);
+    assert_float_equal(c.light[1].direction[2], 0, 0);
+    assert_true(pinhole_is_near(&c.camera));
     /* 60 degrees across six pixels: 3 / tan 30° */
     assert_float_equal(c.camera.focal, 5.19615, 1e-4);
-    assert_float_equal(c.camera.center_y, 2, 0);
+    assert_float_equal(c.camera.y, 2, 0);
     pst_capture_free(&c);
     write_text("lights.txt", "0 0 1\n0 0.6 0.8\n1 0 0\n");
     assert_refused(&options, "lists directions");
@@ -199,21 +199,21 @@ static void near_lights_of_an_lp_file_are_where_it_says(void **state)
     (void)state;
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
-    pst_read_options options = {.near = true};
-    pst_capture c;
+    merlin_capture_files options = {.near_lights = 1};
+    merlin_capture c;
     write_text("dome.lp", "3\na.png 3 0 -4\nb.png -30 12 -40\nc.png 0 0.5 0\n");
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_float_equal(c.light[0].position.z, -4, 1e-6);
-    assert_float_equal(c.light[1].position.x, -30, 1e-5);
-    assert_float_equal(c.light[1].position.z, -40, 1e-5);
-    assert_float_equal(c.light[2].position.y, 0.5, 1e-6);
+    assert_float_equal(c.light[0].position[2], -4, 1e-6);
+    assert_float_equal(c.light[1].position[0], -30, 1e-5);
+    assert_float_equal(c.light[1].position[2], -40, 1e-5);
+    assert_float_equal(c.light[2].position[1], 0.5, 1e-6);
     pst_capture_free(&c);
     /* a dome's, rounded as some write them, go round the object (pst_place_lights) */
     write_text("dome.lp", "3\na.png 0 0 1\nb.png 0.29 0 0.96\nc.png 1 0 0\n");
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
     assert_true(c.about_object);
-    assert_float_equal(c.light[0].position.z, 1, 1e-6);
-    assert_float_equal(c.light[2].position.x, 1, 1e-6);
+    assert_float_equal(c.light[0].position[2], 1, 1e-6);
+    assert_float_equal(c.light[2].position[0], 1, 1e-6);
     pst_capture_free(&c);
 }
 
@@ -222,25 +222,25 @@ static void near_lights_of_an_lp_file_before_the_object_are_about_it(void **stat
     (void)state;
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
-    pst_read_options options = {.near = true};
-    pst_capture c;
+    merlin_capture_files options = {.near_lights = 1};
+    merlin_capture c;
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 250\nc.png 0 50 300\n");
     options.distance = 600;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
     assert_true(c.about_object);
-    assert_float_equal(c.camera.mean_distance, 600, 1e-3);
-    assert_float_equal(c.light[0].position.x, 300, 1e-3);
-    assert_float_equal(c.light[0].position.z, 400, 1e-3);
-    assert_float_equal(c.light[1].position.z, 250, 1e-3);
+    assert_float_equal(c.camera.distance, 600, 1e-3);
+    assert_float_equal(c.light[0].position[0], 300, 1e-3);
+    assert_float_equal(c.light[0].position[2], 400, 1e-3);
+    assert_float_equal(c.light[1].position[2], 250, 1e-3);
     pst_capture_free(&c);
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 -250\nc.png 0 50 300\n");
     assert_refused(&options, "before and behind");
     /* as distant lights they are directions whatever their frame */
-    options = (pst_read_options){0};
+    options = (merlin_capture_files){0};
     write_text("dome.lp", "3\na.png 300 0 400\nb.png -300 120 250\nc.png 0 50 300\n");
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_float_equal(c.light[0].direction.x, 0.6, 1e-6);
-    assert_float_equal(c.light[0].direction.z, 0.8, 1e-6);
+    assert_float_equal(c.light[0].direction[0], 0.6, 1e-6);
+    assert_float_equal(c.light[0].direction[2], 0.8, 1e-6);
     assert_true(c.about_object);
     pst_capture_free(&c);
 }
@@ -249,17 +249,17 @@ static void a_field_of_view_makes_a_camera_without_lights(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    pst_capture c;
-    pst_read_options options = {.unknown_lights = true};
+    merlin_capture c;
+    merlin_capture_files options = {.unknown_lights = true};
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_false(c.camera.perspective);
+    assert_false(pinhole_is_near(&c.camera));
     pst_capture_free(&c);
     options.field_of_view = 90;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_int_equal(c.lighting, PST_UNKNOWN_LIGHT);
-    assert_true(c.camera.perspective);
+    assert_int_equal(c.lighting, MERLIN_UNKNOWN_LIGHTS);
+    assert_true(pinhole_is_near(&c.camera));
     assert_float_equal(c.camera.focal, 3, 1e-5); /* half of 6 pixels */
-    assert_float_equal(c.camera.mean_distance, 0, 0);
+    assert_float_equal(c.camera.distance, 0, 0);
     pst_capture_free(&c);
 }
 
@@ -267,13 +267,13 @@ static void a_distance_is_of_a_camera_that_is_known(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    pst_capture c;
-    pst_read_options options = {.distance = 450};
+    merlin_capture c;
+    merlin_capture_files options = {.distance = 450};
     assert_int_equal(pst_capture_read(scratch, &options, &c), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "field of view is known"));
     options.field_of_view = 90;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
-    assert_float_equal(c.camera.mean_distance, 450, 0);
+    assert_float_equal(c.camera.distance, 450, 0);
     pst_capture_free(&c);
 }
 
@@ -283,11 +283,11 @@ static void unknown_lights_need_no_list(void **state)
     three_pictures(IMG_LINEAR16);
     unlink(scratch_path("lights.txt"));
     assert_refused(&PLAIN, "says nothing of its lights");
-    pst_read_options options = {.unknown_lights = true};
-    pst_capture c;
+    merlin_capture_files options = {.unknown_lights = true};
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
     assert_int_equal(c.count, 3);
-    assert_int_equal(c.lighting, PST_UNKNOWN_LIGHT);
+    assert_int_equal(c.lighting, MERLIN_UNKNOWN_LIGHTS);
     assert_false(c.intensities_known);
     pst_capture_free(&c);
 }
@@ -297,16 +297,16 @@ static void given_intensities_are_kept(void **state)
     (void)state;
     three_pictures(IMG_LINEAR16);
     write_text("light_intensities.txt", "1 2 3\n4\n5 5 5\n");
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_true(c.intensities_known);
     assert_float_equal(c.light[0].intensity[2], 3, 0);
     assert_float_equal(c.light[1].intensity[0], 4, 0);
     pst_capture_free(&c);
-    assert_int_equal(pst_capture_read(scratch, &(pst_read_options){.unknown_lights = true}, &c), OK);
+    assert_int_equal(pst_capture_read(scratch, &(merlin_capture_files){.unknown_lights = true}, &c), OK);
     assert_true(c.intensities_known);
     assert_float_equal(c.light[0].intensity[2], 3, 0);
-    assert_float_equal(vec3_length(c.light[0].direction), 0, 0);
+    assert_float_equal(vec3_length(vec3_of(c.light[0].direction)), 0, 0);
     pst_capture_free(&c);
     write_text("light_intensities.txt", "# in volts\n\n7\n7\n9\n");
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
@@ -334,7 +334,7 @@ static void intensities_are_found_by_names_like_theirs_and_beside_the_list(void 
     (void)state;
     three_pictures(IMG_LINEAR16);
     static const char *const names[] = {"light_intensities.csv", "Light_Intensity.txt", "intensities.tsv"};
-    pst_capture c;
+    merlin_capture c;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         write_text(names[i], "1\n2\n5\n");
         assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
@@ -348,7 +348,7 @@ static void intensities_are_found_by_names_like_theirs_and_beside_the_list(void 
     write_text("lists/light_intensities.txt", "1\n2\n6\n");
     char lights[256];
     snprintf(lights, sizeof lights, "%s", scratch_path("lists/lights.txt"));
-    const pst_read_options elsewhere = {.lights = lights};
+    const merlin_capture_files elsewhere = {.lights = lights};
     assert_int_equal(pst_capture_read(scratch, &elsewhere, &c), OK);
     assert_float_equal(c.light[2].intensity[1], 6, 0);
     pst_capture_free(&c);

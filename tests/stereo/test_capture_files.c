@@ -7,7 +7,7 @@ static void a_mask_is_read_and_must_fit(void **state)
     (void)state;
     three_pictures(IMG_LINEAR16);
     write_flat("owl.mask.png", 6, 4, 1, 1, IMG_LINEAR8);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     pst_capture_free(&c);
@@ -15,7 +15,7 @@ static void a_mask_is_read_and_must_fit(void **state)
     assert_refused(&PLAIN, "black or transparent everywhere");
     write_flat("mask.png", 4, 6, 1, 1, IMG_LINEAR8);
     assert_refused(&PLAIN, "mask.png is 4 x 6");
-    assert_refused(&(pst_read_options){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
+    assert_refused(&(merlin_capture_files){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
 }
 
 /* As stereo -o does that names the captures' folder. */
@@ -27,7 +27,7 @@ static void results_beside_the_pictures_are_none(void **state)
                                           "overview.png", "mesh.png",   "maps.exr",  "reconstruction.png"};
     for (size_t i = 0; i < sizeof results / sizeof *results; i++)
         write_flat(results[i], 6, 4, 3, 0.5f, IMG_SRGB8);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     pst_capture_free(&c);
@@ -40,7 +40,7 @@ static void rarer_kinds_are_taken_where_they_are_alone(void **state)
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
     for (int i = 0; i < 3; i++)
         write_text((const char *[]){"1.png", "2", "3.txt"}[i], "P2 2 2 255 90 91 92 93\n");
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     pst_capture_free(&c);
@@ -68,7 +68,7 @@ static void a_mask_may_have_any_usual_name(void **state)
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(img_write_png(scratch_path("mask"), &mask, IMG_LINEAR8), OK);
         assert_int_equal(rename(scratch_path("mask"), scratch_path(names[i])), 0);
-        pst_capture c;
+        merlin_capture c;
         assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
         assert_int_equal(c.count, 3);
         assert_float_equal(*img_at(&c.mask, 1, 1), 1, 0);
@@ -94,7 +94,7 @@ static void what_is_left_aside_is_listed_with_the_reason(void **state)
     write_text("Thumbs.db", "no picture");
     write_text(".hidden.png", "no picture");
     write_flat("normal.png", 6, 4, 3, 0.5f, IMG_SRGB8);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     char words[512];
@@ -125,7 +125,7 @@ static void raw_pictures_come_before_what_the_camera_made_of_them(void **state)
     for (int i = 0; i < 6; i++)
         write_flat((const char *[]){"a.nef", "b.NEF", "c.nef", "a.jpg", "b.jpg", "c.jpg"}[i], 6, 4, 3, 0.5f,
                    IMG_LINEAR16);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_int_equal(c.count, 3);
     assert_string_equal(c.name[1], "b.NEF");
@@ -165,7 +165,7 @@ static void a_mask_without_three_neighbours_is_refused(void **state)
     write_mask_of((const int[]){0, 7, 14, 12, 2, 16}, 6); /* a chessboard's */
     assert_refused(&PLAIN, "mask.png shows 6 pixels, too few or too far apart for a surface");
     write_mask_of((const int[]){22, 23, 17}, 3);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     pst_capture_free(&c);
 }
@@ -186,7 +186,7 @@ static void a_mask_of_what_is_black_in_all_pictures_is_refused(void **state)
     write_mask_of((const int[]){12, 13, 18, 19}, 4); /* of the lower half */
     assert_refused(&PLAIN, "the pictures are black where the mask");
     write_mask_of((const int[]){6, 7, 12, 13}, 4);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     pst_capture_free(&c);
 }
@@ -199,7 +199,7 @@ static void black_pictures_are_called_black(void **state)
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
     assert_refused(&PLAIN, "are black");
     write_flat("mask.png", 6, 4, 1, 1, IMG_LINEAR8);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     pst_capture_free(&c);
 }
@@ -207,7 +207,7 @@ static void black_pictures_are_called_black(void **state)
 static void what_does_not_fit_is_refused_in_one_line(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read("/nowhere", &PLAIN, &c), MERLIN_BAD_INPUT);
     assert_says("/nowhere");
     write_text("lights.txt", "0 0 1\n0 1 1\n1 0 1\n");
@@ -229,7 +229,7 @@ static void what_does_not_fit_is_refused_in_one_line(void **state)
     assert_refused(&PLAIN, "b.png is grey");
     write_text("b.png", "no picture");
     assert_refused(&PLAIN, "b.png");
-    assert_refused(&(pst_read_options){.lights = "/nowhere/lights.txt"}, "/nowhere/lights.txt");
+    assert_refused(&(merlin_capture_files){.lights = "/nowhere/lights.txt"}, "/nowhere/lights.txt");
 }
 
 int main(void)

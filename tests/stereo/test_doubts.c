@@ -56,12 +56,12 @@ static vec3 light_at(int k)
     return vec3_make(sinf(tilt) * cosf(phi), sinf(tilt) * sinf(phi), cosf(tilt));
 }
 
-static void take(shape what, float noise, pst_capture *c)
+static void take(shape what, float noise, merlin_capture *c)
 {
     rng random = rng_at(7, 0, 0);
     capture_new(c, SIZE, LIGHTS, 1);
     for (int k = 0; k < LIGHTS; k++)
-        c->light[k].direction = light_at(k);
+        vec3_put(light_at(k), c->light[k].direction);
     for (int i = 0; i < SIZE * SIZE; i++) {
         const float x = (float)(i % SIZE) + 0.5f - 0.5f * SIZE, y = 0.5f * SIZE - (float)(i / SIZE) - 0.5f, d = 0.1f;
         if (!is_of(what, x, y)) continue;
@@ -69,24 +69,25 @@ static void take(shape what, float noise, pst_capture *c)
         vec3 n = vec3_normalize(vec3_make((height_of(what, x - d, y) - height_of(what, x + d, y)) / (2 * d),
                                           (height_of(what, x, y - d) - height_of(what, x, y + d)) / (2 * d), 1));
         for (int k = 0; k < LIGHTS; k++) {
-            float seen = 0.6f * fmaxf(vec3_dot(n, c->light[k].direction), 0) + noise * (rng_uniform(&random) - 0.5f);
+            float seen =
+                0.6f * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0) + noise * (rng_uniform(&random) - 0.5f);
             c->picture[k][i] = relief_code(fmaxf(seen, 0));
         }
     }
 }
 
 /* The warnings of the capture solved by least squares. */
-static warnings doubts_of(const pst_capture *c)
+static warnings doubts_of(const merlin_capture *c)
 {
-    pst_surface surface;
+    merlin_surface surface;
     warnings doubts = {0};
-    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_LS}, &surface), OK);
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &surface), OK);
     assert_int_equal(pst_doubts(c, &surface, &doubts), OK);
-    pst_surface_free(&surface);
+    merlin_surface_free(&surface);
     return doubts;
 }
 
-static void assert_told(const pst_capture *c, const char *code, const char *words)
+static void assert_told(const merlin_capture *c, const char *code, const char *words)
 {
     warnings doubts = doubts_of(c);
     const warning *w = warnings_find(&doubts, code);
@@ -94,17 +95,17 @@ static void assert_told(const pst_capture *c, const char *code, const char *word
     if (!strstr(w->message, words)) fail_msg("\"%s\" is not in \"%s\"", words, w->message);
 }
 
-static void assert_silent(const pst_capture *c)
+static void assert_silent(const merlin_capture *c)
 {
     warnings doubts = doubts_of(c);
     if (doubts.count) fail_msg("%s: %s", doubts.at[0].code, doubts.at[0].message);
 }
 
-static void reverse(pst_capture *c, float x, float y)
+static void reverse(merlin_capture *c, float x, float y)
 {
     for (int k = 0; k < c->count; k++) {
-        c->light[k].direction.x *= x;
-        c->light[k].direction.y *= y;
+        c->light[k].direction[0] *= x;
+        c->light[k].direction[1] *= y;
     }
 }
 
@@ -113,7 +114,7 @@ static void lights_that_fit_are_not_doubted(void **state)
     (void)state;
     for (shape what = BALL; what <= BUMPS; what++)
         for (int noisy = 0; noisy < 2; noisy++) {
-            pst_capture c;
+            merlin_capture c;
             take(what, noisy ? 0.02f : 0, &c);
             assert_silent(&c);
             capture_drop(&c);
@@ -124,7 +125,7 @@ static void reversed_axes_are_named(void **state)
 {
     (void)state;
     for (shape what = BALL; what <= PEAR; what++) {
-        pst_capture c;
+        merlin_capture c;
         take(what, 0.01f, &c);
         reverse(&c, 1, -1);
         assert_told(&c, "lights_do_not_fit", "they fit with y reversed: it points up");
@@ -139,7 +140,7 @@ static void reversed_axes_are_named(void **state)
 static void without_an_outline_the_curl_tells_of_reversed_axes(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(BUMPS, 0.01f, &c);
     reverse(&c, 1, -1);
     assert_told(&c, "lights_do_not_fit", "they fit with y (or x) reversed");
@@ -149,14 +150,15 @@ static void without_an_outline_the_curl_tells_of_reversed_axes(void **state)
 static void exchanged_axes_are_named(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0.01f, &c);
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = vec3_make(c.light[k].direction.y, c.light[k].direction.x, c.light[k].direction.z);
+        vec3_put(vec3_make(c.light[k].direction[1], c.light[k].direction[0], c.light[k].direction[2]),
+                 c.light[k].direction);
     assert_told(&c, "lights_do_not_fit", "they fit with x and y exchanged");
     for (int k = 0; k < LIGHTS; k++) {
         vec3 l = light_at(k);
-        c.light[k].direction = vec3_make(l.x, l.z, -l.y);
+        vec3_put(vec3_make(l.x, l.z, -l.y), c.light[k].direction);
     }
     assert_told(&c, "lights_do_not_fit", "x is +x, y -z, z +y of the list");
     capture_drop(&c);
@@ -169,12 +171,12 @@ static void another_order_is_named(void **state)
     static char names[LIGHTS][24];
     static const int alphabet[LIGHTS] = {0, 9, 10, 11, 1, 2, 3, 4, 5, 6, 7, 8};
     char *name[LIGHTS];
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0.01f, &c);
     for (int k = 0; k < LIGHTS; k++) {
         snprintf(names[k], sizeof names[k], "img_%d.png", k + 1);
         name[k] = names[k];
-        c.light[k].direction = light_at(alphabet[k]);
+        vec3_put(light_at(alphabet[k]), c.light[k].direction);
     }
     c.name = name;
     assert_told(&c, "lights_do_not_fit", "they fit in the alphabetical order of the pictures' names");
@@ -182,16 +184,16 @@ static void another_order_is_named(void **state)
     assert_told(&c, "lights_do_not_fit", "where 10 stands before 9, and with y reversed");
     c.name = NULL;
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = light_at(LIGHTS - 1 - k);
+        vec3_put(light_at(LIGHTS - 1 - k), c.light[k].direction);
     assert_told(&c, "lights_do_not_fit", "they fit in reverse order");
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = light_at((k + 1) % LIGHTS);
+        vec3_put(light_at((k + 1) % LIGHTS), c.light[k].direction);
     assert_told(&c, "lights_do_not_fit", "moved by -1 (light 12 for the first picture)");
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = light_at(k == 2 ? 7 : k == 7 ? 2 : k);
+        vec3_put(light_at(k == 2 ? 7 : k == 7 ? 2 : k), c.light[k].direction);
     assert_told(&c, "lights_do_not_fit", "those of pictures 3 and 8 exchanged");
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = light_at(5 * k % 13 % LIGHTS);
+        vec3_put(light_at(5 * k % 13 % LIGHTS), c.light[k].direction);
     assert_told(&c, "lights_do_not_fit", "is their list in the order");
     capture_drop(&c);
 }
@@ -199,7 +201,7 @@ static void another_order_is_named(void **state)
 static void strengths_that_do_not_fit_are_doubted(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0.01f, &c);
     for (int k = 0; k < LIGHTS; k++)
         for (int ch = 0; ch < 3; ch++)
@@ -211,7 +213,7 @@ static void strengths_that_do_not_fit_are_doubted(void **state)
 static void a_copied_picture_is_named(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0.01f, &c);
     memcpy(c.picture[6], c.picture[4], (size_t)SIZE * SIZE * sizeof **c.picture);
     assert_told(&c, "same_pictures", "pictures 5 and 7 are the same");
@@ -224,7 +226,7 @@ static void a_copied_picture_is_named(void **state)
 static void burnt_out_pictures_are_told(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(BALL, 0.01f, &c);
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
@@ -236,16 +238,16 @@ static void burnt_out_pictures_are_told(void **state)
 static void lights_from_one_side_or_from_behind_are_told(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(BALL, 0, &c);
     for (int k = 0; k < LIGHTS; k++) {
         vec3 l = light_at(k);
-        c.light[k].direction = vec3_normalize(vec3_make(0.08f * l.x, 0.08f * l.y, l.z));
+        vec3_put(vec3_normalize(vec3_make(0.08f * l.x, 0.08f * l.y, l.z)), c.light[k].direction);
     }
     assert_told(&c, "lights_alike", "light the object from more sides");
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].direction = light_at(k);
-    c.light[3].direction.z *= -1;
+        vec3_put(light_at(k), c.light[k].direction);
+    c.light[3].direction[2] *= -1;
     assert_told(&c, "lights_behind", "1 of 12 lights stand behind the object");
     capture_drop(&c);
 }
@@ -253,24 +255,24 @@ static void lights_from_one_side_or_from_behind_are_told(void **state)
 static void places_in_another_unit_or_behind_the_camera_are_told(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface surface = {.method = PST_NEAR_LIGHTS};
+    merlin_capture c;
+    merlin_surface surface = {.method = MERLIN_STEREO_NEAR};
     warnings doubts = {0};
     take(BALL, 0, &c);
-    c.lighting = PST_NEAR;
+    c.lighting = MERLIN_NEAR_LIGHTS;
     c.camera = pinhole_of(SIZE, SIZE, 30);
-    c.camera.mean_distance = 0.6f;   /* metres */
+    c.camera.distance = 0.6f;        /* metres */
     for (int k = 0; k < LIGHTS; k++) /* millimetres */
-        c.light[k].position = vec3_add(vec3_scale(light_at(k), 400), vec3_make(0, 0, -600));
+        vec3_put(vec3_add(vec3_scale(light_at(k), 400), vec3_make(0, 0, -600)), c.light[k].position);
     assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
     assert_non_null(warnings_find(&doubts, "other_unit"));
     assert_null(warnings_find(&doubts, "lights_behind_camera"));
-    c.camera.mean_distance = 600;
+    c.camera.distance = 600;
     doubts = (warnings){0};
     assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
     assert_null(warnings_find(&doubts, "other_unit"));
     for (int k = 0; k < LIGHTS; k++)
-        c.light[k].position = vec3_scale(light_at(k), 400);
+        vec3_put(vec3_scale(light_at(k), 400), c.light[k].position);
     assert_int_equal(pst_doubts(&c, &surface, &doubts), OK);
     assert_non_null(warnings_find(&doubts, "lights_behind_camera"));
     capture_drop(&c);
@@ -279,7 +281,7 @@ static void places_in_another_unit_or_behind_the_camera_are_told(void **state)
 static void other_strengths_than_equal_ones_are_told(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0, &c);
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
@@ -292,7 +294,7 @@ static void other_strengths_than_equal_ones_are_told(void **state)
     capture_drop(&c);
 }
 
-static void change_tones(pst_capture *c, float (*tone)(float))
+static void change_tones(merlin_capture *c, float (*tone)(float))
 {
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
@@ -302,7 +304,7 @@ static void change_tones(pst_capture *c, float (*tone)(float))
 static void tones_that_were_taken_for_others_are_told(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(PEAR, 0.01f, &c);
     c.bits = 8;
     assert_silent(&c);
@@ -318,54 +320,54 @@ static void tones_that_were_taken_for_others_are_told(void **state)
 }
 
 /* Takes a ball of radius 0.45 at distance 2 in pictures 30 degrees wide, by lamps about the camera. */
-static void take_near(pst_capture *c)
+static void take_near(merlin_capture *c)
 {
     const vec3 middle = {0.05f, -0.03f, -2};
     const float radius = 0.45f;
     capture_new(c, SIZE, LIGHTS, 1);
-    c->lighting = PST_NEAR;
+    c->lighting = MERLIN_NEAR_LIGHTS;
     c->camera = pinhole_of(SIZE, SIZE, 30);
-    c->camera.mean_distance = 1.65f;
+    c->camera.distance = 1.65f;
     for (int k = 0; k < LIGHTS; k++) {
         float phi = 2.4f * (float)k, r = 0.9f * sqrtf(((float)k + 0.7f) / LIGHTS);
-        c->light[k].position = vec3_make(r * cosf(phi), r * sinf(phi), -0.1f - 0.3f * cosf(1.7f * (float)k));
+        vec3_put(vec3_make(r * cosf(phi), r * sinf(phi), -0.1f - 0.3f * cosf(1.7f * (float)k)), c->light[k].position);
     }
     for (int i = 0; i < SIZE * SIZE; i++) {
-        float x = (float)(i % SIZE) + 0.5f - c->camera.center_x, y = c->camera.center_y - (float)(i / SIZE) - 0.5f;
+        float x = (float)(i % SIZE) + 0.5f - c->camera.x, y = c->camera.y - (float)(i / SIZE) - 0.5f;
         vec3 ray = vec3_normalize(vec3_make(x / c->camera.focal, y / c->camera.focal, -1));
         float along = vec3_dot(ray, middle), under = along * along - vec3_dot(middle, middle) + radius * radius;
         if (under < 0.3f * radius * radius) continue;
         vec3 at = vec3_scale(ray, along - sqrtf(under)), n = vec3_scale(vec3_sub(at, middle), 1 / radius);
         c->mask.data[i] = 1;
         for (int k = 0; k < LIGHTS; k++) {
-            vec3 to = vec3_sub(c->light[k].position, at);
+            vec3 to = vec3_sub(vec3_of(c->light[k].position), at);
             float far = vec3_length(to);
             c->picture[k][i] = relief_code(fmaxf(vec3_dot(n, to), 0) / (far * far * far));
         }
     }
 }
 
-static warnings near_doubts_of(const pst_capture *c)
+static warnings near_doubts_of(const merlin_capture *c)
 {
-    pst_surface surface;
+    merlin_surface surface;
     warnings doubts = {0};
-    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_NEAR_LIGHTS}, &surface), OK);
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR}, &surface), OK);
     assert_int_equal(pst_doubts(c, &surface, &doubts), OK);
-    pst_surface_free(&surface);
+    merlin_surface_free(&surface);
     return doubts;
 }
 
 static void another_distance_or_lens_is_named(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take_near(&c);
     warnings doubts = near_doubts_of(&c);
     if (doubts.count) fail_msg("%s: %s", doubts.at[0].code, doubts.at[0].message);
     static const float wrong[] = {0.8f, 3.3f, 16};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         float told = 0;
-        c.camera.mean_distance = wrong[i];
+        c.camera.distance = wrong[i];
         doubts = near_doubts_of(&c);
         const warning *w = warnings_find(&doubts, "other_distance");
         if (!w) fail_msg("at %g: %s", (double)wrong[i], doubts.count ? doubts.at[0].message : "no word");
@@ -373,7 +375,7 @@ static void another_distance_or_lens_is_named(void **state)
         assert_float_equal(told, 1.65f, 0.2f);
     }
     c.camera = pinhole_of(SIZE, SIZE, 60);
-    c.camera.mean_distance = 1.65f;
+    c.camera.distance = 1.65f;
     doubts = near_doubts_of(&c);
     assert_non_null(warnings_find(&doubts, "other_lens"));
     capture_drop(&c);
@@ -382,11 +384,11 @@ static void another_distance_or_lens_is_named(void **state)
 static void an_inverted_mask_is_told(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     take(BALL, 0, &c);
     for (int i = 0; i < SIZE * SIZE; i++)
         c.mask.data[i] = 1 - c.mask.data[i];
-    pst_surface none = {.method = PST_UNCALIBRATED};
+    merlin_surface none = {.method = MERLIN_STEREO_UNCALIBRATED};
     warnings doubts = {0};
     assert_int_equal(pst_doubts(&c, &none, &doubts), OK);
     assert_non_null(warnings_find(&doubts, "mask_inverted"));

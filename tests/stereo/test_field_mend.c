@@ -24,7 +24,7 @@ static vec3 roof_normal(int x)
 }
 
 typedef struct roof {
-    pst_capture capture;
+    merlin_capture capture;
     pst_problem problem;
     pst_field field;
 } roof;
@@ -37,7 +37,8 @@ static void roof_new(roof *r)
     capture_new(&r->capture, SIZE, LIGHTS, 1);
     relief matte_relief = {.exposure = 1};
     for (int k = 0; k < LIGHTS; k++) {
-        vec3 l = r->capture.light[k].direction = relief_light(k, LIGHTS);
+        vec3 l = relief_light(k, LIGHTS);
+        vec3_put(l, r->capture.light[k].direction);
         for (int i = 0; i < SIZE * SIZE; i++) {
             float value = relief_radiance(&matte_relief, 0.8f, roof_normal(i % SIZE), l);
             r->capture.picture[k][i] = relief_code(value * (0.94f + 0.12f * rng_uniform(&random)));

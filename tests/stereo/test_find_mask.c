@@ -22,7 +22,7 @@ static bool in_disc(int i, float radius)
 }
 
 /* A disc of this radius whose pictures are of 0.05 to 0.4, before a background; both with noise up to `noise`. */
-static void disc_capture(float radius, float background, float noise, pst_capture *c)
+static void disc_capture(float radius, float background, float noise, merlin_capture *c)
 {
     rng r = rng_at(7, 0, 0);
     capture_new(c, SIZE, PICTURES, 3);
@@ -38,7 +38,7 @@ static void disc_capture(float radius, float background, float noise, pst_captur
 /* Pixels in which the mask that is found and the disc differ. */
 static int differing(float radius, float background, float noise)
 {
-    pst_capture c;
+    merlin_capture c;
     int count = 0;
     disc_capture(radius, background, noise, &c);
     assert_int_equal(pst_capture_find_mask(&c), OK);
@@ -77,7 +77,7 @@ static void what_is_behind_in_a_lit_room_stays(void **state)
 static void what_is_dim_counts_where_it_hangs_together_with_more(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     disc_capture(20, 0.01f, 0.005f, &c);
     const uint16_t dim = relief_code(0.0135f); /* five deviations of the background's root mean square */
     for (int k = 0; k < PICTURES; k++) {
@@ -100,7 +100,7 @@ static void what_is_dim_counts_where_it_hangs_together_with_more(void **state)
 static void small_holes_and_specks_are_settled(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     disc_capture(20, 0, 0, &c);
     for (int k = 0; k < PICTURES; k++) {
         for (int y = 0; y < 3; y++)
@@ -130,7 +130,7 @@ static void any_size_is_taken(void **state)
     for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
         int width = sizes[n][0], height = sizes[n][1];
         uint16_t *picture = calloc((size_t)width * (size_t)height, sizeof *picture), *pictures[] = {picture};
-        pst_capture c = {.width = width, .height = height, .channels = 1, .count = 1, .picture = pictures};
+        merlin_capture c = {.width = width, .height = height, .channels = 1, .count = 1, .picture = pictures};
         for (int i = 0; i < width * height; i++) {
             int x = i % width, y = i / width;
             bool inside = 4 * x >= width && 4 * x < 3 * width && 4 * y >= height && 4 * y < 3 * height;
@@ -148,7 +148,7 @@ static void any_size_is_taken(void **state)
 static void an_object_may_fill_the_picture(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     disc_capture(100, 0, 0, &c);
     for (int k = 0; k < PICTURES; k++)
         for (int i = 0; i < SIZE * 3; i++)

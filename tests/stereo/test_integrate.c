@@ -45,10 +45,7 @@ static void put(scene *s, int x, int y, vec3 n, float depth)
 
 static pinhole camera_of(int width, int height)
 {
-    return (pinhole){.perspective = true,
-                     .focal = (float)width / (2 * tanf(0.5235988f)),
-                     .center_x = (float)width / 2,
-                     .center_y = (float)height / 2};
+    return (pinhole){.focal = (float)width / (2 * tanf(0.5235988f)), .x = (float)width / 2, .y = (float)height / 2};
 }
 
 /* Largest error after the constant (orthographic) or the scale (perspective) is taken from the truth's mean. */
@@ -68,7 +65,7 @@ static double largest_error(const scene *s, const img *depth)
     for (size_t i = 0; i < pixels; i++) {
         if (s->mask.data[i] == 0) continue;
         double d = (double)depth->data[i];
-        d = s->camera.perspective ? d * truth / sum : d + (truth - sum) / count;
+        d = pinhole_is_near(&s->camera) ? d * truth / sum : d + (truth - sum) / count;
         worst = fmax(worst, fabs(d - (double)s->depth.data[i]));
     }
     return worst;
@@ -406,7 +403,7 @@ static void what_makes_no_sense_is_refused(void **state)
     assert_int_equal(pst_integrate(&s.normal, &other.mask, &s.camera, &(pst_integration){0}, &depth), MERLIN_WRONG_USE);
     pst_integration foreign = {.prior = &s.depth, .prior_weight = 1, .trust = &other.depth};
     assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &foreign, &depth), MERLIN_WRONG_USE);
-    s.camera.perspective = true;
+    s.camera.focal = -1;
     assert_int_equal(pst_integrate(&s.normal, &s.mask, &s.camera, &(pst_integration){0}, &depth), MERLIN_WRONG_USE);
     assert_null(depth.data);
     scene_free(&s);

@@ -26,22 +26,23 @@ static uint16_t draw_code(rng *r, int pixel, int light)
     return (uint16_t)rng_range(r, 4000, 60000);
 }
 
-static void make_capture(int channels, pst_capture *c)
+static void make_capture(int channels, merlin_capture *c)
 {
-    *c = (pst_capture){.width = PIXELS, .height = 1, .channels = channels, .count = LIGHTS};
+    *c = (merlin_capture){.width = PIXELS, .height = 1, .channels = channels, .count = LIGHTS};
     c->picture = calloc(LIGHTS, sizeof *c->picture);
     c->light = calloc(LIGHTS, sizeof *c->light);
     rng r = rng_at(5, 0, 0);
     for (int k = 0; k < LIGHTS; k++) {
         vec3 d = vec3_make(rng_range(&r, -1, 1), rng_range(&r, -1, 1), 1.2f);
-        c->light[k] = (pst_light){.direction = vec3_normalize(d), .intensity = {1, 0.8f, 1.5f}};
+        c->light[k] = (merlin_light){.intensity = {1, 0.8f, 1.5f}};
+        vec3_put(vec3_normalize(d), c->light[k].direction);
         c->picture[k] = malloc((size_t)(PIXELS * channels) * sizeof *c->picture[k]);
         for (int i = 0; i < PIXELS * channels; i++)
             c->picture[k][i] = draw_code(&r, i / channels, k);
     }
 }
 
-static void drop(pst_capture *c)
+static void drop(merlin_capture *c)
 {
     for (int k = 0; k < LIGHTS; k++)
         free(c->picture[k]);
@@ -54,7 +55,7 @@ typedef struct plain_sums {
 } plain_sums;
 
 /* The definition, a pixel at a time. */
-static plain_sums sum_plainly(const pst_capture *c, size_t pixel)
+static plain_sums sum_plainly(const merlin_capture *c, size_t pixel)
 {
     plain_sums s = {0};
     for (int k = 0; k < LIGHTS; k++) {
@@ -65,8 +66,8 @@ static plain_sums sum_plainly(const pst_capture *c, size_t pixel)
             top = code[e] > top ? code[e] : top;
         }
         if (!(sum > (double)limits.low && top < (double)limits.high)) continue;
-        double l[3] = {(double)c->light[k].direction.x, (double)c->light[k].direction.y,
-                       (double)c->light[k].direction.z};
+        double l[3] = {(double)c->light[k].direction[0], (double)c->light[k].direction[1],
+                       (double)c->light[k].direction[2]};
         for (int i = 0, m = 0; i < 3; i++)
             for (int j = i; j < 3; j++)
                 s.matrix[m++] += l[i] * l[j];
@@ -97,7 +98,7 @@ static void sums_are_those_of_the_definition(void **state)
 {
     (void)state;
     for (int channels = 1; channels <= 3; channels += 2) {
-        pst_capture c;
+        merlin_capture c;
         make_capture(channels, &c);
         pst_problem p = {.capture = &c, .light = c.light};
         ls_lights *lights;

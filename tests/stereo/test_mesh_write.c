@@ -52,11 +52,10 @@ static void sheet_new(sheet *s, bool perspective)
     assert_int_equal(img_new(&s->albedo, WIDTH, HEIGHT, 3), OK);
     assert_int_equal(img_new(&s->roughness, WIDTH, HEIGHT, 1), OK);
     sheet_fill(s);
-    s->source =
-        (mesh_source){&s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.perspective = perspective}, {0, 0}};
-    s->source.camera.focal = 10;
-    s->source.camera.center_x = 6;
-    s->source.camera.center_y = 4.5f;
+    s->source = (mesh_source){
+        &s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.focal = perspective ? 10 : 0}, {0, 0}};
+    s->source.camera.x = 6;
+    s->source.camera.y = 4.5f;
 }
 
 static void sheet_free(sheet *s)

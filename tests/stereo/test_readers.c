@@ -212,15 +212,15 @@ static void leds_are_turned_into_this_projects_axes(void **state)
     assert_int_equal(p.count, 2);
     assert_int_equal(p.width, 6);
     assert_float_equal(p.camera.focal, 900, 0);
-    assert_float_equal(p.camera.mean_distance, 150, 0);
+    assert_float_equal(p.camera.distance, 150, 0);
     /* they count pixels from the middle of the first one, this project from its corner */
-    assert_float_equal(p.camera.center_x, 3.5, 0);
-    assert_float_equal(p.camera.center_y, 2.5, 0);
-    assert_float_equal(p.light[0].position.x, 10, 0);
-    assert_float_equal(p.light[0].position.y, -20, 0);
-    assert_float_equal(p.light[0].position.z, -30, 0);
+    assert_float_equal(p.camera.x, 3.5, 0);
+    assert_float_equal(p.camera.y, 2.5, 0);
+    assert_float_equal(p.light[0].position[0], 10, 0);
+    assert_float_equal(p.light[0].position[1], -20, 0);
+    assert_float_equal(p.light[0].position[2], -30, 0);
     /* the first LED shines away from the camera, along -z */
-    assert_float_equal(p.light[0].direction.z, -1, 0);
+    assert_float_equal(p.light[0].direction[2], -1, 0);
     assert_float_equal(p.light[0].lobe, 0.7, 1e-6);
     assert_float_equal(p.light[0].intensity[2], 1.5, 0);
     assert_float_equal(p.light[1].intensity[2], 3, 0);
@@ -299,13 +299,13 @@ static void a_luces_folder_is_read_with_its_truth(void **state)
 {
     (void)state;
     make_luces(3);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
     assert_int_equal(c.count, 2);
-    assert_int_equal(c.lighting, PST_NEAR);
+    assert_int_equal(c.lighting, MERLIN_NEAR_LIGHTS);
     assert_true(c.intensities_known);
     assert_string_equal(c.name[1], "02.png");
-    assert_float_equal(c.light[1].position.z, -6, 0);
+    assert_float_equal(c.light[1].position[2], -6, 0);
     assert_float_equal(c.camera.focal, 900, 0);
     /* unlike the lights, up and toward the camera; 16-bit codes are 3e-5 apart */
     assert_float_equal(img_at(&c.normal_true, 1, 1)[1], 0.6, 1e-4);
@@ -326,7 +326,7 @@ static void luces_normals_face_the_camera_whatever_their_axes(void **state)
     (void)state;
     make_luces(3);
     write_luces_normals(-1);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
     assert_float_equal(img_at(&c.normal_true, 1, 1)[1], 0.6, 1e-4);
     assert_float_equal(img_at(&c.normal_true, 1, 1)[2], 0.8, 1e-4);
@@ -336,7 +336,7 @@ static void luces_normals_face_the_camera_whatever_their_axes(void **state)
 static void raw_mosaics_of_luces_are_refused(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(file_make_folder(scratch_path("RAW")), OK);
     write_text("RAW/led_params.txt", "header\n1 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n");
     write_flat("RAW/01.png", 3, 2, 1, 0.5f, IMG_LINEAR16);
@@ -355,13 +355,13 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
     bytes file;
     make_mat(true, &file);
     assert_int_equal(file_write(scratch_path("Normal_gt.mat"), file.at, file.size), OK);
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
     assert_int_equal(c.count, 2);
-    assert_int_equal(c.lighting, PST_DISTANT);
+    assert_int_equal(c.lighting, MERLIN_DISTANT_LIGHTS);
     assert_string_equal(c.name[0], "second light.png");
     assert_in_range(c.picture[0][0], 16383, 16384);
-    assert_float_equal(c.light[1].direction.x, 0.6, 1e-6);
+    assert_float_equal(c.light[1].direction[0], 0.6, 1e-6);
     assert_float_equal(c.light[1].intensity[1], 5, 0);
     assert_float_equal(img_at(&c.normal_true, 1, 3)[2], 213, 0);
     pst_capture_free(&c);
@@ -383,7 +383,7 @@ static void a_diligent_folder_is_read_with_its_truth(void **state)
 static void programs_with_decimal_commas_read_intensities(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     write_flat("001.png", 5, 4, 3, 0.5f, IMG_LINEAR16);
     write_flat("002.png", 5, 4, 3, 0.25f, IMG_LINEAR16);
     write_text("filenames.txt", "001.png\n002.png\n");
@@ -406,11 +406,11 @@ static void a_diligent_folder_needs_no_list_of_names(void **state)
     write_text("light_directions.txt", "0 0 1\n0.6 0 0.8\n");
     write_text("light_intensities.txt", "1 2 3\n4 5 6\n");
     assert_true(pst_is_of_data_set(scratch));
-    pst_capture c;
+    merlin_capture c;
     assert_int_equal(pst_capture_read(scratch, NULL, &c), OK);
     assert_int_equal(c.count, 2);
     assert_string_equal(c.name[1], "10.png");
-    assert_float_equal(c.light[1].direction.x, 0.6, 1e-6);
+    assert_float_equal(c.light[1].direction[0], 0.6, 1e-6);
     assert_float_equal(c.light[1].intensity[1], 5, 0);
     pst_capture_free(&c);
     unlink(scratch_path("10.png"));

@@ -16,7 +16,7 @@ enum { SIZE = 10, FACTOR = 4, SMALL_SIZE = 3 };
 static void small_pixels_are_the_objects_means(void **state)
 {
     (void)state;
-    pst_capture c, small;
+    merlin_capture c, small;
     capture_new(&c, SIZE, 1, 3);
     for (int i = 0; i < SIZE * SIZE; i++) {
         c.mask.data[i] = i % SIZE < 6 ? 1 : 0;
@@ -42,7 +42,7 @@ static void small_pixels_are_the_objects_means(void **state)
 static void a_channel_that_holds_a_saturated_pixel_is_saturated(void **state)
 {
     (void)state;
-    pst_capture c, small;
+    merlin_capture c, small;
     capture_new(&c, SIZE, 1, 3);
     for (int i = 0; i < SIZE * SIZE; i++) {
         c.mask.data[i] = 1;
@@ -61,16 +61,16 @@ static void a_channel_that_holds_a_saturated_pixel_is_saturated(void **state)
 static void blocks_of_a_part_keep_the_camera_s_rays_and_the_objects_inside(void **state)
 {
     (void)state;
-    pst_capture c, small;
+    merlin_capture c, small;
     capture_new(&c, SIZE, 1, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         c.mask.data[i] = i % SIZE < 8 ? 1 : 0;
-    c.camera = (pinhole){.perspective = true, .focal = 20, .center_x = 5, .center_y = 5};
+    c.camera = (pinhole){.focal = 20, .x = 5, .y = 5};
     pst_blocks part = {.x = -1, .y = 1, .columns = 4, .rows = 2, .factor = 3, .whole = true};
     assert_int_equal(pst_shrink(&c, part, PST_SATURATED, &small), OK);
     assert_int_equal(small.width, 4);
     assert_int_equal(small.height, 2);
-    assert_true(small.camera.center_x == 2 && fabsf(small.camera.center_y - 4.0f / 3) < 1e-6f);
+    assert_true(small.camera.x == 2 && fabsf(small.camera.y - 4.0f / 3) < 1e-6f);
     const float inside[4] = {0, 1, 1, 0}; /* columns -1 to 1, 2 to 4, 5 to 7, 8 to 10 */
     for (int i = 0; i < 8; i++)
         assert_true(small.mask.data[i] == inside[i % 4]);
@@ -82,7 +82,7 @@ static void blocks_of_a_part_keep_the_camera_s_rays_and_the_objects_inside(void 
 static void an_enlarged_slope_is_the_slope(void **state)
 {
     (void)state;
-    pst_capture c, small;
+    merlin_capture c, small;
     img depth, large;
     capture_new(&c, SIZE, 1, 1);
     for (int i = 0; i < SIZE * SIZE; i++)

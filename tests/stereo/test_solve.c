@@ -8,17 +8,17 @@ static void least_squares_is_exact_on_lambert(void **state)
     for (int channels = 1; channels <= 3; channels += 2) {
         relief r = lambert;
         r.channels = channels;
-        pst_capture c;
+        merlin_capture c;
         relief_capture(&r, &c);
-        pst_surface s;
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+        merlin_surface s;
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s), OK);
         assert_true(mean_angle(&c, &s.normal) < 0.1);
         size_t middle = 24 * 48 + 24;
         /* x = 0.5 there */
         float expected = 1.8f / PI * (0.5f + 0.2f * sinf(0.1f));
         assert_true(fabsf(s.albedo.data[middle * (size_t)channels] - expected) < 1e-3f);
         assert_true(s.residual.data[middle] < 1e-3f);
-        pst_surface_free(&s);
+        merlin_surface_free(&s);
         capture_drop(&c);
     }
 }
@@ -41,11 +41,11 @@ static void least_squares_turn_what_one_light_reaches_toward_it(void **state)
     (void)state;
     relief r = lambert;
     r.lights = 3;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     int checked = 0;
     relief_capture(&r, &c);
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s), OK);
     for (int i = 0; i < c.width * c.height; i++) {
         int lit = 0, count = 0;
         for (int k = 0; k < c.count; k++)
@@ -54,18 +54,18 @@ static void least_squares_turn_what_one_light_reaches_toward_it(void **state)
                 count++;
             }
         if (count != 1 || c.picture[lit][i] < 2000) continue;
-        assert_true(vec3_dot(vec3_of(s.normal.data + 3 * i), c.light[lit].direction) > 0.99f);
+        assert_true(vec3_dot(vec3_of(s.normal.data + 3 * i), vec3_of(c.light[lit].direction)) > 0.99f);
         checked++;
     }
     assert_true(checked > 10);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     capture_drop(&c);
 }
 
 static void intensities_are_divided_out(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&lambert, &c);
     for (int k = 0; k < c.count; k++) {
         float e = 0.3f + 0.7f * (float)(k % 5) / 4;
@@ -73,29 +73,29 @@ static void intensities_are_divided_out(void **state)
         for (int i = 0; i < c.width * c.height; i++)
             c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * e + 0.5f);
     }
-    assert_true(solve_angle(&c, PST_LS) < 0.1);
-    assert_true(solve_angle(&c, PST_ROBUST) < 0.1);
+    assert_true(solve_angle(&c, MERLIN_STEREO_LS) < 0.1);
+    assert_true(solve_angle(&c, MERLIN_STEREO_ROBUST) < 0.1);
     c.intensities_known = false;
     /* the alternation stops after a fixed number of rounds */
-    assert_true(solve_angle(&c, PST_SEMI) < 0.5);
-    assert_true(solve_angle(&c, PST_LS) > 2);
+    assert_true(solve_angle(&c, MERLIN_STEREO_SEMI) < 0.5);
+    assert_true(solve_angle(&c, MERLIN_STEREO_LS) > 2);
     capture_drop(&c);
 }
 
 static void intensities_may_be_in_any_unit(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&lambert, &c);
     for (float unit = 1e-9f; unit < 1e10f; unit *= 1e6f) {
         for (int k = 0; k < c.count; k++)
             c.light[k].intensity[0] = unit;
-        pst_surface s;
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &s), OK);
+        merlin_surface s;
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s), OK);
         assert_true(mean_angle(&c, &s.normal) < 0.1);
         float expected = 1.8f / PI * (0.5f + 0.2f * sinf(0.1f)); /* as above */
         assert_true(fabsf(s.albedo.data[24 * 48 + 24] * unit - expected) < 1e-3f);
-        pst_surface_free(&s);
+        merlin_surface_free(&s);
     }
     capture_drop(&c);
 }
@@ -109,7 +109,7 @@ static void least_squares_does_not_mind_which_channel_is_bright(void **state)
     for (int bright = 0; bright < 3; bright++) {
         relief r = lambert;
         r.channels = 3;
-        pst_capture c;
+        merlin_capture c;
         relief_capture(&r, &c);
         for (int k = 0; k < c.count; k++)
             for (int i = 0; i < c.width * c.height; i++) {
@@ -117,7 +117,7 @@ static void least_squares_does_not_mind_which_channel_is_bright(void **state)
                 for (int ch = 0; ch < 3; ch++)
                     code[ch] = (uint16_t)(80 + (ch == bright ? grey : grey / 10));
             }
-        angle[bright] = solve_angle(&c, PST_LS);
+        angle[bright] = solve_angle(&c, MERLIN_STEREO_LS);
         capture_drop(&c);
     }
     assert_float_equal(angle[1], angle[0], 1e-3);
@@ -127,9 +127,9 @@ static void least_squares_does_not_mind_which_channel_is_bright(void **state)
 static void robust_sees_through_highlights_and_cast_shadows(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&glossy, &c);
-    double ls = solve_angle(&c, PST_LS), robust = solve_angle(&c, PST_ROBUST);
+    double ls = solve_angle(&c, MERLIN_STEREO_LS), robust = solve_angle(&c, MERLIN_STEREO_ROBUST);
     print_message("specular relief: ls %.2f, robust %.2f degrees\n", ls, robust);
     assert_true(ls > 5);
     assert_true(robust < 2);
@@ -137,12 +137,13 @@ static void robust_sees_through_highlights_and_cast_shadows(void **state)
 }
 
 /* Each light's direction off by so many degrees, to this side and that. */
-static void miscalibrate(pst_capture *c, float degrees)
+static void miscalibrate(merlin_capture *c, float degrees)
 {
     for (int k = 0; k < c->count; k++) {
-        vec3 l = c->light[k].direction, t1 = vec3_normalize(vec3_make(l.z, 0, -l.x)), t2 = vec3_cross(l, t1);
+        vec3 l = vec3_of(c->light[k].direction), t1 = vec3_normalize(vec3_make(l.z, 0, -l.x)), t2 = vec3_cross(l, t1);
         float turn = tanf(degrees * 0.01745329f), phi = 3.7f * (float)(k * k + k);
-        c->light[k].direction = vec3_normalize(vec3_fma(vec3_fma(l, turn * cosf(phi), t1), turn * sinf(phi), t2));
+        vec3_put(vec3_normalize(vec3_fma(vec3_fma(l, turn * cosf(phi), t1), turn * sinf(phi), t2)),
+                 c->light[k].direction);
     }
 }
 
@@ -155,10 +156,10 @@ static void robust_on_few_poor_lights_is_no_worse_than_least_squares(void **stat
     for (int count = 12; count <= 16; count += 4)
         for (int i = 0; i < 2; i++) {
             relief r = {.size = 48, .lights = count, .channels = 1, .bump = bumps[i], .facets = 0.3f, .exposure = 1.8f};
-            pst_capture c;
+            merlin_capture c;
             relief_capture(&r, &c);
             miscalibrate(&c, 2);
-            double ls = solve_angle(&c, PST_LS), robust = solve_angle(&c, PST_ROBUST);
+            double ls = solve_angle(&c, MERLIN_STEREO_LS), robust = solve_angle(&c, MERLIN_STEREO_ROBUST);
             print_message("%d lights off by 2 degrees, bumps of %.0f: ls %.2f, robust %.2f degrees\n", count,
                           (double)bumps[i], ls, robust);
             assert_true(robust < 1.02 * ls);
@@ -175,15 +176,15 @@ static void few_lights_are_left_to_robust(void **state)
         relief r = glossy;
         r.lights = count;
         if (count <= 4) r.specular = 0.2f;
-        pst_capture c;
+        merlin_capture c;
         relief_capture(&r, &c);
-        pst_surface s;
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
-        assert_int_equal(s.method, PST_ROBUST);
-        double ls = solve_angle(&c, PST_LS), found = mean_angle(&c, &s.normal);
+        merlin_surface s;
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
+        assert_int_equal(s.method, MERLIN_STEREO_ROBUST);
+        double ls = solve_angle(&c, MERLIN_STEREO_LS), found = mean_angle(&c, &s.normal);
         print_message("%d lights, gloss of %.1f: ls %.2f, auto %.2f degrees\n", count, (double)r.specular, ls, found);
         assert_true(found < ls);
-        pst_surface_free(&s);
+        merlin_surface_free(&s);
         capture_drop(&c);
     }
 }
@@ -191,16 +192,16 @@ static void few_lights_are_left_to_robust(void **state)
 static void a_raised_black_level_is_found(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&lambert, &c);
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height; i++)
             c.picture[k][i] = c.picture[k][i] > 2000 ? (uint16_t)(c.picture[k][i] - 2000) : 0;
-    assert_true(solve_angle(&c, PST_ROBUST) < 0.7 * solve_angle(&c, PST_LS));
+    assert_true(solve_angle(&c, MERLIN_STEREO_ROBUST) < 0.7 * solve_angle(&c, MERLIN_STEREO_LS));
     capture_drop(&c);
 }
 
-static void all_values_are_numbers(const pst_surface *s)
+static void all_values_are_numbers(const merlin_surface *s)
 {
     size_t pixels = (size_t)s->normal.width * (size_t)s->normal.height;
     for (size_t i = 0; i < pixels; i++) {
@@ -216,27 +217,27 @@ static void all_values_are_numbers(const pst_surface *s)
 static void darkness_and_saturation_leave_numbers(void **state)
 {
     (void)state;
-    static const pst_method method[] = {PST_LS, PST_ROBUST, PST_SEMI};
+    static const merlin_stereo_method method[] = {MERLIN_STEREO_LS, MERLIN_STEREO_ROBUST, MERLIN_STEREO_SEMI};
     for (int code = 0; code <= 65535; code += 65535) {
-        pst_capture c;
+        merlin_capture c;
         relief_capture(&lambert, &c);
         for (int k = 0; k < c.count; k++)
             for (int i = 0; i < c.width * c.height; i++)
                 c.picture[k][i] = (uint16_t)code;
         for (size_t m = 0; m < sizeof method / sizeof *method; m++) {
-            pst_surface s;
-            if (pst_solve(&c, &(pst_options){.method = method[m]}, &s) != OK) continue;
+            merlin_surface s;
+            if (pst_solve(&c, &(merlin_stereo_params){.method = method[m]}, &s) != OK) continue;
             all_values_are_numbers(&s);
-            pst_surface_free(&s);
+            merlin_surface_free(&s);
         }
         capture_drop(&c);
     }
 }
 
-static void refused(const pst_capture *c, pst_method method, const char *because)
+static void refused(const merlin_capture *c, merlin_stereo_method method, const char *because)
 {
-    pst_surface s;
-    assert_true(pst_solve(c, &(pst_options){.method = method}, &s) != OK);
+    merlin_surface s;
+    assert_true(pst_solve(c, &(merlin_stereo_params){.method = method}, &s) != OK);
     assert_non_null(strstr(status_message(), because));
     assert_null(s.normal.data);
 }
@@ -244,32 +245,32 @@ static void refused(const pst_capture *c, pst_method method, const char *because
 static void impossible_captures_are_refused_in_one_line(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&lambert, &c);
-    refused(&c, PST_NEAR_LIGHTS, "positions");
+    refused(&c, MERLIN_STEREO_NEAR, "positions");
     int count = c.count;
     c.count = 2;
-    refused(&c, PST_LS, "3 or more");
+    refused(&c, MERLIN_STEREO_LS, "3 or more");
     c.count = PST_MAX_LIGHTS + 1;
-    refused(&c, PST_ROBUST, "1025 pictures");
-    c.lighting = PST_UNKNOWN_LIGHT;
-    refused(&c, PST_UNCALIBRATED, "1025 pictures");
-    c.lighting = PST_DISTANT;
+    refused(&c, MERLIN_STEREO_ROBUST, "1025 pictures");
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    refused(&c, MERLIN_STEREO_UNCALIBRATED, "1025 pictures");
+    c.lighting = MERLIN_DISTANT_LIGHTS;
     c.count = count;
     float kept = c.light[3].intensity[0];
     c.light[3].intensity[0] = -1;
-    refused(&c, PST_ROBUST, "light 4");
+    refused(&c, MERLIN_STEREO_ROBUST, "light 4");
     c.light[3].intensity[0] = kept;
     for (int k = 0; k < c.count; k++)
-        c.light[k].direction.z *= -1;
-    refused(&c, PST_ROBUST, "z of a direction to a light points toward the camera");
+        c.light[k].direction[2] *= -1;
+    refused(&c, MERLIN_STEREO_ROBUST, "z of a direction to a light points toward the camera");
     for (int k = 0; k < c.count; k++)
-        c.light[k].direction = vec3_normalize(vec3_make((float)k, 0, 5));
-    refused(&c, PST_ROBUST, "one plane");
-    c.lighting = PST_UNKNOWN_LIGHT;
-    refused(&c, PST_LS, "light directions");
+        vec3_put(vec3_normalize(vec3_make((float)k, 0, 5)), c.light[k].direction);
+    refused(&c, MERLIN_STEREO_ROBUST, "one plane");
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    refused(&c, MERLIN_STEREO_LS, "light directions");
     memset(c.mask.data, 0, (size_t)c.width * (size_t)c.height * sizeof(float));
-    refused(&c, PST_UNCALIBRATED, "mask is empty");
+    refused(&c, MERLIN_STEREO_UNCALIBRATED, "mask is empty");
     capture_drop(&c);
 }
 
@@ -279,15 +280,15 @@ static void one_black_picture_of_few_is_refused(void **state)
     for (int count = 4; count <= 8; count += 4) {
         relief r = lambert;
         r.lights = count;
-        pst_capture c;
+        merlin_capture c;
         relief_capture(&r, &c);
         for (int i = 0; i < c.width * c.height * c.channels; i++)
             c.picture[2][i] = (uint16_t)(i * 7 % 200); /* noise */
         if (count < 8) {
-            refused(&c, PST_LS, "picture 3");
-            refused(&c, PST_AUTO, "is black");
+            refused(&c, MERLIN_STEREO_LS, "picture 3");
+            refused(&c, MERLIN_STEREO_AUTO, "is black");
         } else {
-            assert_true(solve_angle(&c, PST_AUTO) < 1);
+            assert_true(solve_angle(&c, MERLIN_STEREO_AUTO) < 1);
         }
         capture_drop(&c);
     }
@@ -296,8 +297,8 @@ static void one_black_picture_of_few_is_refused(void **state)
 static void methods_are_named(void **state)
 {
     (void)state;
-    for (int m = PST_AUTO; m <= PST_UNCALIBRATED; m++)
-        assert_int_equal(pst_method_from_name(pst_method_name((pst_method)m)), m);
+    for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_UNCALIBRATED; m++)
+        assert_int_equal(pst_method_from_name(pst_method_name((merlin_stereo_method)m)), m);
     assert_int_equal(pst_method_from_name("magic"), -1);
 }
 

@@ -22,20 +22,20 @@ static vec3 led_position(int i)
     return vec3_make(ring * cosf(phi), ring * sinf(phi), i % 2 ? -0.15f : -0.4f);
 }
 
-static float led_radiance(const pst_light *led, vec3 at, vec3 n, float specular)
+static float led_radiance(const merlin_light *led, vec3 at, vec3 n, float specular)
 {
-    vec3 to = vec3_sub(led->position, at), l = vec3_normalize(to), v = vec3_normalize(vec3_scale(at, -1));
+    vec3 to = vec3_sub(vec3_of(led->position), at), l = vec3_normalize(to), v = vec3_normalize(vec3_scale(at, -1));
     float n_l = vec3_dot(n, l);
     if (n_l <= 0) return 0;
-    float lobe = powf(fmaxf(-vec3_dot(l, led->direction), 0), led->lobe);
+    float lobe = powf(fmaxf(-vec3_dot(l, vec3_of(led->direction)), 0), led->lobe);
     float f = 0.6f / PI + (specular > 0 ? specular * brdf_specular(0.3f, n, l, v) : 0);
     return f * n_l * lobe / vec3_dot(to, to);
 }
 
-static void ball_pixel(pst_capture *c, int i, int j, float specular)
+static void ball_pixel(merlin_capture *c, int i, int j, float specular)
 {
-    vec3 ray = vec3_normalize(vec3_make(((float)i + 0.5f - c->camera.center_x) / c->camera.focal,
-                                        (c->camera.center_y - (float)j - 0.5f) / c->camera.focal, -1));
+    vec3 ray = vec3_normalize(vec3_make(((float)i + 0.5f - c->camera.x) / c->camera.focal,
+                                        (c->camera.y - (float)j - 0.5f) / c->camera.focal, -1));
     float along = -ray.z, inside = along * along - 1 + radius * radius;
     if (inside < 0.12f * radius * radius) return; /* up to 70 degrees */
     vec3 at = vec3_scale(ray, along - sqrtf(inside)), n = vec3_scale(vec3_make(at.x, at.y, at.z + 1), 1 / radius);
@@ -48,14 +48,14 @@ static void ball_pixel(pst_capture *c, int i, int j, float specular)
 }
 
 /* Returns the ball's mean distance. */
-static float ball_capture(pst_capture *c, float specular)
+static float ball_capture(merlin_capture *c, float specular)
 {
     capture_new(c, SIZE, LIGHTS, 1);
-    c->lighting = PST_NEAR;
-    c->camera = (pinhole){.perspective = true, .focal = 1.5f * SIZE, .center_x = SIZE / 2.0f, .center_y = SIZE / 2.0f};
+    c->lighting = MERLIN_NEAR_LIGHTS;
+    c->camera = (pinhole){.focal = 1.5f * SIZE, .x = SIZE / 2.0f, .y = SIZE / 2.0f};
     for (int k = 0; k < LIGHTS; k++) {
-        c->light[k].position = led_position(k);
-        c->light[k].direction = vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k)));
+        vec3_put(led_position(k), c->light[k].position);
+        vec3_put(vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k))), c->light[k].direction);
         c->light[k].lobe = 1.5f;
     }
     double sum = 0, count = 0;
@@ -68,7 +68,7 @@ static float ball_capture(pst_capture *c, float specular)
 }
 
 /* Largest error of the depth against its truth, once the scale is aligned; *scale is what was left to align. */
-static double depth_error(const pst_capture *c, const img *depth, double *scale)
+static double depth_error(const merlin_capture *c, const img *depth, double *scale)
 {
     double product = 0, square = 0, most = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
@@ -85,20 +85,20 @@ static double depth_error(const pst_capture *c, const img *depth, double *scale)
 
 static void check_ball(float specular, bool distance_known, double angle_bound, double scale_bound)
 {
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     double scale;
     float mean = ball_capture(&c, specular);
-    if (distance_known) c.camera.mean_distance = mean;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
-    assert_int_equal(s.method, PST_NEAR_LIGHTS);
+    if (distance_known) c.camera.distance = mean;
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
+    assert_int_equal(s.method, MERLIN_STEREO_NEAR);
     double angle = mean_angle(&c, &s.normal), error = depth_error(&c, &s.depth, &scale);
     print_message("near, specular %.0f, distance %s: %.2f degrees, depth %.2f %%, scale %.3f\n", (double)specular,
                   distance_known ? "known" : "from the lights", angle, 100 * error, scale);
     assert_true(angle < angle_bound);
     assert_true(error < 0.02);
     assert_true(fabs(scale - 1) < scale_bound);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     capture_drop(&c);
 }
 
@@ -129,10 +129,10 @@ typedef struct few_leds {
     float specular, distance_off; /* what the distance is said to be, as a factor on the true one; 0: nothing is said */
 } few_leds;
 
-static void few_capture(const few_leds *few, pst_capture *c)
+static void few_capture(const few_leds *few, merlin_capture *c)
 {
     float mean = ball_capture(c, few->specular);
-    c->camera.mean_distance = few->distance_off * mean;
+    c->camera.distance = few->distance_off * mean;
     for (int k = 0; k < few->count; k++) {
         int from = LIGHTS / 2 * k / few->count;
         if (few->outer) from -= from % 2;
@@ -146,10 +146,10 @@ static void few_capture(const few_leds *few, pst_capture *c)
 
 static bool doubts_distance(const few_leds *few, double *angle)
 {
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     few_capture(few, &c);
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
     bool unsure = s.distance_unsure;
     *angle = mean_angle(&c, &s.normal);
     print_message("%d lights, specular %.0f: %.2f degrees%s\n", few->count, (double)few->specular, *angle,
@@ -159,7 +159,7 @@ static bool doubts_distance(const few_leds *few, double *angle)
         depth_error(&c, &s.depth, &scale);
         assert_float_equal(scale * (double)few->distance_off, 1, 2e-3);
     }
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     capture_drop(&c);
     return unsure;
 }
@@ -196,7 +196,7 @@ static void two_rings_of_lights_tell_the_distance(void **state)
 static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     double cost;
     ball_capture(&c, 0);
     pst_problem p = {.capture = &c, .light = c.light, .saturation = PST_SATURATED};
@@ -226,14 +226,14 @@ static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
 static void near_lights_on_a_line_are_refused(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     ball_capture(&c, 0);
     for (int k = 0; k < LIGHTS; k++) {
         float along = 2 * (float)k / (LIGHTS - 1) - 1;
-        c.light[k].position = vec3_make(300 * along, 200, -100 + 3 * (float)(k % 2));
+        vec3_put(vec3_make(300 * along, 200, -100 + 3 * (float)(k % 2)), c.light[k].position);
     }
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "on one line"));
     capture_drop(&c);
 }
@@ -241,11 +241,11 @@ static void near_lights_on_a_line_are_refused(void **state)
 static void a_near_capture_without_focal_length_is_refused(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     ball_capture(&c, 0);
     c.camera.focal = 0;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), MERLIN_WRONG_USE);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR}, &s), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "focal length"));
     capture_drop(&c);
 }

@@ -3,7 +3,7 @@
 #include "solve_fixture.h"
 
 /* Strengths of 0.5, 0.75, 1. */
-static void weaken_lights(pst_capture *c)
+static void weaken_lights(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
@@ -14,34 +14,34 @@ static void weaken_lights(pst_capture *c)
 static void lights_of_unknown_strength_are_found_despite_highlights(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&glossy, &c);
     weaken_lights(&c);
-    pst_surface s;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
-    assert_int_equal(s.method, PST_SEMI);
+    merlin_surface s;
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
+    assert_int_equal(s.method, MERLIN_STEREO_SEMI);
     assert_false(s.strengths_unsure);
     double angle = mean_angle(&c, &s.normal);
     print_message("semi on the specular relief: %.2f degrees\n", angle);
     assert_true(angle < 3);
     /* strengths of 1, 0.75, 0.5 */
-    assert_true(fabsf(s.light[3].intensity[1] / s.light[5].intensity[1] - 0.5f) < 0.05f);
-    pst_surface_free(&s);
+    assert_true(fabsf(s.lights[3].intensity[1] / s.lights[5].intensity[1] - 0.5f) < 0.05f);
+    merlin_surface_free(&s);
     /* who asks for this method does not trust what the capture says */
     c.intensities_known = true;
     for (int k = 0; k < c.count; k++)
         c.light[k].intensity[0] = c.light[k].intensity[1] = c.light[k].intensity[2] = 0.3f + (float)(k % 5);
-    assert_float_equal(solve_angle(&c, PST_SEMI), angle, 1e-3);
+    assert_float_equal(solve_angle(&c, MERLIN_STEREO_SEMI), angle, 1e-3);
     capture_drop(&c);
 }
 
-static bool semi_is_unsure(const pst_capture *c)
+static bool semi_is_unsure(const merlin_capture *c)
 {
-    pst_surface s;
-    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_SEMI}, &s), OK);
+    merlin_surface s;
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_SEMI}, &s), OK);
     bool unsure = s.strengths_unsure;
     print_message("semi on the flat relief: %.2f degrees\n", mean_angle(c, &s.normal));
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     return unsure;
 }
 
@@ -50,7 +50,7 @@ static void strengths_about_a_flat_object_are_unsure_unless_equal(void **state)
 {
     (void)state;
     relief flat = {.size = 48, .lights = 12, .channels = 1, .bump = 0.25f, .specular = 1, .roughness = 0.35f};
-    pst_capture c;
+    merlin_capture c;
     flat.exposure = 1;
     relief_capture(&flat, &c);
     c.intensities_known = false;
@@ -66,17 +66,17 @@ static void strengths_of_three_lights_are_taken_for_equal(void **state)
     (void)state;
     relief r = lambert;
     r.lights = 3;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     relief_capture(&r, &c);
-    double known = solve_angle(&c, PST_ROBUST);
+    double known = solve_angle(&c, MERLIN_STEREO_ROBUST);
     for (int weak = 0; weak < 2; weak++) {
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_SEMI}, &s), OK);
         assert_true(s.strengths_unsure);
         for (int k = 0; k < 3; k++)
-            assert_true(s.light[k].intensity[0] == 1);
+            assert_true(s.lights[k].intensity[0] == 1);
         assert_true(weak || mean_angle(&c, &s.normal) == known);
-        pst_surface_free(&s);
+        merlin_surface_free(&s);
         weaken_lights(&c);
     }
     capture_drop(&c);
@@ -88,7 +88,7 @@ static void colours_of_lights_are_told_from_those_of_the_object(void **state)
 {
     (void)state;
     static const float tint[3][3] = {{1, 0.9f, 0.85f}, {0.9f, 0.9f, 0.9f}, {0.85f, 0.9f, 1}};
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&glossy, &c);
     size_t values = (size_t)c.width * (size_t)c.height * 3;
     for (int k = 0; k < c.count; k++)
@@ -98,15 +98,15 @@ static void colours_of_lights_are_told_from_those_of_the_object(void **state)
             c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * paint * tint[k % 3][i % 3]);
         }
     weaken_lights(&c);
-    pst_surface s;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
-    const float *base = s.light[1].intensity; /* white, as every third */
+    merlin_surface s;
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_SEMI}, &s), OK);
+    const float *base = s.lights[1].intensity; /* white, as every third */
     for (int k = 0; k < c.count; k++)
         for (int ch = 0; ch < 3; ch++) {
             float strength = 0.5f + 0.5f * (float)(k % 3) / 2, wanted = tint[k % 3][ch] / 0.9f * strength / 0.75f;
-            assert_float_equal(s.light[k].intensity[ch] / base[ch], wanted, 0.05f * wanted);
+            assert_float_equal(s.lights[k].intensity[ch] / base[ch], wanted, 0.05f * wanted);
         }
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     capture_drop(&c);
 }
 
@@ -114,16 +114,16 @@ static void colours_of_lights_are_told_from_those_of_the_object(void **state)
 static void equal_strengths_are_recognized(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     relief_capture(&glossy, &c);
-    double known = solve_angle(&c, PST_ROBUST);
+    double known = solve_angle(&c, MERLIN_STEREO_ROBUST);
     c.intensities_known = false;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_SEMI}, &s), OK);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_SEMI}, &s), OK);
     for (int k = 0; k < c.count; k++)
-        assert_true(s.light[k].intensity[0] == 1 && s.light[k].intensity[2] == 1);
+        assert_true(s.lights[k].intensity[0] == 1 && s.lights[k].intensity[2] == 1);
     assert_true(mean_angle(&c, &s.normal) == known);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     capture_drop(&c);
 }
 
@@ -132,17 +132,17 @@ static void unknown_lights_of_equal_strength_are_found(void **state)
     (void)state;
     relief r = lambert;
     r.lights = 30;
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&r, &c);
-    c.lighting = PST_UNKNOWN_LIGHT;
-    double angle = solve_angle(&c, PST_AUTO);
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    double angle = solve_angle(&c, MERLIN_STEREO_AUTO);
     print_message("uncalibrated sphere: %.2f degrees\n", angle);
     assert_true(angle < 3);
     capture_drop(&c);
 }
 
 /* Strengths of 0.5 to 1.5. */
-static void dim_some(pst_capture *c)
+static void dim_some(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
@@ -150,14 +150,14 @@ static void dim_some(pst_capture *c)
 }
 
 /* The sphere's colours as if they were all as bright as its darkest. */
-static void even_out(pst_capture *c)
+static void even_out(merlin_capture *c)
 {
-    pst_surface s;
-    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_LS}, &s), OK);
+    merlin_surface s;
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s), OK);
     for (int i = 0; i < c->width * c->height * c->channels; i++)
         for (int k = 0; k < c->count && s.albedo.data[i] > 0; k++)
             c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * 0.17f / s.albedo.data[i]);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
 }
 
 static void unknown_lights_of_unequal_strength_need_one_albedo(void **state)
@@ -166,19 +166,20 @@ static void unknown_lights_of_unequal_strength_need_one_albedo(void **state)
     relief r = lambert;
     r.lights = 30;
     for (int even = 0; even < 2; even++) {
-        pst_capture c;
-        pst_surface s;
+        merlin_capture c;
+        merlin_surface s;
         relief_capture(&r, &c);
         if (even) even_out(&c);
         dim_some(&c);
         pst_capture_forget_lights(&c);
         c.intensities_known = false;
         if (even) {
-            double angle = solve_angle(&c, PST_AUTO);
+            double angle = solve_angle(&c, MERLIN_STEREO_AUTO);
             print_message("uncalibrated sphere of one albedo, unequal lights: %.2f degrees\n", angle);
             assert_true(angle < 3);
         } else {
-            assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
+            assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s),
+                             MERLIN_BAD_INPUT);
             assert_non_null(strstr(status_message(), "not equally strong"));
         }
         capture_drop(&c);

@@ -242,7 +242,7 @@ static void folder_becomes_a_mesh(void **state)
     merlin_capture *capture;
     merlin_surface surface;
     assert_int_equal(merlin_capture_read(scratch, NULL, &capture), MERLIN_OK);
-    assert_int_equal(merlin_stereo(capture, &(merlin_stereo_params){MERLIN_STEREO_AUTO, 1}, &surface), MERLIN_OK);
+    assert_int_equal(merlin_stereo(capture, &(merlin_stereo_params){.keep_edges = 1}, &surface), MERLIN_OK);
     assert_true(mean_error(&surface) < 0.2f);
     merlin_capture_free(capture);
     const char *const names[] = {"ball.ply", "ball.obj", "ball.glb"};

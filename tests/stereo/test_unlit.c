@@ -21,14 +21,14 @@ static bool is_ink(int pixel)
 }
 
 /* A ball under the lights to its right, with noise, and a stripe of black ink on it. */
-static void ball_from_one_side(pst_capture *c)
+static void ball_from_one_side(merlin_capture *c)
 {
     relief r = {.size = SIZE, .lights = LIGHTS, .channels = 3, .exposure = 2};
     rng random = rng_at(1, 0, 0);
     int count = 0;
     relief_capture(&r, c);
     for (int k = 0; k < LIGHTS; k++) {
-        if (c->light[k].direction.x < 0.55f) {
+        if (c->light[k].direction[0] < 0.55f) {
             free(c->picture[k]);
             continue;
         }
@@ -42,15 +42,15 @@ static void ball_from_one_side(pst_capture *c)
     c->count = count;
 }
 
-static bool is_lit(const pst_capture *c, int pixel, float cosine)
+static bool is_lit(const merlin_capture *c, int pixel, float cosine)
 {
     int lit = 0;
     for (int k = 0; k < c->count; k++)
-        lit += vec3_dot(vec3_of(c->normal_true.data + 3 * pixel), c->light[k].direction) > cosine;
+        lit += vec3_dot(vec3_of(c->normal_true.data + 3 * pixel), vec3_of(c->light[k].direction)) > cosine;
     return lit > 0;
 }
 
-static double angle_at(const pst_capture *c, const img *normal, int pixel)
+static double angle_at(const merlin_capture *c, const img *normal, int pixel)
 {
     double cosine = (double)vec3_dot(vec3_of(c->normal_true.data + 3 * pixel), vec3_of(normal->data + 3 * pixel));
     return acos(fmin(fmax(cosine, -1), 1)) * 57.29577951;
@@ -60,8 +60,8 @@ static double angle_at(const pst_capture *c, const img *normal, int pixel)
 static void what_no_light_reaches_goes_on_from_what_is_lit(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s = {0};
+    merlin_capture c;
+    merlin_surface s = {0};
     rng random = rng_at(2, 0, 0);
     ball_from_one_side(&c);
     pst_problem p = {.capture = &c, .light = c.light};
@@ -99,8 +99,8 @@ static void a_lit_object_stays_as_it_is(void **state)
 {
     (void)state;
     relief r = {.size = SIZE, .lights = LIGHTS, .channels = 1, .bump = 8, .exposure = 2};
-    pst_capture c;
-    pst_surface s = {0};
+    merlin_capture c;
+    merlin_surface s = {0};
     relief_capture(&r, &c);
     pst_problem p = {.capture = &c, .light = c.light};
     assert_int_equal(pst_list_pixels(&c, &p), OK);

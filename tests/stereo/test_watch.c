@@ -16,10 +16,10 @@ typedef struct heard {
     float last;
 } heard;
 
-static void hear(void *context, const char *what, float share)
+static void hear(void *context, const char *stage, float share)
 {
     heard *h = context;
-    assert_string_equal(what, "solving");
+    assert_string_equal(stage, "solving");
     assert_true(share >= h->last && share <= 1);
     h->last = share;
     h->count++;
@@ -30,29 +30,32 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
     (void)state;
     const relief how = {
         .size = 96, .lights = 20, .channels = 1, .bump = 4, .specular = 0.5f, .roughness = 0.3f, .exposure = 1};
-    static const pst_method methods[] = {PST_LS, PST_ROBUST, PST_SEMI, PST_UNCALIBRATED};
-    pst_capture c;
+    static const merlin_stereo_method methods[] = {MERLIN_STEREO_LS, MERLIN_STEREO_ROBUST, MERLIN_STEREO_SEMI,
+                                                   MERLIN_STEREO_UNCALIBRATED};
+    merlin_capture c;
     relief_capture(&how, &c);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         heard h = {0};
-        watch w = {.tell = hear, .context = &h};
-        pst_surface watched, alone;
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &watched), OK);
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i]}, &alone), OK);
+        merlin_surface watched, alone;
+        assert_int_equal(
+            pst_solve(&c, &(merlin_stereo_params){.method = methods[i], .progress = hear, .progress_context = &h},
+                      &watched),
+            OK);
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = methods[i]}, &alone), OK);
         assert_memory_equal(watched.normal.data, alone.normal.data, img_value_count(&alone.normal) * sizeof(float));
-        if (methods[i] != PST_LS) {
+        if (methods[i] != MERLIN_STEREO_LS) {
             print_message("%s: told %d times, to %.2f\n", pst_method_name(methods[i]), h.count, (double)h.last);
             assert_true(h.count > 20 && h.last > 0.6f);
         }
-        pst_surface_free(&watched);
-        pst_surface_free(&alone);
+        merlin_surface_free(&watched);
+        merlin_surface_free(&alone);
     }
     capture_drop(&c);
 }
 
-static void ignore(void *context, const char *what, float share)
+static void count(void *context, const char *stage, float share)
 {
-    (void)what;
+    (void)stage;
     (void)share;
     (*(int *)context)++;
 }
@@ -67,19 +70,24 @@ static void work_that_nobody_waits_for_any_more_stops(void **state)
     (void)state;
     const relief how = {
         .size = 96, .lights = 20, .channels = 1, .bump = 4, .specular = 0.5f, .roughness = 0.3f, .exposure = 1};
-    static const pst_method methods[] = {PST_ROBUST, PST_SEMI, PST_UNCALIBRATED};
+    static const merlin_stereo_method methods[] = {MERLIN_STEREO_ROBUST, MERLIN_STEREO_SEMI,
+                                                   MERLIN_STEREO_UNCALIBRATED};
     int told = 0;
-    const watch w = {ignore, &told, give_up};
-    pst_capture c;
-    pst_surface found;
+    merlin_stereo_params params = {
+        .keep_edges = 1, .integrate = 1, .stop = give_up, .progress = count, .progress_context = &told};
+    merlin_capture c;
+    merlin_surface found;
     relief_capture(&how, &c);
-    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = methods[i], .watch = &w}, &found), MERLIN_STOPPED);
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_LS}, &found), OK);
-    assert_int_equal(pst_surface_integrate(&c, true, true, &w, &found), MERLIN_STOPPED);
-    assert_int_equal(pst_surface_integrate(&c, true, true, NULL, &found), OK);
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        params.method = methods[i];
+        assert_int_equal(pst_solve(&c, &params, &found), MERLIN_STOPPED);
+    }
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &found), OK);
+    assert_int_equal(pst_surface_integrate(&params, &found), MERLIN_STOPPED);
+    params.stop = NULL;
+    assert_int_equal(pst_surface_integrate(&params, &found), OK);
     assert_true(told > 0);
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     capture_drop(&c);
 }
 

@@ -81,9 +81,10 @@ static inline vec3 relief_light(int i, int count)
     return vec3_make(s * cosf(phi), s * sinf(phi), z);
 }
 
-static inline void capture_new(pst_capture *c, int size, int lights, int channels)
+static inline void capture_new(merlin_capture *c, int size, int lights, int channels)
 {
-    *c = (pst_capture){.width = size, .height = size, .channels = channels, .count = lights, .intensities_known = true};
+    *c = (merlin_capture){
+        .width = size, .height = size, .channels = channels, .count = lights, .intensities_known = true};
     assert_int_equal(img_new(&c->mask, size, size, 1), OK);
     assert_int_equal(img_new(&c->normal_true, size, size, 3), OK);
     assert_int_equal(img_new(&c->depth_true, size, size, 1), OK);
@@ -95,7 +96,7 @@ static inline void capture_new(pst_capture *c, int size, int lights, int channel
     }
 }
 
-static inline void capture_drop(pst_capture *c)
+static inline void capture_drop(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
         free(c->picture[k]);
@@ -112,11 +113,11 @@ static inline uint16_t relief_code(float radiance)
     return code >= 65535 ? 65535 : (uint16_t)code;
 }
 
-static inline void relief_capture(const relief *r, pst_capture *c)
+static inline void relief_capture(const relief *r, merlin_capture *c)
 {
     capture_new(c, r->size, r->lights, r->channels);
     for (int k = 0; k < r->lights; k++)
-        c->light[k].direction = relief_light(k, r->lights);
+        vec3_put(relief_light(k, r->lights), c->light[k].direction);
     for (int j = 0; j < r->size; j++) {
         for (int i = 0; i < r->size; i++) {
             float x = (float)i + 0.5f - 0.5f * (float)r->size, y = 0.5f * (float)r->size - (float)j - 0.5f;
@@ -126,7 +127,7 @@ static inline void relief_capture(const relief *r, pst_capture *c)
             c->mask.data[at] = 1;
             memcpy(c->normal_true.data + 3 * at, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
             for (int k = 0; k < r->lights; k++) {
-                vec3 l = c->light[k].direction;
+                vec3 l = vec3_of(c->light[k].direction);
                 if (relief_shadowed(r, x, y, l)) continue;
                 for (int ch = 0; ch < r->channels; ch++) {
                     float albedo = (0.5f + 0.2f * sinf(0.2f * x + (float)ch)) * (ch == 1 ? 0.6f : 1);
@@ -139,7 +140,7 @@ static inline void relief_capture(const relief *r, pst_capture *c)
 }
 
 /* Mean angle over the mask, degrees. */
-static inline double mean_angle(const pst_capture *c, const img *normal)
+static inline double mean_angle(const merlin_capture *c, const img *normal)
 {
     double sum = 0, count = 0;
     for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++) {
@@ -153,12 +154,12 @@ static inline double mean_angle(const pst_capture *c, const img *normal)
     return sum / count;
 }
 
-static inline double solve_angle(const pst_capture *c, pst_method method)
+static inline double solve_angle(const merlin_capture *c, merlin_stereo_method method)
 {
-    pst_surface surface;
-    assert_int_equal(pst_solve(c, &(pst_options){.method = method}, &surface), OK);
+    merlin_surface surface;
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = method}, &surface), OK);
     double angle = mean_angle(c, &surface.normal);
-    pst_surface_free(&surface);
+    merlin_surface_free(&surface);
     return angle;
 }
 

@@ -72,18 +72,18 @@ typedef struct request {
     merlin_params params;
     stereo_files files;
     bool maps; /* input is a folder of merlin estimate's */
-    bool json, quiet, help;
+    bool near, linear, json, quiet, help;
 } request;
 
 /* ---- options ---- */
 
 static status take_method(const char *name, void *into)
 {
-    pst_method *method = into;
+    merlin_stereo_method *method = into;
     int m = pst_method_from_name(name);
     if (m < 0)
         return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
-    *method = (pst_method)m;
+    *method = (merlin_stereo_method)m;
     return OK;
 }
 
@@ -99,9 +99,9 @@ static status take_distance(const char *text, void *into)
 static status take_integration(const char *name, void *into)
 {
     stereo_folder *f = into;
-    f->integrate = true;
-    f->preserve_edges = strcmp(name, "edges") == 0;
-    if (!f->preserve_edges && strcmp(name, "ls") != 0)
+    f->params.integrate = 1;
+    f->params.keep_edges = strcmp(name, "edges") == 0;
+    if (!f->params.keep_edges && strcmp(name, "ls") != 0)
         return fail(MERLIN_WRONG_USE, "--integrate wants ls or edges, not \"%s\"", name);
     return OK;
 }
@@ -124,21 +124,23 @@ static bool is_capture(const request *r)
 
 static status check(request *r)
 {
-    const pst_read_options *o = &r->folder.read;
-    if (r->folder.method == PST_UNCALIBRATED) r->folder.read.unknown_lights = true;
-    if ((o->lights || o->near) && o->unknown_lights)
+    const merlin_capture_files *o = &r->folder.files;
+    if (r->folder.params.method == MERLIN_STEREO_UNCALIBRATED) r->folder.files.unknown_lights = 1;
+    if ((o->lights || o->near_lights) && o->unknown_lights)
         return fail(MERLIN_WRONG_USE,
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
     r->maps = !o->lights && holds_maps(r->input);
     bool is_one_photo = file_exists(r->input) && !is_capture(r);
-    if (is_one_photo && (o->lights || o->near || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
+    if (is_one_photo &&
+        (o->lights || o->near_lights || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
         return fail(MERLIN_WRONG_USE,
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
-    bool is_distant = r->folder.method == PST_LS || r->folder.method == PST_ROBUST || r->folder.method == PST_SEMI;
+    bool is_distant = r->folder.params.method == MERLIN_STEREO_LS || r->folder.params.method == MERLIN_STEREO_ROBUST ||
+                      r->folder.params.method == MERLIN_STEREO_SEMI;
     if (is_one_photo && is_distant)
         return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
-                    pst_method_name(r->folder.method));
+                    pst_method_name(r->folder.params.method));
     if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(MERLIN_WRONG_USE,
@@ -149,16 +151,16 @@ static status check(request *r)
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
-        {"lights", .text = &r->folder.read.lights},
-        {"near", .flag = &r->folder.read.near},
-        {"fov", .real = &r->folder.read.field_of_view, .low = 1, .high = 170},
-        {"distance", .take = take_distance, .into = &r->folder.read.distance},
-        {"method", .take = take_method, .into = &r->folder.method},
-        {"mask", .text = &r->folder.read.mask},
+        {"lights", .text = &r->folder.files.lights},
+        {"near", .flag = &r->near},
+        {"fov", .real = &r->folder.files.field_of_view, .low = 1, .high = 170},
+        {"distance", .take = take_distance, .into = &r->folder.files.distance},
+        {"method", .take = take_method, .into = &r->folder.params.method},
+        {"mask", .text = &r->folder.files.mask},
         {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
         {"box", .take = photo_take_box, .into = &r->params.hint},
-        {"ambient", .text = &r->folder.read.ambient},
-        {"linear", .flag = &r->folder.read.linear},
+        {"ambient", .text = &r->folder.files.ambient},
+        {"linear", .flag = &r->linear},
         {"integrate", .take = take_integration, .into = &r->folder},
         {"mesh", .take = mesh_take_name, .into = &r->files.mesh, .many = true},
         {"model", .text = &r->weights},
@@ -177,6 +179,8 @@ static status parse(int *argc, char ***argv, request *r)
     if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder or photograph at a time, not also %s", (*argv)[1]);
     s = standard_input_take(*argv);
     if (s != OK) return s;
+    r->folder.files.near_lights = r->near;
+    r->folder.files.linear = r->linear;
     r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
     if (standard_input_is(r->input) && !r->output)
         return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
@@ -185,19 +189,19 @@ static status parse(int *argc, char ***argv, request *r)
 
 /* ---- the work ---- */
 
-static status from_photo(const request *r, stereo_result *out, cJSON *report)
+static status from_photo(const request *r, const watch *shown, stereo_result *out, cJSON *report)
 {
     char *weights, *flash;
     status s = photo_find_models(r->weights, &weights, &flash);
     if (s != OK) return s;
     stereo_photo p = {.photo = r->input,
-                      .mask = r->folder.read.mask,
+                      .mask = r->folder.files.mask,
                       .weights = weights,
                       .flash = flash,
                       .params = r->params,
-                      .method = r->folder.method,
-                      .preserve_edges = r->folder.preserve_edges,
-                      .watch = r->folder.watch};
+                      .method = r->folder.params.method,
+                      .preserve_edges = r->folder.params.keep_edges,
+                      .watch = shown};
     s = stereo_from_photo(&p, out, report);
     free(weights);
     free(flash);
@@ -231,19 +235,22 @@ static void put_words(cJSON *report, const char *input, const stereo_result *res
  * 2048×2048 took two processors. Of one photograph the draws are what is solved. */
 static void plan(const request *r, stage_bar *bar)
 {
-    static const double solving[] = {
-        [PST_LS] = 0.2, [PST_ROBUST] = 4.4, [PST_NEAR_LIGHTS] = 9, [PST_SEMI] = 4.5, [PST_UNCALIBRATED] = 11.5};
-    bool edges = r->folder.preserve_edges;
-    pst_method method = r->folder.method;
-    if (method == PST_AUTO) method = r->folder.read.near ? PST_NEAR_LIGHTS : PST_ROBUST;
+    static const double solving[] = {[MERLIN_STEREO_LS] = 0.2,
+                                     [MERLIN_STEREO_ROBUST] = 4.4,
+                                     [MERLIN_STEREO_NEAR] = 9,
+                                     [MERLIN_STEREO_SEMI] = 4.5,
+                                     [MERLIN_STEREO_UNCALIBRATED] = 11.5};
+    bool edges = r->folder.params.keep_edges;
+    merlin_stereo_method method = r->folder.params.method;
+    if (method == MERLIN_STEREO_AUTO) method = r->near ? MERLIN_STEREO_NEAR : MERLIN_STEREO_ROBUST;
     const stage_cost folder[] = {{"reading", 1.4},
                                  {"solving", solving[method]},
-                                 {"integrating", method == PST_NEAR_LIGHTS ? 29
-                                                 : edges                   ? 60
-                                                                           : 0.9},
+                                 {"integrating", method == MERLIN_STEREO_NEAR ? 29
+                                                 : edges                      ? 60
+                                                                              : 0.9},
                                  {"writing", 1.3}};
     const stage_cost photo[] = {{"relighting", 1.3},
-                                {"solving", method == PST_UNCALIBRATED ? 10 : 3},
+                                {"solving", method == MERLIN_STEREO_UNCALIBRATED ? 10 : 3},
                                 {"integrating", edges ? 3 : 0.2},
                                 {"writing", 0.3}};
     stage_bar_plan(bar, is_capture(r) ? folder : photo, sizeof folder / sizeof *folder);
@@ -254,22 +261,23 @@ static status work(request *r, const char *output, cJSON *report)
     double began = clock_seconds();
     stereo_result result = {0};
     staged_files written = {0};
-    const pst_read_options *read = &r->folder.read;
+    const merlin_capture_files *read = &r->folder.files;
     stage_bar bar;
     stage_bar_begin(&bar, r->quiet);
     plan(r, &bar);
     const watch shown = stage_bar_watch(&bar);
-    r->folder.watch = r->folder.read.watch = &shown;
+    r->folder.files.progress = r->folder.params.progress = shown.tell;
+    r->folder.files.progress_context = r->folder.params.progress_context = shown.context;
+    r->folder.files.stop = r->folder.params.stop = shown.stop;
     json_put_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
-    status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &result, report);
-    r->folder.watch = r->folder.read.watch = NULL; /* it ends with this function */
+    status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &shown, &result, report);
     float scale = 1;
     if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
     if (s == OK) {
         json_put_number(report, "albedo_scale", (double)scale);
         json_put_text(report, "error_map", result.error_name);
         json_put_number(report, "error_map_white", (double)result.error_white);
-        json_put_text(report, "integration", r->folder.preserve_edges ? "edges" : "ls");
+        json_put_text(report, "integration", r->folder.params.keep_edges ? "edges" : "ls");
         put_words(report, r->input, &result);
         json_put_number(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
@@ -298,7 +306,7 @@ static status run(request *r)
     char *output = photo_output_inside(r->input, "stereo", r->output);
     cJSON *report = report_begin(NULL);
     status s = output && report ? OK : fail(MERLIN_NO_MEMORY, "no memory for a report");
-    if (s == OK) s = check_photo_and_mask(r->input, r->folder.read.mask);
+    if (s == OK) s = check_photo_and_mask(r->input, r->folder.files.mask);
     if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
     if (s == OK) s = check_output(output);
     if (s == OK) s = work(r, output, report);

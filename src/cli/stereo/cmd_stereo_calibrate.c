@@ -44,9 +44,9 @@ static status take_ball(const char *text, void *into)
     request *r = into;
     r->chosen = true;
     if (strcmp(text, "chrome") == 0)
-        r->options.ball = PST_CHROME;
+        r->options.ball = MERLIN_CHROME_BALL;
     else if (strcmp(text, "matte") == 0)
-        r->options.ball = PST_MATTE;
+        r->options.ball = MERLIN_MATTE_BALL;
     else
         return fail(MERLIN_WRONG_USE, "--sphere wants chrome or matte, not \"%s\"", text);
     return OK;
@@ -84,7 +84,7 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     json_put_text(report, "input", r->input);
     json_line_files(report, r->output, written);
     json_put_number(report, "lights", c->count);
-    json_put_text(report, "sphere", c->ball == PST_CHROME ? "chrome" : "matte");
+    json_put_text(report, "sphere", c->ball == MERLIN_CHROME_BALL ? "chrome" : "matte");
     json_put_item(report, "circle",
                   cJSON_CreateFloatArray((const float[]){c->circle.x, c->circle.y, c->circle.radius}, 3));
     json_put_bool(report, "from_mask", c->from_mask);

@@ -73,22 +73,20 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
 }
 
 /* Positions in the unit of the camera's mean distance, which is 1 if unknown. */
-static void put_lights(cJSON *report, const pst_capture *c, const pst_surface *s)
+static void put_lights(cJSON *report, const merlin_capture *c, const merlin_surface *s)
 {
-    const pst_light *light = s->light;
+    const merlin_light *light = s->lights;
     cJSON *list = json_put_array(report, "lights_found");
     for (int i = 0; i < c->count; i++) {
         cJSON *o = json_append_object(list);
         json_put_text(o, "name", c->name[i]);
-        const float d[3] = {light[i].direction.x, light[i].direction.y, light[i].direction.z};
-        json_put_item(o, "direction", cJSON_CreateFloatArray(d, 3));
-        const float at[3] = {light[i].position.x, light[i].position.y, light[i].position.z};
-        if (s->lights_near) json_put_item(o, "position", cJSON_CreateFloatArray(at, 3));
+        json_put_item(o, "direction", cJSON_CreateFloatArray(light[i].direction, 3));
+        if (s->lights_near) json_put_item(o, "position", cJSON_CreateFloatArray(light[i].position, 3));
         json_put_item(o, "intensity", cJSON_CreateFloatArray(light[i].intensity, c->channels));
     }
 }
 
-static status put_report(cJSON *report, const pst_capture *c, const pst_surface *s, const stereo_result *r)
+static status put_report(cJSON *report, const merlin_capture *c, const merlin_surface *s, const stereo_result *r)
 {
     double *values = malloc((size_t)c->width * (size_t)c->height * sizeof *values);
     if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a report");
@@ -101,16 +99,16 @@ static status put_report(cJSON *report, const pst_capture *c, const pst_surface 
     if (c->normal_true.data)
         put_statistics(report, "normal_error_degrees", values, take_angles(r, &c->normal_true, values));
     if (c->lights_in_order) json_put_bool(report, "lights_in_order", true);
-    if (s->light) put_lights(report, c, s);
-    if (s->method == PST_SEMI) json_put_bool(report, "strengths_unsure", s->strengths_unsure);
-    if (s->method == PST_NEAR_LIGHTS) json_put_bool(report, "distance_unsure", s->distance_unsure);
-    if (s->method == PST_UNCALIBRATED) json_put_bool(report, "lights_unsure", s->lights_unsure);
+    if (s->lights) put_lights(report, c, s);
+    if (s->method == MERLIN_STEREO_SEMI) json_put_bool(report, "strengths_unsure", s->strengths_unsure);
+    if (s->method == MERLIN_STEREO_NEAR) json_put_bool(report, "distance_unsure", s->distance_unsure);
+    if (s->method == MERLIN_STEREO_UNCALIBRATED) json_put_bool(report, "lights_unsure", s->lights_unsure);
     free(values);
     return OK;
 }
 
 /* Takes normal, depth and residual over from the surface; a grey albedo becomes three channels. */
-static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *r)
+static status take_surface(const merlin_capture *c, merlin_surface *s, stereo_result *r)
 {
     *r = (stereo_result){.error_name = "residual", .error_white = RESIDUAL_WHITE, .camera = c->camera};
     status result = img_copy(&r->mask, &c->mask);
@@ -126,35 +124,36 @@ static status take_surface(const pst_capture *c, pst_surface *s, stereo_result *
     return OK;
 }
 
-static status solve(const stereo_folder *f, const pst_capture *c, stereo_result *out, cJSON *report)
+static status solve(const stereo_folder *f, const merlin_capture *c, stereo_result *out, cJSON *report)
 {
-    pst_surface surface;
+    merlin_surface surface;
     warnings doubts = {0};
     double began = clock_seconds();
-    status s = pst_solve(c, &(pst_options){.method = f->method, .watch = f->watch}, &surface);
+    status s = pst_solve(c, &f->params, &surface);
     if (s != OK) return s;
     double solved = clock_seconds();
-    s = pst_surface_integrate(c, f->integrate, f->preserve_edges, f->watch, &surface);
+    s = pst_surface_integrate(&f->params, &surface);
     if (s == OK) s = pst_doubts(c, &surface, &doubts);
     if (s == OK) s = take_surface(c, &surface, out);
     if (s == OK) s = put_report(report, c, &surface, out);
     out->doubts = doubts;
     json_put_number(report, "seconds_solve", solved - began);
     json_put_number(report, "seconds_integrate", clock_seconds() - solved);
-    pst_surface_free(&surface);
+    merlin_surface_free(&surface);
     return s;
 }
 
 status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *report)
 {
     *out = (stereo_result){0};
-    pst_capture c;
+    merlin_capture c;
     double began = clock_seconds();
-    status s = pst_capture_read(f->folder, &f->read, &c);
+    status s = pst_capture_read(f->folder, &f->files, &c);
     if (s != OK) return s;
     json_put_number(report, "seconds_read", clock_seconds() - began);
-    bool any = f->method == PST_AUTO || f->method == PST_NEAR_LIGHTS;
-    if (c.about_object && any) s = pst_place_lights(&c, f->watch);
+    const watch shown = {f->params.progress, f->params.progress_context, f->params.stop};
+    bool any = f->params.method == MERLIN_STEREO_AUTO || f->params.method == MERLIN_STEREO_NEAR;
+    if (c.about_object && any) s = pst_place_lights(&c, &shown);
     if (s == OK) s = solve(f, &c, out, report);
     out->skipped = c.skipped;
     c.skipped = (skipped_files){0};

@@ -10,11 +10,8 @@
 
 typedef struct stereo_folder {
     const char *folder;
-    pst_read_options read;
-    pst_method method;
-    const watch *watch;
-    bool integrate; /* even if the method finds depth itself */
-    bool preserve_edges;
+    merlin_capture_files files;
+    merlin_stereo_params params;
 } stereo_folder;
 
 /* What was found is added to the report: the method, sizes, the fit's residual, found lights, and errors against ground

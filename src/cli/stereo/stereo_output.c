@@ -34,8 +34,7 @@ static status write_exr(const stereo_result *r, const char *path)
         {"depth.Z", r->depth.data, 1, true},        {"mask.A", r->mask.data, 1, false},
         {"error.Y", r->error.data, 1, false},
     };
-    const exr_attribute attributes[] = {exr_text("merlinError", method),
-                                        exr_number("merlinFocal", r->camera.perspective ? r->camera.focal : 0),
+    const exr_attribute attributes[] = {exr_text("merlinError", method), exr_number("merlinFocal", r->camera.focal),
                                         maps_picture_size(r->mask.width, r->mask.height)};
     return exr_write(path, r->mask.width, r->mask.height, channels, sizeof channels / sizeof channels[0], attributes,
                      sizeof attributes / sizeof attributes[0]);

@@ -44,12 +44,12 @@ static status open_photo(work *w)
 
 static status solve_draw(work *w, int draw)
 {
-    pst_surface found;
+    merlin_surface found;
     status s = draw_solve(&w->relit.capture, draw, w->photo->method, &found);
     if (s != OK) return s;
     w->normals[w->draws++] = found.normal;
     found.normal = (img){0};
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     return OK;
 }
 

@@ -14,8 +14,8 @@ typedef struct stereo_photo {
     const char *mask;            /* the photograph's, or NULL */
     const char *weights, *flash; /* as of photo_find_models */
     merlin_params params;
-    pst_method method;  /* PST_AUTO: near */
-    const watch *watch; /* told of the stages; may be NULL */
+    merlin_stereo_method method; /* MERLIN_STEREO_AUTO: near */
+    const watch *watch;          /* told of the stages; may be NULL */
     bool preserve_edges;
 } stereo_photo;
 

@@ -24,15 +24,15 @@ static bool on_object(const stereo_result *r, int x, int y)
 
 static float pixel_size(const stereo_result *r, float depth)
 {
-    return r->camera.perspective ? depth / r->camera.focal : 1;
+    return pinhole_is_near(&r->camera) ? depth / r->camera.focal : 1;
 }
 
 /* The camera-space point of a pixel, turned so that the object's left side comes to the front. */
 static vec3 turned(const stereo_result *r, int x, int y)
 {
     float depth = *img_at(&r->depth, x, y), size = pixel_size(r, depth);
-    float cx = r->camera.perspective ? r->camera.center_x : (float)r->depth.width / 2;
-    float cy = r->camera.perspective ? r->camera.center_y : (float)r->depth.height / 2;
+    float cx = pinhole_is_near(&r->camera) ? r->camera.x : (float)r->depth.width / 2;
+    float cy = pinhole_is_near(&r->camera) ? r->camera.y : (float)r->depth.height / 2;
     vec3 p = vec3_make(((float)x + 0.5f - cx) * size, (cy - (float)y - 0.5f) * size, -depth);
     return vec3_make(COSINE * p.x + COSINE * p.z, p.y, -COSINE * p.x + COSINE * p.z);
 }

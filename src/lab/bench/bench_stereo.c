@@ -33,7 +33,7 @@ static void fill_block(void *context, size_t begin, size_t end)
     }
 }
 
-static status add_picture(pst_capture *c, bool shadows)
+static status add_picture(merlin_capture *c, bool shadows)
 {
     size_t row = (size_t)c->width * (size_t)c->channels, values = row * (size_t)c->height, k = (size_t)c->count;
     fill_work w = {.codes = malloc(values * sizeof *w.codes),
@@ -46,18 +46,18 @@ static status add_picture(pst_capture *c, bool shadows)
     parallel_blocks(values, fill_block, &w);
     float turn = 2.4f * (float)k;
     vec3 to_light = vec3_normalize(vec3_make(cosf(turn), sinf(turn), 1.5f));
-    c->light[k] = (pst_light){.direction = to_light, .intensity = {1, 1, 1}};
+    c->light[k] = (merlin_light){.direction = {to_light.x, to_light.y, to_light.z}, .intensity = {1, 1, 1}};
     c->picture[c->count++] = w.codes;
     return OK;
 }
 
-static status make_capture(const bench_stereo_report *report, const bench_stereo_run *run, pst_capture *c)
+static status make_capture(const bench_stereo_report *report, const bench_stereo_run *run, merlin_capture *c)
 {
-    *c = (pst_capture){.width = report->width,
-                       .height = report->height,
-                       .channels = report->channels,
-                       .lighting = PST_DISTANT,
-                       .intensities_known = true};
+    *c = (merlin_capture){.width = report->width,
+                          .height = report->height,
+                          .channels = report->channels,
+                          .lighting = MERLIN_DISTANT_LIGHTS,
+                          .intensities_known = true};
     status s = pst_capture_reserve(c, (size_t)run->pictures);
     c->count = 0; /* until they are added */
     if (s == OK) s = img_new(&c->mask, c->width, c->height, 1);
@@ -70,15 +70,15 @@ static status make_capture(const bench_stereo_report *report, const bench_stereo
 
 static status solve(void *context)
 {
-    pst_surface found;
-    status s = pst_solve(context, &(pst_options){.method = PST_LS}, &found);
-    if (s == OK) pst_surface_free(&found);
+    merlin_surface found;
+    status s = pst_solve(context, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &found);
+    if (s == OK) merlin_surface_free(&found);
     return s;
 }
 
 static status measure(const bench_stereo_options *o, const bench_stereo_report *report, bench_stereo_run *out)
 {
-    pst_capture c;
+    merlin_capture c;
     status s = make_capture(report, out, &c);
     out->input_bytes = (size_t)c.count * (size_t)c.width * (size_t)c.height * (size_t)c.channels * sizeof *c.picture[0];
     bench_reset_resident();

@@ -12,7 +12,7 @@ typedef struct mesh_source {
     const img *normal, *albedo; /* may be NULL; albedo, where it becomes a texture (OBJ, GLB), of any size */
     const img *roughness;       /* 1 channel, of any size, for GLB; NULL: 1 everywhere */
     pinhole camera;
-    camera_slant slant; /* of a perspective camera whose axis is not the lens's (optics/camera.h) */
+    camera_slant slant; /* of a near camera whose axis is not the lens's (optics/camera.h) */
 } mesh_source;
 
 #endif

@@ -339,7 +339,7 @@ status mesh_write_glb(const char *path, const surface_mesh *m, const mesh_source
                     path);
     glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
     int longest = from->depth->width > from->depth->height ? from->depth->width : from->depth->height;
-    if (!from->camera.perspective) g.scale = 1.0 / longest; /* positions are in pixels */
+    if (!pinhole_is_near(&from->camera)) g.scale = 1.0 / longest; /* positions are in pixels */
     add_geometry(&g, m);
     status s = from->normal ? add_tangents(&g, m) : OK;
     if (s == OK && from->albedo) s = add_albedo(&g, path, from->albedo);

@@ -15,7 +15,7 @@ static bool inside(const mesh_source *from, size_t pixel)
 
 static float pixel_size(const mesh_source *from, float depth)
 {
-    return from->camera.perspective ? fabsf(depth) / from->camera.focal : 1;
+    return pinhole_is_near(&from->camera) ? fabsf(depth) / from->camera.focal : 1;
 }
 
 /* So many pixels right of the principal point, and above it. */
@@ -33,8 +33,8 @@ static void place(const mesh_source *from, size_t pixel, float *position, float 
     size_t column = pixel % (size_t)width, row = pixel / (size_t)width;
     float x = (float)column + 0.5f, y = (float)row + 0.5f;
     const pinhole *c = &from->camera;
-    const float right = x - (c->perspective ? c->center_x : (float)width / 2),
-                up = (c->perspective ? c->center_y : (float)height / 2) - y;
+    const float right = x - (pinhole_is_near(c) ? c->x : (float)width / 2),
+                up = (pinhole_is_near(c) ? c->y : (float)height / 2) - y;
     vec3_put(point_at(from, right, up, from->depth->data[pixel]), position);
     texture[0] = x / (float)width;
     texture[1] = y / (float)height;
@@ -141,8 +141,9 @@ static status check(const mesh_source *from)
     status s = surface_mesh_check_size(from, from->mask);
     if (s == OK) s = surface_mesh_check_size(from, from->normal);
     if (s != OK) return s;
-    if (from->camera.perspective && !(from->camera.focal > 0))
-        return fail(MERLIN_WRONG_USE, "a mesh seen in perspective needs a focal length in pixels");
+    if (!(from->camera.focal >= 0))
+        return fail(MERLIN_WRONG_USE, "a camera's focal length is 0 (far away) or above, in pixels, not %g",
+                    (double)from->camera.focal);
     return OK;
 }
 

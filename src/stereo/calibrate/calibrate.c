@@ -26,12 +26,12 @@ static float shading(const uint16_t *pixel, int channels)
     return grey(pixel, channels);
 }
 
-static size_t pixels_of(const pst_capture *c)
+static size_t pixels_of(const merlin_capture *c)
 {
     return (size_t)c->width * (size_t)c->height;
 }
 
-static status find_brightest(const pst_capture *c, img *out)
+static status find_brightest(const merlin_capture *c, img *out)
 {
     status s = img_new(out, c->width, c->height, 3);
     for (int i = 0; i < c->count && s == OK; i++)
@@ -76,7 +76,7 @@ static status outline_picture(const img *brightest, img *out)
 }
 
 /* As it is without its highlights, which move. */
-static status find_darkest(const pst_capture *c, img *out)
+static status find_darkest(const merlin_capture *c, img *out)
 {
     img darkest;
     status s = img_new(&darkest, c->width, c->height, 3);
@@ -91,7 +91,7 @@ static status find_darkest(const pst_capture *c, img *out)
     return s;
 }
 
-static status search_outlines(const pst_capture *c, pst_ball ball, const img *picture, ball_outlines *out)
+static status search_outlines(const merlin_capture *c, pst_ball ball, const img *picture, ball_outlines *out)
 {
     img darkest = {0};
     status s = find_darkest(c, &darkest);
@@ -101,7 +101,7 @@ static status search_outlines(const pst_capture *c, pst_ball ball, const img *pi
 }
 
 /* The outline of the mask, or the picture to search in, and what may be outlines there. */
-static status find_outlines(const char *folder, const pst_calibrate_options *options, const pst_capture *c,
+static status find_outlines(const char *folder, const pst_calibrate_options *options, const merlin_capture *c,
                             pst_calibration *out, img *picture, ball_outlines *outlines)
 {
     char *mask;
@@ -123,7 +123,7 @@ static status find_outlines(const char *folder, const pst_calibrate_options *opt
 }
 
 /* What every picture has, such as a window that mirrors in the ball; zero for fewer than three pictures. */
-static void find_constant(const pst_capture *c, img *constant)
+static void find_constant(const merlin_capture *c, img *constant)
 {
     for (int i = 0; i < c->count && c->count > 2; i++)
         for (size_t p = 0; p < pixels_of(c); p++) {
@@ -133,20 +133,20 @@ static void find_constant(const pst_capture *c, img *constant)
 }
 
 /* What a picture has beyond the constant; what is clipped stays that. */
-static status take_picture(const pst_capture *c, int i, pst_ball ball, const img *constant, img *out)
+static status take_picture(const merlin_capture *c, int i, pst_ball ball, const img *constant, img *out)
 {
     status s = img_new(out, c->width, c->height, 1);
     for (size_t p = 0; p < pixels_of(c) && s == OK; p++) {
         const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
-        float value = ball == PST_CHROME ? grey(pixel, c->channels) : shading(pixel, c->channels);
-        out->data[p] = ball == PST_MATTE && value == 1 ? 1 : value - constant->data[p];
+        float value = ball == MERLIN_CHROME_BALL ? grey(pixel, c->channels) : shading(pixel, c->channels);
+        out->data[p] = ball == MERLIN_MATTE_BALL && value == 1 ? 1 : value - constant->data[p];
     }
     return s;
 }
 
 /* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
  * over pictures, for where a light is beside the camera no such side is seen. */
-static status find_room(const pst_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
+static status find_room(const merlin_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
 {
     float *level = malloc((size_t)c->count * sizeof *level);
     if (!level) return fail(MERLIN_NO_MEMORY, "no memory for a room's light");
@@ -154,7 +154,7 @@ static status find_room(const pst_capture *c, const ball_view *view, const pst_c
     status s = OK;
     for (int i = 0; i < c->count && s == OK; i++) {
         img picture;
-        s = take_picture(c, i, PST_MATTE, constant, &picture);
+        s = take_picture(c, i, MERLIN_MATTE_BALL, constant, &picture);
         if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
         img_free(&picture);
     }
@@ -165,13 +165,14 @@ static status find_room(const pst_capture *c, const ball_view *view, const pst_c
     return s;
 }
 
-static status find_light(const pst_capture *c, int i, const img *constant, const ball_view *view, pst_calibration *out)
+static status find_light(const merlin_capture *c, int i, const img *constant, const ball_view *view,
+                         pst_calibration *out)
 {
     img picture;
     status s = take_picture(c, i, out->ball, constant, &picture);
     if (s != OK) return s;
-    s = out->ball == PST_CHROME ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
-                                : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
+    s = out->ball == MERLIN_CHROME_BALL ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
+                                        : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
     img_free(&picture);
     if (s == MERLIN_BAD_INPUT && !out->from_mask)
         s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
@@ -179,7 +180,7 @@ static status find_light(const pst_capture *c, int i, const img *constant, const
     return s == OK ? OK : fail_in(s, "%s", out->name[i]);
 }
 
-static status find_lights(const pst_capture *c, const img *constant, const ball_view *view, pst_calibration *out)
+static status find_lights(const merlin_capture *c, const img *constant, const ball_view *view, pst_calibration *out)
 {
     status s = OK;
     for (int i = 0; i < c->count && s == OK; i++)
@@ -191,7 +192,7 @@ static status reserve(int count, pst_calibration *out)
 {
     out->count = count;
     out->direction = calloc((size_t)count, sizeof *out->direction);
-    if (out->ball == PST_CHROME)
+    if (out->ball == MERLIN_CHROME_BALL)
         out->highlight = calloc((size_t)count, sizeof *out->highlight);
     else
         out->residual = calloc((size_t)count, sizeof *out->residual);
@@ -199,17 +200,17 @@ static status reserve(int count, pst_calibration *out)
 }
 
 /* All lights by one outline. */
-static status calibrate_by(const pst_capture *c, const img *picture, pst_calibration *out)
+static status calibrate_by(const merlin_capture *c, const img *picture, pst_calibration *out)
 {
     img constant = {0};
     ball_view view = {.circle = out->circle, .camera = c->camera};
     status s = img_new(&constant, c->width, c->height, 1);
     if (s == OK && c->camera.focal > 0) s = ball_center(picture, &c->camera, &out->circle, &view.center);
-    if (s == OK && out->ball == PST_CHROME) find_constant(c, &constant);
+    if (s == OK && out->ball == MERLIN_CHROME_BALL) find_constant(c, &constant);
     if (s == OK) s = reserve(c->count, out);
     if (s == OK) s = find_lights(c, &constant, &view, out);
-    if (s == OK && out->ball == PST_MATTE) s = find_room(c, &view, out, &constant);
-    if (s == OK && out->ball == PST_MATTE) s = find_lights(c, &constant, &view, out);
+    if (s == OK && out->ball == MERLIN_MATTE_BALL) s = find_room(c, &view, out, &constant);
+    if (s == OK && out->ball == MERLIN_MATTE_BALL) s = find_lights(c, &constant, &view, out);
     img_free(&constant);
     return s;
 }
@@ -236,7 +237,7 @@ static int lights_behind(const pst_calibration *c)
 static bool is_better(const pst_calibration *trial, const pst_calibration *best)
 {
     static const float CLEARLY = 0.8f;
-    if (trial->ball == PST_MATTE) return mean_residual(trial) < CLEARLY * mean_residual(best);
+    if (trial->ball == MERLIN_MATTE_BALL) return mean_residual(trial) < CLEARLY * mean_residual(best);
     return lights_behind(trial) == 0 && lights_behind(best) > 0;
 }
 
@@ -256,7 +257,7 @@ static void take_lights(pst_calibration *from, pst_calibration *to)
 }
 
 /* The first outline's failure is the one that is told. */
-static status choose_outline(const pst_capture *c, const img *picture, ball_outlines *outlines, pst_calibration *out,
+static status choose_outline(const merlin_capture *c, const img *picture, ball_outlines *outlines, pst_calibration *out,
                              int *chosen)
 {
     status first = OK;
@@ -266,7 +267,7 @@ static status choose_outline(const pst_capture *c, const img *picture, ball_outl
         pst_calibration trial = {
             .ball = out->ball, .circle = outlines->at[i], .from_mask = out->from_mask, .name = c->name};
         status s = calibrate_by(c, picture, &trial);
-        outlines->residual[i] = s == OK && out->ball == PST_MATTE ? mean_residual(&trial) : 2;
+        outlines->residual[i] = s == OK && out->ball == MERLIN_MATTE_BALL ? mean_residual(&trial) : 2;
         if (s == OK && (*chosen < 0 || is_better(&trial, out))) {
             take_lights(&trial, out);
             *chosen = i;
@@ -289,7 +290,7 @@ static bool is_horizon(float ratio)
 static bool is_decided(const ball_outlines *outlines, pst_ball ball, int chosen)
 {
     static const float CLEARLY = 0.6f;
-    if (ball == PST_CHROME) return chosen == 0 && is_horizon(outlines->ratio);
+    if (ball == MERLIN_CHROME_BALL) return chosen == 0 && is_horizon(outlines->ratio);
     return outlines->residual[chosen] < CLEARLY * outlines->residual[1 - chosen];
 }
 
@@ -318,7 +319,7 @@ static void doubt(const ball_outlines *outlines, int chosen, pst_calibration *c)
             behind, c->count);
 }
 
-static status doubt_fit(const pst_capture *c, pst_calibration *out)
+static status doubt_fit(const merlin_capture *c, pst_calibration *out)
 {
     img outlines = {0};
     status s = outline_picture(&out->brightest, &outlines);
@@ -328,7 +329,8 @@ static status doubt_fit(const pst_capture *c, pst_calibration *out)
     return s;
 }
 
-static status calibrate(const char *folder, const pst_calibrate_options *options, pst_capture *c, pst_calibration *out)
+static status calibrate(const char *folder, const pst_calibrate_options *options, merlin_capture *c,
+                        pst_calibration *out)
 {
     img picture = {0};
     ball_outlines outlines;
@@ -348,9 +350,13 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
 status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
 {
     *out = (pst_calibration){.ball = options->ball};
-    pst_read_options reading = {
-        .mask = options->mask, .unknown_lights = true, .linear = options->linear, .watch = options->watch};
-    pst_capture c;
+    merlin_capture_files reading = {.mask = options->mask, .unknown_lights = 1, .linear = options->linear};
+    if (options->watch) {
+        reading.progress = options->watch->tell;
+        reading.progress_context = options->watch->context;
+        reading.stop = options->watch->stop;
+    }
+    merlin_capture c;
     status s = pst_capture_read(folder, &reading, &c);
     if (s != OK) return s;
     c.camera = options->field_of_view > 0 ? pinhole_of(c.width, c.height, options->field_of_view) : (pinhole){0};

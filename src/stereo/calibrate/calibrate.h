@@ -2,7 +2,7 @@
 /* Light directions from pictures of a ball: where lights mirror in a chrome one, or how they shade a matte one.
  *
  *     pst_calibration c;
- *     status s = pst_calibrate_sphere("ball", &(pst_calibrate_options){.ball = PST_CHROME}, &c);
+ *     status s = pst_calibrate_sphere("ball", &(pst_calibrate_options){.ball = MERLIN_CHROME_BALL}, &c);
  *     if (s == OK) s = pst_calibration_write(&c, "ball/lights.txt", "ball/calibration.png");
  *     pst_calibration_free(&c);
  *

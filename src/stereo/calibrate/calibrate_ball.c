@@ -242,7 +242,7 @@ static bool orthographic_point(const pst_circle *c, float x, float y, vec3 *norm
 
 static vec3 pixel_ray(const pinhole *k, float x, float y)
 {
-    return vec3_normalize(vec3_make((x - k->center_x) / k->focal, (k->center_y - y) / k->focal, -1));
+    return vec3_normalize(vec3_make((x - k->x) / k->focal, (k->y - y) / k->focal, -1));
 }
 
 /* A camera in the same place that looks along another axis. */
@@ -266,8 +266,8 @@ static void turned_point(const turn *t, float *x, float *y)
 {
     vec3 ray = pixel_ray(t->camera, *x, *y);
     float scale = t->camera->focal / -vec3_dot(ray, t->back);
-    *x = t->camera->center_x + scale * vec3_dot(ray, t->right);
-    *y = t->camera->center_y - scale * vec3_dot(ray, t->up);
+    *x = t->camera->x + scale * vec3_dot(ray, t->right);
+    *y = t->camera->y - scale * vec3_dot(ray, t->up);
 }
 
 static edge turned_edge(const turn *t, const edge *from)
@@ -292,7 +292,7 @@ static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, cons
         turn t = turn_to(camera, axis);
         for (turned->count = 0; turned->count < e->count; turned->count++)
             turned->at[turned->count] = turned_edge(&t, &e->at[turned->count]);
-        pst_circle seen = {camera->center_x, camera->center_y, radius};
+        pst_circle seen = {camera->x, camera->y, radius};
         refine(turned, &seen);
         axis = turn_back(&t, pixel_ray(camera, seen.x, seen.y));
         radius = seen.radius;

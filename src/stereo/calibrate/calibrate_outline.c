@@ -152,11 +152,12 @@ status ball_list_outlines(const img *picture, const img *darkest, pst_ball ball,
     pst_circle first, around, beside;
     status s = ball_find(picture, NULL, &first, &found);
     if (s != OK || !found) return s;
-    bool within = !(ball == PST_CHROME && ball_has_horizon(darkest, &first)) && ball_around(picture, &first, &around);
+    bool within =
+        !(ball == MERLIN_CHROME_BALL && ball_has_horizon(darkest, &first)) && ball_around(picture, &first, &around);
     if (within) s = ball_refine(picture, &around);
-    if (within && ball == PST_CHROME) out->at[out->count++] = around;
+    if (within && ball == MERLIN_CHROME_BALL) out->at[out->count++] = around;
     out->at[out->count++] = first;
-    if (within && ball == PST_MATTE) out->at[out->count++] = around;
+    if (within && ball == MERLIN_MATTE_BALL) out->at[out->count++] = around;
     out->nested = within;
     out->ratio = within ? first.radius / around.radius : 1;
     if (s == OK) s = ball_find(picture, within ? &around : &first, &beside, &found);

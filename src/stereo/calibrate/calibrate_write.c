@@ -15,7 +15,7 @@ static status write_lights(const pst_calibration *c, const char *path)
     FILE *out = open_memstream(&text, &size);
     if (!out) return fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
     fprintf(out, LIGHT_LIST_OF_CALIBRATION " a %s ball: x right, y up, z toward the camera.\n",
-            c->ball == PST_CHROME ? "chrome" : "matte");
+            c->ball == MERLIN_CHROME_BALL ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];
         fprintf(out, "%.6f %.6f %.6f\n", (double)d.x, (double)d.y, (double)d.z);

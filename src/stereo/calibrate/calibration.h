@@ -10,7 +10,7 @@
 #include "base/warnings.h"
 #include "image/image.h"
 
-typedef enum pst_ball { PST_CHROME, PST_MATTE } pst_ball;
+typedef enum pst_ball { MERLIN_CHROME_BALL, MERLIN_MATTE_BALL } pst_ball;
 
 /* Pixels from the top left corner; a pixel's centre is at one half. */
 typedef struct pst_circle {

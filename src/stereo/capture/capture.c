@@ -9,7 +9,7 @@
 #include "base/number.h"
 #include "optics/camera.h"
 
-status pst_capture_reserve(pst_capture *c, size_t count)
+status pst_capture_reserve(merlin_capture *c, size_t count)
 {
     if (count < 1 || count > PST_MOST_PICTURES)
         return fail(MERLIN_BAD_INPUT, "a capture has 1 to %d pictures, not %zu", PST_MOST_PICTURES, count);
@@ -24,18 +24,18 @@ status pst_capture_reserve(pst_capture *c, size_t count)
     return OK;
 }
 
-status pst_capture_set_name(pst_capture *c, size_t i, const char *name)
+status pst_capture_set_name(merlin_capture *c, size_t i, const char *name)
 {
     c->name[i] = strdup(name);
     return c->name[i] ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
-static status make_room(pst_capture *c)
+static status make_room(merlin_capture *c)
 {
     size_t count = (size_t)c->count + 1;
     if (count > PST_MOST_PICTURES)
         return fail(MERLIN_WRONG_USE, "a capture has %d pictures at most", PST_MOST_PICTURES);
-    pst_light *light = realloc(c->light, count * sizeof *light);
+    merlin_light *light = realloc(c->light, count * sizeof *light);
     if (light) c->light = light;
     char **name = realloc(c->name, count * sizeof *name);
     if (name) c->name = name;
@@ -49,7 +49,7 @@ static uint16_t code_of(float value)
     return (uint16_t)(clamp(value, 0, 1) * 65535 + 0.5f);
 }
 
-status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light)
+status pst_capture_add(merlin_capture *c, const img *picture, const merlin_light *light)
 {
     status s = make_room(c);
     if (s != OK) return s;
@@ -68,7 +68,7 @@ status pst_capture_add(pst_capture *c, const img *picture, const pst_light *ligh
     return OK;
 }
 
-void pst_capture_free(pst_capture *c)
+void pst_capture_free(merlin_capture *c)
 {
     for (int i = 0; i < c->count; i++) {
         if (c->picture) free(c->picture[i]);
@@ -81,23 +81,23 @@ void pst_capture_free(pst_capture *c)
     img_free(&c->mask);
     img_free(&c->normal_true);
     img_free(&c->depth_true);
-    *c = (pst_capture){0};
+    *c = (merlin_capture){0};
 }
 
-void pst_capture_forget_lights(pst_capture *c)
+void pst_capture_forget_lights(merlin_capture *c)
 {
     for (int i = 0; i < c->count; i++) {
         const float *e = c->light[i].intensity;
-        c->light[i] = (pst_light){.intensity = {e[0], e[1], e[2]}};
+        c->light[i] = (merlin_light){.intensity = {e[0], e[1], e[2]}};
     }
-    c->lighting = PST_UNKNOWN_LIGHT;
+    c->lighting = MERLIN_UNKNOWN_LIGHTS;
 }
 
-void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance)
+void pst_capture_see(merlin_capture *c, float field_of_view, float distance)
 {
-    bool near = c->lighting == PST_NEAR && !(c->camera.focal > 0);
+    bool near = c->lighting == MERLIN_NEAR_LIGHTS && !(c->camera.focal > 0);
     float degrees = field_of_view > 0 ? field_of_view : near ? CAMERA_FOV : 0;
-    float distance = mean_distance > 0 ? mean_distance : c->camera.mean_distance;
+    if (!(distance > 0)) distance = c->camera.distance;
     if (degrees > 0) c->camera = pinhole_of(c->width, c->height, degrees);
-    c->camera.mean_distance = distance;
+    c->camera.distance = distance;
 }

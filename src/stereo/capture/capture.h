@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A photometric-stereo capture: many pictures of one still object from one camera, each under one light.
  *
- *     pst_capture c;
- *     status s = pst_capture_read("owl", &(pst_read_options){.lights = "owl/lights.txt"}, &c);
+ *     merlin_capture c;
+ *     status s = pst_capture_read("owl", &(merlin_capture_files){.lights = "owl/lights.txt"}, &c);
  *     ... solve ...
  *     pst_capture_free(&c);
  *
@@ -18,20 +18,8 @@
 #include "base/warnings.h"
 #include "base/watch.h"
 #include "image/image.h"
+#include "merlin/stereo.h"
 #include "optics/pinhole.h"
-
-typedef enum pst_lighting {
-    PST_DISTANT,      /* direction */
-    PST_NEAR,         /* position, attenuation, LED lobe; needs the camera */
-    PST_UNKNOWN_LIGHT /* nothing is known but, perhaps, intensities */
-} pst_lighting;
-
-typedef struct pst_light {
-    vec3 direction;     /* distant: unit, to the light. Near: the LED's axis, unit (0, 0, 0: radiates evenly) */
-    vec3 position;      /* near: same unit and axes as the camera's space */
-    float intensity[3]; /* per channel; 1 unless given; 0 everywhere: unknown */
-    float lobe;         /* near: exponent of the LED's angular fall-off, 0 for none */
-} pst_light;
 
 /* A value from here on, as a share of full scale, may be less than the light was. */
 #define PST_SATURATED 0.98f
@@ -39,12 +27,12 @@ typedef struct pst_light {
 /* Pictures hold linear radiance as 16-bit numbers: value = stored / 65535 (8-bit sources and those with a profile
  * decoded, ambient subtracted; division by light intensities is left to the solvers so that saturation stays visible at
  * 65535). */
-typedef struct pst_capture {
+struct merlin_capture {
     int width, height, channels, count; /* channels 1 or 3 */
     uint16_t **picture;                 /* count planes of height × width × channels */
-    pst_light *light;                   /* count */
+    merlin_light *light;                /* count */
     char **name;                        /* count file names, for reports */
-    pst_lighting lighting;
+    merlin_lighting lighting;
     bool intensities_known;
     bool about_object;    /* what the positions are, until pst_place_lights brings them into the camera's space */
     bool lights_in_order; /* the lights' file names none of the pictures: they were taken in the order of their names */
@@ -58,40 +46,29 @@ typedef struct pst_capture {
     img mask;              /* 1 channel; 1 on the object */
     img normal_true;       /* 3, or empty: ground truth where the layout has one */
     img depth_true;        /* 1, or empty */
-} pst_capture;
+    float field_of_view;   /* of pictures to come, as merlin_capture_params has it */
+};
 
-typedef struct pst_read_options {
-    const char *lights; /* lights.txt or .lp; NULL: found in the folder (lights.txt, *.lp, LUCES or DiLiGenT layout) */
-    const char
-        *mask; /* NULL: the folder's mask.png or the like (image/read/folder.h), or found (pst_capture_find_mask) */
-    const char *ambient; /* picture to subtract; NULL: ambient.png, .tif or the like in the folder if there is one */
-    bool near;           /* the list holds positions in the camera's space; an .lp file's are about the object, unless
-                          * all have z below 0 */
-    bool unknown_lights; /* ignore where lights are, not how strong: uncalibrated */
-    bool linear;         /* 8-bit pictures are linear already */
-    float field_of_view; /* horizontal, degrees; 0: from the layout, else 60 when near */
-    const watch *watch;  /* told of the pictures that are read; may be NULL */
-    float distance;      /* mean, from the camera to the object; 0: from the layout, or not known */
-} pst_read_options;
-
-status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out);
+/* Reads the pictures of a folder, their lights and the mask. The lights of an .lp file are about the object afterwards
+ * (about_object). options NULL: the usual case. */
+status pst_capture_read(const char *folder, const merlin_capture_files *options, merlin_capture *out);
 /* Whether a folder is laid out as an object of LUCES or DiLiGenT. */
 bool pst_is_of_data_set(const char *folder);
 enum { PST_MOST_PICTURES = 4096 };
 /* Room for count lights of intensity 1, names and pictures, 1 to PST_MOST_PICTURES; names and pictures are NULL. */
-status pst_capture_reserve(pst_capture *c, size_t count);
+status pst_capture_reserve(merlin_capture *c, size_t count);
 /* Keeps the name of picture i. */
-status pst_capture_set_name(pst_capture *c, size_t i, const char *name);
+status pst_capture_set_name(merlin_capture *c, size_t i, const char *name);
 /* Adds a picture, of the capture's size and channels, clipped to [0, 1]. */
-status pst_capture_add(pst_capture *c, const img *picture, const pst_light *light);
+status pst_capture_add(merlin_capture *c, const img *picture, const merlin_light *light);
 /* The mask: pixels that are above black in some picture and, where the pictures' edge is dark, brighter than that. */
-status pst_capture_find_mask(pst_capture *c);
-void pst_capture_free(pst_capture *c);
+status pst_capture_find_mask(merlin_capture *c);
+void pst_capture_free(merlin_capture *c);
 
 /* Seen by a camera of this horizontal field of view in degrees, from this mean distance. 0: not known, and what is
  * known of either stays, but with near lights the camera has the project's 60 degrees if there is none. */
-void pst_capture_see(pst_capture *c, float field_of_view, float mean_distance);
+void pst_capture_see(merlin_capture *c, float field_of_view, float distance);
 /* The lights become unknown, but for their intensities, which are measured apart. */
-void pst_capture_forget_lights(pst_capture *c);
+void pst_capture_forget_lights(merlin_capture *c);
 
 #endif

@@ -142,7 +142,7 @@ static void settle_small(img *mask, uint32_t *piece)
 }
 
 typedef struct looking {
-    pst_capture *capture;
+    merlin_capture *capture;
     img *level;
 } looking;
 
@@ -150,7 +150,7 @@ typedef struct looking {
  * few pictures. */
 static void look_at_part(const looking *job, size_t begin, size_t end)
 {
-    const pst_capture *c = job->capture;
+    const merlin_capture *c = job->capture;
     const size_t channels = (size_t)c->channels;
     const uint16_t least = (uint16_t)(PST_BLACK * 65535);
     const float share = 1 / (65535.0f * 65535.0f * (float)channels * (float)c->count);
@@ -175,7 +175,7 @@ static void look(void *context, size_t begin, size_t end)
         look_at_part(context, p, p + PART < end ? p + PART : end);
 }
 
-status pst_capture_find_mask(pst_capture *c)
+status pst_capture_find_mask(merlin_capture *c)
 {
     img level;
     const size_t pixels = (size_t)c->width * (size_t)c->height;

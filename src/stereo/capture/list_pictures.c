@@ -157,7 +157,7 @@ status pst_find_ambient(const char *folder, const char *picture, char **path)
     return s;
 }
 
-status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, pst_capture *c)
+status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, merlin_capture *c)
 {
     img_folder f;
     size_t count;
@@ -175,7 +175,7 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
 
 /* ---- what is left aside ---- */
 
-static bool is_picture_of(const pst_capture *c, const char *name)
+static bool is_picture_of(const merlin_capture *c, const char *name)
 {
     for (int i = 0; i < c->count; i++)
         if (strcmp(c->name[i], name) == 0) return true;
@@ -190,14 +190,14 @@ static const char *reason_of(const img_folder *f, const img_folder_file *file, p
     return class_of(file) == taken ? "not listed" : "of another kind than the pictures that are taken";
 }
 
-static picture_class class_taken(const img_folder *f, const pst_capture *c)
+static picture_class class_taken(const img_folder *f, const merlin_capture *c)
 {
     for (size_t i = 0; i < f->count; i++)
         if (f->at[i].is_picture && strcmp(f->at[i].name, c->name[0]) == 0) return class_of(&f->at[i]);
     return CLASSES;
 }
 
-status pst_list_skipped(const char *folder, const char *mask, const char *ambient, pst_capture *c)
+status pst_list_skipped(const char *folder, const char *mask, const char *ambient, merlin_capture *c)
 {
     img_folder f;
     status s = img_folder_read(folder, &f);

@@ -8,7 +8,7 @@
 typedef struct luces_params {
     int count, height, width;
     pinhole camera;
-    pst_light *light; /* count */
+    merlin_light *light; /* count */
 } luces_params;
 
 /* `where` is put in front of messages. Free light with luces_free. */

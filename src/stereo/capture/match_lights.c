@@ -17,7 +17,7 @@ typedef struct listing {
     const char *folder;
     char **paths;
     size_t count;
-    pst_capture pictures;
+    merlin_capture pictures;
 } listing;
 
 static status list_all(const char *folder, listing *out)
@@ -177,7 +177,7 @@ static status refuse_missing(const listing *in, const char *lights, size_t count
                 lights, names, in->folder, count > 1 ? "s" : "");
 }
 
-static status check_twice(const char *lights, const light_list *list, const pst_capture *c)
+static status check_twice(const char *lights, const light_list *list, const merlin_capture *c)
 {
     for (size_t i = 0; i < list->count; i++)
         for (size_t k = 0; k < i; k++)
@@ -189,7 +189,7 @@ static status check_twice(const char *lights, const light_list *list, const pst_
 
 /* Whoever takes a line out of a list does not want its picture; a file that differs from one of the list in its ending
  * alone is the same picture. */
-static void note_left_out(const listing *in, const char *lights, pst_capture *c)
+static void note_left_out(const listing *in, const char *lights, merlin_capture *c)
 {
     size_t count = 0;
     char text[NAMES] = "";
@@ -205,7 +205,7 @@ static void note_left_out(const listing *in, const char *lights, pst_capture *c)
                      count > 1 ? "were" : "was");
 }
 
-static status take_names(const listing *in, const char *lights, const light_list *list, pst_capture *c)
+static status take_names(const listing *in, const char *lights, const light_list *list, merlin_capture *c)
 {
     status s = pst_capture_reserve(c, list->count);
     for (size_t i = 0; i < list->count && s == OK; i++)
@@ -223,7 +223,7 @@ static status refuse_count(const listing *in, const char *lights, const light_li
 }
 
 static status take_numbers(const listing *in, const char *lights, const light_list *list, const size_t *place,
-                           pst_capture *c)
+                           merlin_capture *c)
 {
     if ((size_t)in->pictures.count != list->count) return refuse_count(in, lights, list);
     status s = pst_capture_reserve(c, list->count);
@@ -232,14 +232,14 @@ static status take_numbers(const listing *in, const char *lights, const light_li
     return s;
 }
 
-static status take_in_order(const listing *in, const char *lights, const light_list *list, pst_capture *c)
+static status take_in_order(const listing *in, const char *lights, const light_list *list, merlin_capture *c)
 {
     status s = pst_take_pictures(in->folder, false, lights, list->count, c);
     c->lights_in_order = true;
     return s == OK ? OK : fail_in(s, "%s names pictures of another folder", lights);
 }
 
-static status match(const listing *in, const char *lights, const light_list *list, pst_capture *c)
+static status match(const listing *in, const char *lights, const light_list *list, merlin_capture *c)
 {
     char names[NAMES];
     size_t missing = count_missing(in, list, names);
@@ -258,7 +258,7 @@ static status match(const listing *in, const char *lights, const light_list *lis
     return s;
 }
 
-status pst_match_lights(const char *folder, const char *lights, const light_list *list, pst_capture *c)
+status pst_match_lights(const char *folder, const char *lights, const light_list *list, merlin_capture *c)
 {
     if (!list->name) return pst_take_pictures(folder, false, lights, list->count, c);
     listing in;

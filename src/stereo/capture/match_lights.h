@@ -13,7 +13,7 @@
  * names of the pictures of then, and is used for every object: where none of its names is there, its lights are the
  * folder's pictures' in their order, if the names have one. Refuses names that are not there or twice; notes pictures
  * without a light in the capture's `noticed`. Lists without names are in the pictures' order. */
-status pst_match_lights(const char *folder, const char *lights, const light_list *list, pst_capture *c);
+status pst_match_lights(const char *folder, const char *lights, const light_list *list, merlin_capture *c);
 
 /* The folder's file or picture of that name, as pst_match_lights finds it, malloc'ed; *found is NULL if there is not
  * exactly one. */

@@ -18,9 +18,9 @@ bool pst_is_of_data_set(const char *folder)
     return layout_of(folder) != LAYOUT_PLAIN;
 }
 
-static status read_layout(layout kind, const char *folder, const pst_read_options *options, pst_capture *c)
+static status read_layout(layout kind, const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
-    if (kind == LAYOUT_DILIGENT && options->near && !options->unknown_lights)
+    if (kind == LAYOUT_DILIGENT && options->near_lights && !options->unknown_lights)
         return fail(MERLIN_WRONG_USE, "the lights of %s/light_directions.txt are no positions; give a list of these",
                     folder);
     if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
@@ -28,25 +28,25 @@ static status read_layout(layout kind, const char *folder, const pst_read_option
     return pst_read_plain(folder, options, c);
 }
 
-static status read_truth(layout kind, const char *folder, pst_capture *c)
+static status read_truth(layout kind, const char *folder, merlin_capture *c)
 {
     if (kind == LAYOUT_LUCES) return pst_read_luces_truth(folder, c);
     if (kind == LAYOUT_DILIGENT) return pst_read_diligent_truth(folder, c);
     return OK;
 }
 
-static status settle_camera(const pst_read_options *options, pst_capture *c)
+static status settle_camera(const merlin_capture_files *options, merlin_capture *c)
 {
     pst_capture_see(c, options->field_of_view, options->distance);
-    if (!(options->distance > 0) || c->camera.perspective) return OK;
+    if (!(options->distance > 0) || pinhole_is_near(&c->camera)) return OK;
     return fail(MERLIN_WRONG_USE, "the object's distance is for near lights or a camera whose field of view is known");
 }
 
-status pst_capture_read(const char *folder, const pst_read_options *options, pst_capture *out)
+status pst_capture_read(const char *folder, const merlin_capture_files *options, merlin_capture *out)
 {
-    static const pst_read_options defaults = {0};
+    static const merlin_capture_files defaults = {0};
     if (!options) options = &defaults;
-    *out = (pst_capture){0};
+    *out = (merlin_capture){0};
     if (!file_is_folder(folder)) return fail(MERLIN_BAD_INPUT, "there is no folder %s with pictures in it", folder);
     layout kind = options->lights ? LAYOUT_PLAIN : layout_of(folder);
     status s = read_layout(kind, folder, options, out);

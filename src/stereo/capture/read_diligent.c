@@ -24,7 +24,7 @@ static char *take_line(char **rest)
     return name;
 }
 
-static status set_name(const char *path, const char *folder, const char *name, int i, pst_capture *c)
+static status set_name(const char *path, const char *folder, const char *name, int i, merlin_capture *c)
 {
     char *found = NULL;
     status s = pst_match_name(folder, name, &found);
@@ -38,7 +38,7 @@ static status set_name(const char *path, const char *folder, const char *name, i
 }
 
 /* One file name a line, blanks around it left out, no folders: a list may not lead out of its folder. */
-static status take_names(char *text, const char *path, const char *folder, pst_capture *c)
+static status take_names(char *text, const char *path, const char *folder, merlin_capture *c)
 {
     int count = 0;
     for (char *rest = text; *rest;) {
@@ -54,7 +54,7 @@ static status take_names(char *text, const char *path, const char *folder, pst_c
                 count == 1 ? "" : "s", c->count, c->count == 1 ? "" : "s");
 }
 
-static status read_names(const char *path, const char *folder, pst_capture *c)
+static status read_names(const char *path, const char *folder, merlin_capture *c)
 {
     char *bytes, *text = NULL;
     size_t size;
@@ -68,7 +68,7 @@ static status read_names(const char *path, const char *folder, pst_capture *c)
 }
 
 /* By filenames.txt, unless the list has names itself. */
-static status read_named(const char *directions, const char *names, const char *folder, pst_capture *c)
+static status read_named(const char *directions, const char *names, const char *folder, merlin_capture *c)
 {
     light_list list;
     status s = light_list_read(directions, &list);
@@ -79,27 +79,27 @@ static status read_named(const char *directions, const char *names, const char *
         s = pst_capture_reserve(c, list.count);
         if (s == OK) s = read_names(names, folder, c);
     }
-    if (s == OK) s = pst_set_lights(directions, &list, &(pst_read_options){0}, c);
+    if (s == OK) s = pst_set_lights(directions, &list, &(merlin_capture_files){0}, c);
     if (s == OK) s = pst_read_strengths(folder, directions, list.intensity, c);
     light_list_free(&list);
     return s;
 }
 
 /* Where there is no filenames.txt, pictures are in the order of their names, as readers of the later sets take them. */
-status pst_read_diligent(const char *folder, pst_capture *c)
+status pst_read_diligent(const char *folder, merlin_capture *c)
 {
     char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
     status s = directions && names ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && file_exists(names))
         s = read_named(directions, names, folder, c);
     else if (s == OK)
-        s = pst_read_light_list(folder, directions, &(pst_read_options){0}, c);
+        s = pst_read_light_list(folder, directions, &(merlin_capture_files){0}, c);
     free(names);
     free(directions);
     return s;
 }
 
-static status take_normals(const number_array *a, const char *path, pst_capture *c)
+static status take_normals(const number_array *a, const char *path, merlin_capture *c)
 {
     if (a->size[0] != (size_t)c->height || a->size[1] != (size_t)c->width || a->size[2] != 3)
         return fail(MERLIN_BAD_INPUT, "%s holds %zu x %zu x %zu numbers; expected %d x %d x 3", path, a->size[0],
@@ -116,7 +116,7 @@ static status take_normals(const number_array *a, const char *path, pst_capture 
     return s;
 }
 
-status pst_read_diligent_truth(const char *folder, pst_capture *c)
+status pst_read_diligent_truth(const char *folder, merlin_capture *c)
 {
     char *path = file_join(folder, "Normal_gt.mat");
     if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");

@@ -50,7 +50,7 @@ static bool take_decimal_comma(const text_row *r, text_word *out)
 
 /* ---- a light a line ---- */
 
-static status find_light(const char *path, const text_row *r, size_t words, const char *folder, const pst_capture *c,
+static status find_light(const char *path, const text_row *r, size_t words, const char *folder, const merlin_capture *c,
                          int *light)
 {
     char *found = NULL,
@@ -66,7 +66,7 @@ static status find_light(const char *path, const text_row *r, size_t words, cons
     return s;
 }
 
-static status take_row(const char *path, const text_row *r, const char *folder, int next, pst_capture *c)
+static status take_row(const char *path, const text_row *r, const char *folder, int next, merlin_capture *c)
 {
     size_t count = count_numbers(r), words = r->count - count;
     text_word one;
@@ -87,7 +87,7 @@ static status take_row(const char *path, const text_row *r, const char *folder, 
 /* ---- a light a column ---- */
 
 /* One line for all channels, or one for each. */
-static bool are_columns(const text_row *const *row, size_t count, const pst_capture *c)
+static bool are_columns(const text_row *const *row, size_t count, const merlin_capture *c)
 {
     size_t lights = (size_t)c->count;
     if ((count != 1 && count != 3) || lights < 2 || lights == count || (count == 1 && lights == 3)) return false;
@@ -96,7 +96,7 @@ static bool are_columns(const text_row *const *row, size_t count, const pst_capt
     return true;
 }
 
-static status take_columns(const char *path, const text_row *const *row, size_t count, pst_capture *c)
+static status take_columns(const char *path, const text_row *const *row, size_t count, merlin_capture *c)
 {
     status s = OK;
     for (int i = 0; i < c->count; i++)
@@ -123,7 +123,7 @@ static status list_rows(const text_rows *rows, const text_row ***out, size_t *co
     return OK;
 }
 
-static status take_rows(const char *path, const text_rows *rows, const char *folder, pst_capture *c)
+static status take_rows(const char *path, const text_rows *rows, const char *folder, merlin_capture *c)
 {
     const text_row **row;
     size_t count;
@@ -141,7 +141,7 @@ static status take_rows(const char *path, const text_rows *rows, const char *fol
     return s;
 }
 
-static status read_intensities(const char *path, const char *folder, pst_capture *c)
+static status read_intensities(const char *path, const char *folder, merlin_capture *c)
 {
     char *text;
     size_t size;
@@ -194,7 +194,7 @@ status pst_find_intensities(const char *folder, const char *lights, char **path)
     return s;
 }
 
-status pst_read_intensities(const char *folder, const char *lights, pst_capture *c)
+status pst_read_intensities(const char *folder, const char *lights, merlin_capture *c)
 {
     char *path;
     status s = pst_find_intensities(folder, lights, &path);

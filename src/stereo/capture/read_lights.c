@@ -60,16 +60,16 @@ static status find_frame(const char *path, const light_list *list, bool *about)
                 path);
 }
 
-static status set_positions(const char *path, const light_list *list, pst_capture *c)
+static status set_positions(const char *path, const light_list *list, merlin_capture *c)
 {
     if (list->angles || (!list->about_object && are_directions(list)))
         return fail(MERLIN_BAD_INPUT, "%s lists directions (all of length 1), not the positions of near lights", path);
     for (size_t i = 0; i < list->count; i++)
-        c->light[i].position = list->at[i];
+        vec3_put(list->at[i], c->light[i].position);
     return list->about_object ? find_frame(path, list, &c->about_object) : OK;
 }
 
-static void note_places(const char *path, const light_list *list, pst_capture *c)
+static void note_places(const char *path, const light_list *list, merlin_capture *c)
 {
     real least = HUGE_VALF, most = 0;
     for (size_t i = 0; i < list->count; i++) {
@@ -83,32 +83,32 @@ static void note_places(const char *path, const light_list *list, pst_capture *c
                  path, range);
 }
 
-static status set_directions(const char *path, const light_list *list, pst_capture *c)
+static status set_directions(const char *path, const light_list *list, merlin_capture *c)
 {
     for (size_t i = 0; i < list->count; i++) {
-        c->light[i].direction = light_list_direction(list, i);
-        if (!(vec3_length(c->light[i].direction) > 0.5f))
+        vec3_put(light_list_direction(list, i), c->light[i].direction);
+        if (!(vec3_length(vec3_of(c->light[i].direction)) > 0.5f))
             return fail(MERLIN_BAD_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
     }
     if (!are_places(list)) return OK;
     c->about_object = list->about_object && has_some(list, 1) && !has_some(list, -1);
     for (size_t i = 0; i < list->count && c->about_object; i++)
-        c->light[i].position = list->at[i];
+        vec3_put(list->at[i], c->light[i].position);
     if (!c->about_object) note_places(path, list, c);
     return OK;
 }
 
-status pst_set_lights(const char *path, const light_list *list, const pst_read_options *options, pst_capture *c)
+status pst_set_lights(const char *path, const light_list *list, const merlin_capture_files *options, merlin_capture *c)
 {
-    c->lighting = options->near ? PST_NEAR : PST_DISTANT;
+    c->lighting = options->near_lights ? MERLIN_NEAR_LIGHTS : MERLIN_DISTANT_LIGHTS;
     c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
     for (size_t i = 0; i < list->count && list->intensity; i++)
         vec3_put(list->intensity[i], c->light[i].intensity);
     if (list->note[0]) warnings_add(&c->noticed, "lights_list", "%s: %s", path, list->note);
-    return options->near ? set_positions(path, list, c) : set_directions(path, list, c);
+    return options->near_lights ? set_positions(path, list, c) : set_directions(path, list, c);
 }
 
-status pst_read_strengths(const char *folder, const char *lights, bool listed, pst_capture *c)
+status pst_read_strengths(const char *folder, const char *lights, bool listed, merlin_capture *c)
 {
     char *path;
     if (!listed) return pst_read_intensities(folder, lights, c);
@@ -119,7 +119,8 @@ status pst_read_strengths(const char *folder, const char *lights, bool listed, p
     return s;
 }
 
-status pst_read_light_list(const char *folder, const char *lights, const pst_read_options *options, pst_capture *c)
+status pst_read_light_list(const char *folder, const char *lights, const merlin_capture_files *options,
+                           merlin_capture *c)
 {
     light_list list;
     status s = light_list_read(lights, &list);
@@ -131,7 +132,7 @@ status pst_read_light_list(const char *folder, const char *lights, const pst_rea
     return s;
 }
 
-status pst_read_plain(const char *folder, const pst_read_options *options, pst_capture *c)
+status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     char *lights = NULL;
     if (options->unknown_lights) {

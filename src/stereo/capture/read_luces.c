@@ -74,13 +74,13 @@ static status parse_camera(const numbers *t, luces_params *p)
     p->height = (int)v[1];
     p->width = (int)v[2];
     /* the data set's own code puts the middle of the first pixel at 0 */
-    p->camera = (pinhole){true, (float)v[3], (float)v[4] + 0.5f, (float)v[5] + 0.5f, (float)v[6]};
+    p->camera = (pinhole){(float)v[3], (float)v[4] + 0.5f, (float)v[5] + 0.5f, (float)v[6]};
     return OK;
 }
 
 /* position, direction, intensity (1 or 3), attenuation; the data set's own files end their lines with a 0 besides,
  * which its code does not read */
-static status parse_light(const numbers *t, pst_light *out)
+static status parse_light(const numbers *t, merlin_light *out)
 {
     const double *v = t->value;
     if (t->count < 8 || t->count > 11)
@@ -89,7 +89,9 @@ static status parse_light(const numbers *t, pst_light *out)
             "%s:%d: expected a light's position, direction, intensity and attenuation (8 or 10 numbers), found %d",
             t->where, t->line, t->count);
     int colours = t->count < 10 ? 1 : 3;
-    *out = (pst_light){.position = turn(v), .direction = vec3_normalize(turn(v + 3)), .lobe = (float)v[6 + colours]};
+    *out = (merlin_light){.lobe = (float)v[6 + colours]};
+    vec3_put(turn(v), out->position);
+    vec3_put(vec3_normalize(turn(v + 3)), out->direction);
     for (int k = 0; k < 3; k++) {
         out->intensity[k] = (float)v[6 + (colours == 3 ? k : 0)];
         if (!(out->intensity[k] > 0))
@@ -97,7 +99,7 @@ static status parse_light(const numbers *t, pst_light *out)
     }
     if (!(out->lobe >= 0))
         return fail(MERLIN_BAD_INPUT, "%s:%d: the attenuation must not be negative", t->where, t->line);
-    if (out->lobe > 0 && !(vec3_length(out->direction) > 0.5f))
+    if (out->lobe > 0 && !(vec3_length(vec3_of(out->direction)) > 0.5f))
         return fail(MERLIN_BAD_INPUT, "%s:%d: the light's direction has no length", t->where, t->line);
     return OK;
 }
@@ -170,7 +172,7 @@ static status refuse_mosaics(const char *folder)
                 folder);
 }
 
-status pst_read_luces(const char *folder, pst_capture *c)
+status pst_read_luces(const char *folder, merlin_capture *c)
 {
     luces_params p;
     status s = refuse_mosaics(folder);
@@ -179,7 +181,7 @@ status pst_read_luces(const char *folder, pst_capture *c)
     s = pst_take_pictures(folder, true, "led_params.txt", (size_t)p.count, c);
     if (s == OK) {
         memcpy(c->light, p.light, (size_t)p.count * sizeof *p.light);
-        c->lighting = PST_NEAR;
+        c->lighting = MERLIN_NEAR_LIGHTS;
         c->intensities_known = true;
         c->camera = p.camera;
         c->width = p.width;
@@ -191,7 +193,7 @@ status pst_read_luces(const char *folder, pst_capture *c)
 
 /* The release has y up and z toward the camera; other copies have the axes of led_params.txt. Which it is shows in the
  * object's front, which faces the camera. */
-static void decode_normals(pst_capture *c)
+static void decode_normals(merlin_capture *c)
 {
     img *n = &c->normal_true;
     size_t pixels = (size_t)c->width * (size_t)c->height;
@@ -206,7 +208,7 @@ static void decode_normals(pst_capture *c)
     }
 }
 
-static status read_normals(const char *path, pst_capture *c)
+static status read_normals(const char *path, merlin_capture *c)
 {
     int bits;
     status s = img_read_samples(path, false, &c->normal_true, &bits);
@@ -219,7 +221,7 @@ static status read_normals(const char *path, pst_capture *c)
     return OK;
 }
 
-static status read_depth(const char *path, pst_capture *c)
+static status read_depth(const char *path, merlin_capture *c)
 {
     number_array a;
     status s = npz_read(path, "zgt", &a);
@@ -237,7 +239,7 @@ static status read_depth(const char *path, pst_capture *c)
     return s;
 }
 
-status pst_read_luces_truth(const char *folder, pst_capture *c)
+status pst_read_luces_truth(const char *folder, merlin_capture *c)
 {
     char *normals = file_join(folder, "normals.png"), *depth = file_join(folder, "zgt.npz");
     status s = normals && depth ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");

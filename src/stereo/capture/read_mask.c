@@ -33,7 +33,7 @@ static bool holds_a_triangle(const img *mask)
 }
 
 /* Dim pictures are no black ones: whoever gives a mask of what is dark knows that it is. */
-static bool is_ever_lit(const pst_capture *c)
+static bool is_ever_lit(const merlin_capture *c)
 {
     const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
     for (int k = 0; k < c->count; k++)
@@ -42,7 +42,7 @@ static bool is_ever_lit(const pst_capture *c)
     return false;
 }
 
-static status check_mask(const char *path, pst_capture *c)
+static status check_mask(const char *path, merlin_capture *c)
 {
     if (c->mask.width != c->width || c->mask.height != c->height)
         return fail(MERLIN_BAD_INPUT, "the mask %s is %d x %d pixels, but the pictures are %d x %d", path,
@@ -63,7 +63,7 @@ static status check_mask(const char *path, pst_capture *c)
     return OK;
 }
 
-static status find_mask(const char *folder, pst_capture *c)
+static status find_mask(const char *folder, merlin_capture *c)
 {
     status s = pst_capture_find_mask(c);
     size_t pixels = (size_t)c->width * (size_t)c->height;
@@ -80,7 +80,7 @@ static status find_mask(const char *folder, pst_capture *c)
                 inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
 }
 
-status pst_read_mask(const char *folder, const pst_read_options *options, pst_capture *c)
+status pst_read_mask(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     char *path;
     status s = pst_find_mask(folder, options->mask, &path);

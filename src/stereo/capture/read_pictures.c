@@ -26,7 +26,7 @@ typedef struct ambient_sums {
 typedef struct reading {
     const char *folder;
     bool decode;
-    const watch *watch;
+    watch watch;
     float scale; /* of floats, so that all pictures fit 16 bits */
     img ambient;
     char *ambient_path;
@@ -34,11 +34,11 @@ typedef struct reading {
     img *first;           /* the first picture, until it is stored */
     int bits;             /* its */
     float *brightest;     /* of every picture, of floats */
-    pst_capture *into;
+    merlin_capture *into;
 } reading;
 
 /* Finds out how the first picture is read; others of its size are read alike. */
-static void look_at_first(const reading *r, pst_capture *c)
+static void look_at_first(const reading *r, merlin_capture *c)
 {
     char *path = file_join(r->folder, c->name[0]);
     img_facts facts = path ? img_look(path) : (img_facts){1, 1};
@@ -62,7 +62,7 @@ static const char *kind_of(int bits)
     return bits == 32 ? "floats" : "whole numbers";
 }
 
-static status check_shape(const reading *r, const pst_capture *c, const char *name, const img *picture, int bits)
+static status check_shape(const reading *r, const merlin_capture *c, const char *name, const img *picture, int bits)
 {
     if ((bits == 32) != (r->bits == 32))
         return fail(MERLIN_BAD_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
@@ -124,9 +124,9 @@ static status for_pictures(const reading *r, status (*work)(const reading *r, in
 {
     status s = OK;
     for (int i = 0; i < r->into->count && s == OK; i += READERS) {
-        watch_tell(r->watch, "reading", (double)i / r->into->count);
+        watch_tell(&r->watch, "reading", (double)i / r->into->count);
         int left = r->into->count - i;
-        if (watch_stops(r->watch)) return fail(MERLIN_STOPPED, "stopped");
+        if (watch_stops(&r->watch)) return fail(MERLIN_STOPPED, "stopped");
         s = parallel_try((size_t)(left < READERS ? left : READERS), work_on, &(group){r, work, i});
     }
     return s;
@@ -158,7 +158,7 @@ static status measure_scale(reading *r)
     return s;
 }
 
-static status read_first_shape(reading *r, pst_capture *c)
+static status read_first_shape(reading *r, merlin_capture *c)
 {
     const img *first = r->first;
     status s = read_one(r, c->name[0], r->first, &r->bits);
@@ -173,7 +173,7 @@ static status read_first_shape(reading *r, pst_capture *c)
     return s == OK && r->bits == 32 ? measure_scale(r) : s;
 }
 
-static status read_ambient(reading *r, const char *asked, const pst_capture *c)
+static status read_ambient(reading *r, const char *asked, const merlin_capture *c)
 {
     char *path = asked ? strdup(asked) : NULL;
     if (asked && !path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
@@ -210,7 +210,7 @@ static const char *copied_as_ambient(const reading *r)
 
 /* Refuses or doubts an ambient picture that is one under a light, or of another exposure: less that, a picture shows
  * nothing. */
-static status check_ambient(const reading *r, pst_capture *c)
+static status check_ambient(const reading *r, merlin_capture *c)
 {
     static const double few = 0.05, all = 0.95;
     double lit = 1e-9, below = 0;
@@ -263,14 +263,14 @@ static status take_picture(const reading *r, int i)
     return s;
 }
 
-status pst_read_pictures(const char *folder, const pst_read_options *options, pst_capture *c)
+status pst_read_pictures(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     img first = {0};
-    reading r = {
-        .folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c, .watch = options->watch};
+    reading r = {.folder = folder, .decode = !options->linear, .first = &first, .scale = 1, .into = c};
+    r.watch = (watch){options->progress, options->progress_context, options->stop};
     status s = read_first_shape(&r, c);
     c->bits = r.bits;
-    c->linear = options->linear;
+    c->linear = options->linear != 0;
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = for_pictures(&r, take_picture);
     if (s == OK && r.ambient.data) s = check_ambient(&r, c);

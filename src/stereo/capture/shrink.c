@@ -8,8 +8,8 @@
 #include "base/parallel.h"
 
 typedef struct shrink_job {
-    const pst_capture *from;
-    pst_capture *to;
+    const merlin_capture *from;
+    merlin_capture *to;
     pst_blocks blocks;
     uint16_t high;
 } shrink_job;
@@ -34,7 +34,7 @@ static block block_of(const shrink_job *job, int x, int y)
 
 static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)
 {
-    const pst_capture *c = job->from;
+    const merlin_capture *c = job->from;
     uint64_t sum[3] = {0}, count = 0;
     bool saturated[3] = {false};
     for (int y = b.top; y < b.bottom; y++)
@@ -55,7 +55,7 @@ static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uin
 static void shrink_picture(void *context, size_t k)
 {
     const shrink_job *job = context;
-    pst_capture *to = job->to;
+    merlin_capture *to = job->to;
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++) {
             size_t at = (size_t)y * (size_t)to->width + (size_t)x;
@@ -82,18 +82,18 @@ static void shrink_mask(const shrink_job *job)
             *img_at(to, x, y) = pixels_on_object(job, block_of(job, x, y)) >= needed;
 }
 
-static status allocate(const pst_capture *c, const pst_blocks *b, pst_capture *out)
+static status allocate(const merlin_capture *c, const pst_blocks *b, merlin_capture *out)
 {
     size_t count = (size_t)c->count, samples = (size_t)b->columns * (size_t)b->rows * (size_t)c->channels;
-    *out = (pst_capture){.width = b->columns,
-                         .height = b->rows,
-                         .channels = c->channels,
-                         .lighting = c->lighting,
-                         .intensities_known = c->intensities_known,
-                         .camera = c->camera};
+    *out = (merlin_capture){.width = b->columns,
+                            .height = b->rows,
+                            .channels = c->channels,
+                            .lighting = c->lighting,
+                            .intensities_known = c->intensities_known,
+                            .camera = c->camera};
     out->camera.focal /= (float)b->factor;
-    out->camera.center_x = (c->camera.center_x - (float)b->x) / (float)b->factor;
-    out->camera.center_y = (c->camera.center_y - (float)b->y) / (float)b->factor;
+    out->camera.x = (c->camera.x - (float)b->x) / (float)b->factor;
+    out->camera.y = (c->camera.y - (float)b->y) / (float)b->factor;
     out->light = malloc(count * sizeof *out->light);
     out->picture = calloc(count, sizeof *out->picture);
     if (!out->light || !out->picture) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
@@ -105,13 +105,13 @@ static status allocate(const pst_capture *c, const pst_blocks *b, pst_capture *o
     return img_new(&out->mask, out->width, out->height, 1);
 }
 
-pst_blocks pst_blocks_of(const pst_capture *c, int factor)
+pst_blocks pst_blocks_of(const merlin_capture *c, int factor)
 {
     return (pst_blocks){
         .columns = (c->width + factor - 1) / factor, .rows = (c->height + factor - 1) / factor, .factor = factor};
 }
 
-status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst_capture *out)
+status pst_shrink(const merlin_capture *c, pst_blocks blocks, float saturation, merlin_capture *out)
 {
     status s = allocate(c, &blocks, out);
     if (s != OK) {
@@ -126,7 +126,8 @@ status pst_shrink(const pst_capture *c, pst_blocks blocks, float saturation, pst
 }
 
 /* Puts these pictures and their lights into the arrays of `some`, which are the caller's, and shrinks them. */
-static status shrink_some(const pst_capture *c, int pixels, const int picture[], pst_capture *some, pst_capture *out)
+static status shrink_some(const merlin_capture *c, int pixels, const int picture[], merlin_capture *some,
+                          merlin_capture *out)
 {
     size_t inside = 0;
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; i < n; i++)
@@ -139,9 +140,9 @@ static status shrink_some(const pst_capture *c, int pixels, const int picture[],
     return pst_shrink(some, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, out);
 }
 
-status pst_shrink_to(const pst_capture *c, int pixels, int most_pictures, int picture[], pst_capture *out)
+status pst_shrink_to(const merlin_capture *c, int pixels, int most_pictures, int picture[], merlin_capture *out)
 {
-    pst_capture some = *c;
+    merlin_capture some = *c;
     some.count = c->count < most_pictures ? c->count : most_pictures;
     some.picture = malloc((size_t)some.count * sizeof *some.picture);
     some.light = malloc((size_t)some.count * sizeof *some.light);

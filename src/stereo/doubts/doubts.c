@@ -27,12 +27,12 @@ static const double much_burnt_out = 0.05;
 
 /* ---- lights ---- */
 
-static void doubt_directions(const pst_capture *c, warnings *out)
+static void doubt_directions(const merlin_capture *c, warnings *out)
 {
     double m[9] = {0}, spread[6];
     int away = 0;
     for (int k = 0; k < c->count; k++) {
-        vec3 d = c->light[k].direction;
+        vec3 d = vec3_of(c->light[k].direction);
         const double v[3] = {d.x, d.y, d.z};
         for (int j = 0; j < 9; j++)
             m[j] += v[j / 3] * v[j % 3];
@@ -51,10 +51,10 @@ static void doubt_directions(const pst_capture *c, warnings *out)
 }
 
 /* Places about the object, or with z away from the camera, give pictures that are explained nearly as well. */
-static void doubt_places(const pst_capture *c, warnings *out)
+static void doubt_places(const merlin_capture *c, warnings *out)
 {
     for (int k = 0; k < c->count; k++)
-        if (c->light[k].position.z < behind_camera * vec3_length(c->light[k].position)) return;
+        if (c->light[k].position[2] < behind_camera * vec3_length(vec3_of(c->light[k].position))) return;
     warnings_add(
         out, "lights_behind_camera",
         "all %d lights are listed behind the camera (z above 0): places are from the camera, and what is before it "
@@ -62,12 +62,12 @@ static void doubt_places(const pst_capture *c, warnings *out)
         c->count);
 }
 
-static void doubt_unit(const pst_capture *c, warnings *out)
+static void doubt_unit(const merlin_capture *c, warnings *out)
 {
-    float distance = c->camera.mean_distance, sum = 0;
+    float distance = c->camera.distance, sum = 0;
     if (!(distance > 0)) return;
     for (int k = 0; k < c->count; k++)
-        sum += vec3_length(vec3_sub(c->light[k].position, vec3_make(0, 0, -distance))) / (float)c->count;
+        sum += vec3_length(vec3_sub(vec3_of(c->light[k].position), vec3_make(0, 0, -distance))) / (float)c->count;
     if (sum < another_unit * distance && sum * another_unit > distance) return;
     warnings_add(
         out, "other_unit",
@@ -86,21 +86,22 @@ static uint64_t hash_of(const uint16_t *value, size_t count)
     return hash;
 }
 
-static bool are_the_same(const pst_capture *c, const uint64_t *hash, int j, int k)
+static bool are_the_same(const merlin_capture *c, const uint64_t *hash, int j, int k)
 {
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
     return hash[j] == hash[k] && memcmp(c->picture[j], c->picture[k], values * sizeof **c->picture) == 0;
 }
 
-static bool may_be_the_same(const pst_capture *c, int j, int k)
+static bool may_be_the_same(const merlin_capture *c, int j, int k)
 {
-    const pst_light *a = &c->light[j], *b = &c->light[k];
-    if (c->lighting == PST_DISTANT) return vec3_dot(a->direction, b->direction) > same_direction;
-    vec3 apart = vec3_sub(a->position, b->position);
-    return c->lighting == PST_NEAR && !(vec3_length(apart) > 1e-3f * vec3_length(a->position));
+    const merlin_light *a = &c->light[j], *b = &c->light[k];
+    if (c->lighting == MERLIN_DISTANT_LIGHTS)
+        return vec3_dot(vec3_of(a->direction), vec3_of(b->direction)) > same_direction;
+    vec3 apart = vec3_sub(vec3_of(a->position), vec3_of(b->position));
+    return c->lighting == MERLIN_NEAR_LIGHTS && !(vec3_length(apart) > 1e-3f * vec3_length(vec3_of(a->position)));
 }
 
-status pst_doubt_copies(const pst_capture *c, warnings *out)
+status pst_doubt_copies(const merlin_capture *c, warnings *out)
 {
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
     int copies = 0, first = 0, second = 0;
@@ -122,14 +123,14 @@ status pst_doubt_copies(const pst_capture *c, warnings *out)
     return OK;
 }
 
-static bool is_saturated(const pst_capture *c, int k, size_t pixel)
+static bool is_saturated(const merlin_capture *c, int k, size_t pixel)
 {
     for (int ch = 0; ch < c->channels; ch++)
         if (c->picture[k][pixel * (size_t)c->channels + (size_t)ch] >= PST_SATURATED * 65535) return true;
     return false;
 }
 
-static void doubt_exposure(const pst_capture *c, warnings *out)
+static void doubt_exposure(const merlin_capture *c, warnings *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, seen = 0, burnt = 0;
     for (size_t i = 0; i < pixels; i += step) {
@@ -149,7 +150,7 @@ static void doubt_exposure(const pst_capture *c, warnings *out)
 }
 
 /* Returns how bright a pixel is where it is brightest, as a share of full scale. */
-static float brightest_at(const pst_capture *c, size_t pixel)
+static float brightest_at(const merlin_capture *c, size_t pixel)
 {
     size_t channels = (size_t)c->channels;
     uint16_t most = 0;
@@ -160,7 +161,7 @@ static float brightest_at(const pst_capture *c, size_t pixel)
 }
 
 /* Lamps light what they are pointed at: an object that is black in all pictures before what is bright is none. */
-static void doubt_mask(const pst_capture *c, warnings *out)
+static void doubt_mask(const merlin_capture *c, warnings *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, inside = 0, outside = 0;
     size_t black = 0, bright = 0;
@@ -182,7 +183,7 @@ static void doubt_mask(const pst_capture *c, warnings *out)
 
 /* ---- what solvers and readers noticed ---- */
 
-static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
+static void pass_on(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     if (c->reduced > 1)
         warnings_add(out, "reduced_size",
@@ -218,14 +219,14 @@ static void pass_on(const pst_capture *c, const pst_surface *s, warnings *out)
             "the object recedes: state the lights' directions in lights.txt");
 }
 
-status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out)
+status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
-    bool known = s->method != PST_UNCALIBRATED;
+    bool known = s->method != MERLIN_STEREO_UNCALIBRATED;
     status result = known ? pst_check_lights(c, s, out) : OK;
     if (known && result == OK && !warnings_find(out, "lights_do_not_fit")) result = pst_check_model(c, s, out);
-    if (known && c->lighting == PST_DISTANT) doubt_directions(c, out);
-    if (known && c->lighting == PST_NEAR) doubt_places(c, out);
-    if (known && c->lighting == PST_NEAR) doubt_unit(c, out);
+    if (known && c->lighting == MERLIN_DISTANT_LIGHTS) doubt_directions(c, out);
+    if (known && c->lighting == MERLIN_NEAR_LIGHTS) doubt_places(c, out);
+    if (known && c->lighting == MERLIN_NEAR_LIGHTS) doubt_unit(c, out);
     if (result == OK) result = pst_doubt_copies(c, out);
     doubt_exposure(c, out);
     doubt_mask(c, out);

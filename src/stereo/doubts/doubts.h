@@ -12,8 +12,8 @@
 /* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
  * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,
  * distance_unsure and lights_unsure, where they hold. */
-status pst_doubts(const pst_capture *c, const pst_surface *s, warnings *out);
+status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *out);
 /* Adds same_pictures alone, if it holds. */
-status pst_doubt_copies(const pst_capture *c, warnings *out);
+status pst_doubt_copies(const merlin_capture *c, warnings *out);
 
 #endif

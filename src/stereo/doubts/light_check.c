@@ -28,7 +28,7 @@ static const double turned = 0.35;
 static const double inward = 0.4;
 
 typedef struct check {
-    const pst_capture *capture;
+    const merlin_capture *capture;
     pst_light_fit fit;
     double own, least;   /* unexplained by the list, and by the best three lights */
     vec3 *light, *trial; /* that fit best; one arrangement */
@@ -60,7 +60,7 @@ static int by_name(const void *a, const void *b)
 }
 
 /* place[k]: of picture k in the alphabet, where 10.png stands before 9.png; false without names. */
-static status alphabetical(const pst_capture *c, int *place, bool *differs)
+static status alphabetical(const merlin_capture *c, int *place, bool *differs)
 {
     *differs = false;
     char ***sorted = malloc((size_t)c->count * sizeof *sorted);
@@ -229,14 +229,14 @@ static status check_all(check *c, warnings *out)
     if (!c->light || !c->trial) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->fit.total);
     status s = check_arrangement(c);
     bool doubt = c->remedy[0] != 0;
-    bool near = c->capture->lighting == PST_NEAR;
+    bool near = c->capture->lighting == MERLIN_NEAR_LIGHTS;
     bool lost = !doubt && c->own - c->least > fmax(near ? most_beyond_near : most_beyond, c->least);
     if (s == OK && !lost) s = check_axes(c, &doubt);
     if (s == OK && (doubt || lost)) tell(c, out);
     return s;
 }
 
-status pst_check_lights(const pst_capture *c, const pst_surface *s, warnings *out)
+status pst_check_lights(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     check all = {.capture = c};
     status result = pst_light_fit_new(c, s, &all.fit);

@@ -11,6 +11,6 @@
 #include "stereo/integrate/surface.h"
 
 /* Checks a solved capture whose lights are known. */
-status pst_check_lights(const pst_capture *c, const pst_surface *s, warnings *out);
+status pst_check_lights(const merlin_capture *c, const merlin_surface *s, warnings *out);
 
 #endif

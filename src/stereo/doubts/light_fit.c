@@ -26,7 +26,7 @@ void pst_light_fit_free(pst_light_fit *f)
 /* ---- the lights ---- */
 
 /* The middle of the object, in the camera's space. */
-static vec3 middle_of(const pst_capture *c, const pst_surface *s)
+static vec3 middle_of(const merlin_capture *c, const merlin_surface *s)
 {
     double x = 0, y = 0, depth = 0, count = 0;
     for (int row = 0; row < c->height; row++)
@@ -35,25 +35,25 @@ static vec3 middle_of(const pst_capture *c, const pst_surface *s)
             if (c->mask.data[at] <= 0.5f) continue;
             x += column + 0.5;
             y += row + 0.5;
-            depth += s->depth.data ? (double)s->depth.data[at] : (double)c->camera.mean_distance;
+            depth += s->depth.data ? (double)s->depth.data[at] : (double)c->camera.distance;
             count++;
         }
     double scale = depth / count / (double)c->camera.focal;
-    return vec3_make((float)((x / count - (double)c->camera.center_x) * scale),
-                     (float)(((double)c->camera.center_y - y / count) * scale), (float)(-depth / count));
+    return vec3_make((float)((x / count - (double)c->camera.x) * scale),
+                     (float)(((double)c->camera.y - y / count) * scale), (float)(-depth / count));
 }
 
-static vec3 near_light(const pst_light *light, vec3 middle)
+static vec3 near_light(const merlin_light *light, vec3 middle)
 {
-    vec3 to = vec3_sub(light->position, middle);
+    vec3 to = vec3_sub(vec3_of(light->position), middle);
     float squared = fmaxf(vec3_dot(to, to), 1e-12f), power = 1 / squared;
     vec3 toward = vec3_scale(to, 1 / sqrtf(squared));
-    if (light->lobe > 0 && vec3_dot(light->direction, light->direction) > 0)
-        power *= powf(fmaxf(-vec3_dot(toward, light->direction), 0), light->lobe);
+    if (light->lobe > 0 && vec3_dot(vec3_of(light->direction), vec3_of(light->direction)) > 0)
+        power *= powf(fmaxf(-vec3_dot(toward, vec3_of(light->direction)), 0), light->lobe);
     return vec3_scale(toward, power);
 }
 
-static float mean_intensity(const pst_capture *c, const pst_light *light)
+static float mean_intensity(const merlin_capture *c, const merlin_light *light)
 {
     float sum = 0;
     for (int ch = 0; ch < c->channels; ch++)
@@ -61,17 +61,17 @@ static float mean_intensity(const pst_capture *c, const pst_light *light)
     return sum > 0 ? sum / (float)c->channels : 1;
 }
 
-static status list_lights(const pst_capture *c, const pst_surface *s, pst_light_fit *f)
+static status list_lights(const merlin_capture *c, const merlin_surface *s, pst_light_fit *f)
 {
-    const pst_light *light = s->light ? s->light : c->light;
-    vec3 middle = c->lighting == PST_NEAR ? middle_of(c, s) : (vec3){0, 0, 0};
+    const merlin_light *light = s->lights ? s->lights : c->light;
+    vec3 middle = c->lighting == MERLIN_NEAR_LIGHTS ? middle_of(c, s) : (vec3){0, 0, 0};
     f->total = c->count;
     f->light = malloc((size_t)c->count * sizeof *f->light);
     f->strength = malloc((size_t)c->count * sizeof *f->strength);
     if (!f->light || !f->strength) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     float most = 0;
     for (int k = 0; k < c->count; k++) {
-        vec3 toward = c->lighting == PST_NEAR ? near_light(&light[k], middle) : light[k].direction;
+        vec3 toward = c->lighting == MERLIN_NEAR_LIGHTS ? near_light(&light[k], middle) : vec3_of(light[k].direction);
         f->light[k] = vec3_scale(toward, mean_intensity(c, &light[k]));
         most = fmaxf(most, vec3_length(f->light[k]));
     }
@@ -84,7 +84,7 @@ static status list_lights(const pst_capture *c, const pst_surface *s, pst_light_
 
 /* ---- the pictures ---- */
 
-static status shrink(const pst_capture *c, pst_light_fit *f)
+static status shrink(const merlin_capture *c, pst_light_fit *f)
 {
     status s = pst_shrink_to(c, SMALL, PST_CHECKED_PICTURES, f->picture, &f->small);
     f->count = s == OK ? f->small.count : 0;
@@ -94,7 +94,7 @@ static status shrink(const pst_capture *c, pst_light_fit *f)
 /* A pixel's values, mean of the channels; below 0: saturated. Returns their length, 0 off the object or in the dark. */
 static double values_at(const pst_light_fit *f, size_t pixel, float *value)
 {
-    const pst_capture *c = &f->small;
+    const merlin_capture *c = &f->small;
     size_t channels = (size_t)c->channels;
     double square = 0;
     if (c->mask.data[pixel] <= 0.5f) return 0;
@@ -131,7 +131,7 @@ static status sum_products(pst_light_fit *f)
     return f->energy > 0 ? OK : fail(MERLIN_BAD_INPUT, "the pictures are black where the object is");
 }
 
-status pst_light_fit_new(const pst_capture *c, const pst_surface *s, pst_light_fit *out)
+status pst_light_fit_new(const merlin_capture *c, const merlin_surface *s, pst_light_fit *out)
 {
     *out = (pst_light_fit){0};
     status result = list_lights(c, s, out);

@@ -13,7 +13,7 @@
 enum { PST_CHECKED_PICTURES = 96 };
 
 typedef struct pst_light_fit {
-    pst_capture small;                 /* of the pictures that are looked at */
+    merlin_capture small;              /* of the pictures that are looked at */
     int count;                         /* of these */
     int total;                         /* of the capture's lights */
     int picture[PST_CHECKED_PICTURES]; /* their numbers in the capture */
@@ -24,7 +24,7 @@ typedef struct pst_light_fit {
 } pst_light_fit;
 
 /* The surface's lights where it found some; near lights count as distant ones over the object's middle. */
-status pst_light_fit_new(const pst_capture *c, const pst_surface *s, pst_light_fit *out);
+status pst_light_fit_new(const merlin_capture *c, const merlin_surface *s, pst_light_fit *out);
 void pst_light_fit_free(pst_light_fit *f);
 
 /* The share of the pictures' energy that no Lambertian surface explains; light: one for each of the capture's

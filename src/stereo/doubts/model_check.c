@@ -17,8 +17,8 @@ enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
 static const double noticed = 0.02, plainly_less = 0.6;
 
 typedef struct check {
-    pst_capture small;
-    pst_method method;
+    merlin_capture small;
+    merlin_stereo_method method;
     double own; /* what is left of the small pictures as they were taken */
 } check;
 
@@ -31,7 +31,7 @@ static int by_value(const void *a, const void *b)
 }
 
 /* Finds the median: outlines and cast shadows, which no model here knows, leave much in few pixels. */
-static status typical_residual(const pst_capture *c, const pst_surface *s, double *out)
+static status typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
     float *all = malloc((pixels + 1) * sizeof *all);
@@ -45,14 +45,14 @@ static status typical_residual(const pst_capture *c, const pst_surface *s, doubl
 }
 
 /* Solves the pictures and measures what is left: everything where they cannot be solved, which explains nothing. */
-static status residual_of(const pst_capture *c, pst_method method, double *left)
+static status residual_of(const merlin_capture *c, merlin_stereo_method method, double *left)
 {
-    pst_surface found;
-    status s = pst_solve(c, &(pst_options){.method = method}, &found);
+    merlin_surface found;
+    status s = pst_solve(c, &(merlin_stereo_params){.method = method}, &found);
     *left = HUGE_VAL;
     if (s != OK) return s == MERLIN_BAD_INPUT ? OK : s;
     if (found.residual.data) s = typical_residual(c, &found, left);
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     return s;
 }
 
@@ -66,8 +66,8 @@ static bool is_better(const check *c, double left)
 static status try_distance(const check *c, double at, double *best, double *factor)
 {
     double left;
-    pst_capture other = c->small;
-    other.camera.mean_distance *= (float)at;
+    merlin_capture other = c->small;
+    other.camera.distance *= (float)at;
     status s = residual_of(&other, c->method, &left);
     if (s == OK && left < *best) *best = left, *factor = at;
     return s;
@@ -89,7 +89,7 @@ static status check_distance(const check *c, double *best, double *factor)
     return s;
 }
 
-static double degrees_wide(const pst_capture *c)
+static double degrees_wide(const merlin_capture *c)
 {
     return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)DEGREE;
 }
@@ -102,7 +102,7 @@ static status check_lens(const check *c, double *best, double *degrees)
     status s = OK;
     for (size_t i = 0; i < sizeof tried / sizeof *tried && s == OK; i++) {
         double left;
-        pst_capture other = c->small;
+        merlin_capture other = c->small;
         other.camera.focal = pinhole_of(other.width, other.height, (float)tried[i]).focal;
         s = residual_of(&other, c->method, &left);
         if (left < *best) *best = left, *degrees = tried[i];
@@ -112,7 +112,7 @@ static status check_lens(const check *c, double *best, double *degrees)
 
 static status check_place(const check *c, warnings *out)
 {
-    const double distance = (double)c->small.camera.mean_distance;
+    const double distance = (double)c->small.camera.distance;
     double by_distance = HUGE_VAL, factor = 1, by_lens = HUGE_VAL, degrees = 0;
     status s = OK;
     if (distance > 0) s = check_distance(c, &by_distance, &factor);
@@ -151,7 +151,7 @@ static status with_other_tones(check *c, bool linear, double *left)
 }
 
 /* Whoever lists lights and no strengths means equal ones. */
-static bool are_of_one_strength(const pst_capture *c)
+static bool are_of_one_strength(const merlin_capture *c)
 {
     for (int k = 1; k < c->count; k++)
         for (int ch = 0; ch < c->channels; ch++)
@@ -178,12 +178,12 @@ static void tell_strengths(warnings *out)
 }
 
 /* Either makes up for some of the other: the better one is told. */
-static status check_values(check *c, const pst_capture *of, warnings *out)
+static status check_values(check *c, const merlin_capture *of, warnings *out)
 {
     double semi = HUGE_VAL, toned = HUGE_VAL;
     status s = OK;
-    if (of->lighting == PST_DISTANT && c->method != PST_SEMI && are_of_one_strength(of))
-        s = residual_of(&c->small, PST_SEMI, &semi);
+    if (of->lighting == MERLIN_DISTANT_LIGHTS && c->method != MERLIN_STEREO_SEMI && are_of_one_strength(of))
+        s = residual_of(&c->small, MERLIN_STEREO_SEMI, &semi);
     if (s == OK && of->bits == 8) s = with_other_tones(c, of->linear, &toned);
     if (s != OK || !is_better(c, fmin(semi, toned))) return s;
     if (toned < semi)
@@ -195,20 +195,20 @@ static status check_values(check *c, const pst_capture *of, warnings *out)
 
 /* ---- all of it ---- */
 
-static status check_all(check *c, const pst_capture *of, warnings *out)
+static status check_all(check *c, const merlin_capture *of, warnings *out)
 {
     status s = residual_of(&c->small, c->method, &c->own);
     if (s != OK || !(c->own > noticed) || isinf(c->own)) return s;
     size_t before = out->count;
-    if (of->lighting == PST_NEAR) s = check_place(c, out);
+    if (of->lighting == MERLIN_NEAR_LIGHTS) s = check_place(c, out);
     if (s == OK && out->count == before) s = check_values(c, of, out);
     return s;
 }
 
-status pst_check_model(const pst_capture *c, const pst_surface *s, warnings *out)
+status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     check all = {.method = s->method};
-    if (c->lighting == PST_UNKNOWN_LIGHT || c->count < FEWEST) return OK;
+    if (c->lighting == MERLIN_UNKNOWN_LIGHTS || c->count < FEWEST) return OK;
     int picture[PICTURES];
     status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);
     if (result == OK) result = check_all(&all, c, out);

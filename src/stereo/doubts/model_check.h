@@ -11,6 +11,6 @@
 
 /* Adds other_distance, other_lens, other_tones and strengths_unequal, where they hold, naming what fits better: found
  * by solving a small version of the pictures again under each. */
-status pst_check_model(const pst_capture *c, const pst_surface *s, warnings *out);
+status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out);
 
 #endif

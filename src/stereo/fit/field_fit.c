@@ -26,7 +26,7 @@ typedef struct fit_job {
     pst_shading *next;     /* spread, mend: to take the place of the field's */
     float *weight, *model; /* model: padded lights a pixel */
     pst_fall_off *fall;    /* fall off */
-    pst_surface *out;      /* store */
+    merlin_surface *out;   /* store */
     float *x, *y, *z;      /* distant lights, padded */
     float *cost;           /* a pixel */
     double total;
@@ -46,27 +46,26 @@ ALWAYS_INLINE void gather_picture(const pst_problem *p, int k, const uint32_t *p
                                   float *restrict value, float *restrict usable, size_t stride)
 {
     const uint16_t *picture = p->capture->picture[k];
-    float low = p->shadow > 0 ? p->shadow * 65535 * (float)channels : -1, high = p->saturation * 65535;
+    const float high = p->saturation * 65535;
     float share[3];
     for (int ch = 0; ch < channels; ch++)
         share[ch] = 1 / p->light[k].intensity[ch] / (65535 * (float)channels);
     for (size_t j = 0; j < count; j++) {
         const uint16_t *code = picture + (size_t)pixel[j] * (size_t)channels;
-        float sum = 0, top = 0, dark = 0;
+        float sum = 0, top = 0;
         for (int ch = 0; ch < channels; ch++) {
             float v = code[ch];
             sum += v * share[ch];
-            dark += v;
             top = v > top ? v : top;
         }
         value[j * stride] = sum;
-        usable[j * stride] = top < high && dark > low ? 1 : 0;
+        usable[j * stride] = top < high ? 1 : 0;
     }
 }
 
 void pst_gather(const pst_problem *p, const uint32_t *pixel, size_t count, float *value, float *usable, size_t stride)
 {
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     for (int k = 0; k < c->count; k++) {
         if (c->channels == 1)
             gather_picture(p, k, pixel, count, 1, value + k, usable + k, stride);
@@ -87,9 +86,9 @@ static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
 static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
 {
     const pst_problem *p = job->field->problem;
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     const pst_observations *o = &d->seen;
-    pst_surface *out = job->out;
+    merlin_surface *out = job->out;
     float w[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS];
     const pst_lobe *kind = lobe_of(job->field, q);
     pst_lobe_weigh(d, kind, q, w, model);
@@ -195,7 +194,7 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
 /* Under near lights or from a near camera: where the pixel sees them. Returns the direction to the camera. */
 static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
 {
-    const pst_capture *c = f->problem->capture;
+    const merlin_capture *c = f->problem->capture;
     int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width), padded = pst_padded(c->count);
     if (f->depth) {
         vec3 ray = pst_ray(&c->camera, x, y);
@@ -307,9 +306,9 @@ static status run(fit_job *job)
     job->z = job->y + padded;
     job->cost = job->z + padded;
     for (int k = 0; k < count; k++) {
-        job->x[k] = f->problem->light[k].direction.x;
-        job->y[k] = f->problem->light[k].direction.y;
-        job->z[k] = f->problem->light[k].direction.z;
+        job->x[k] = f->problem->light[k].direction[0];
+        job->y[k] = f->problem->light[k].direction[1];
+        job->z[k] = f->problem->light[k].direction[2];
     }
     parallel_for((f->count + BLOCK - 1) / BLOCK, fit_block, job);
     job->total = 0;
@@ -363,7 +362,7 @@ status pst_field_fall_off(const pst_field *f, pst_fall_off *out)
     return run(&(fit_job){.field = f, .task = FALL_OFF, .fall = out});
 }
 
-status pst_field_store(const pst_field *f, pst_surface *out)
+status pst_field_store(const pst_field *f, merlin_surface *out)
 {
     return run(&(fit_job){.field = f, .task = STORE, .out = out});
 }
@@ -381,7 +380,7 @@ static size_t take(const pst_field *f, const pst_shading *next, bool *news)
 
 int32_t *pst_field_slots(const pst_field *f)
 {
-    const pst_capture *c = f->problem->capture;
+    const merlin_capture *c = f->problem->capture;
     size_t size = (size_t)c->width * (size_t)c->height;
     int32_t *slot = malloc(size * sizeof *slot);
     if (!slot) return NULL;

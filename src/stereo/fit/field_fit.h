@@ -43,7 +43,7 @@ status pst_field_model(const pst_field *f, float *weight, float *model);
 status pst_field_fall_off(const pst_field *f, pst_fall_off *out);
 
 /* Normal, albedo and residual into the surface's pictures. */
-status pst_field_store(const pst_field *f, pst_surface *out);
+status pst_field_store(const pst_field *f, merlin_surface *out);
 
 /* By place in the picture: where in the field, -1 outside; malloc'ed, NULL if there is no memory. */
 int32_t *pst_field_slots(const pst_field *f);
@@ -58,8 +58,7 @@ status pst_field_sample(const pst_problem *p, size_t count, uint32_t **pixel, si
 /* The ray through the middle of a pixel, z = -1. */
 static inline vec3 pst_ray(const pinhole *camera, int x, int y)
 {
-    return vec3_make(((float)x + 0.5f - camera->center_x) / camera->focal,
-                     (camera->center_y - (float)y - 0.5f) / camera->focal, -1);
+    return vec3_make(((float)x + 0.5f - camera->x) / camera->focal, (camera->y - (float)y - 0.5f) / camera->focal, -1);
 }
 
 #endif

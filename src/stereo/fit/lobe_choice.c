@@ -72,7 +72,7 @@ static void try_kinds(choice *c, int count, bool anew)
 static void try_views(choice *c)
 {
     static const float fov[] = {20, 40, 60}; /* degrees across */
-    const pst_capture *capture = c->field.problem->capture;
+    const merlin_capture *capture = c->field.problem->capture;
     for (size_t k = 0; k < sizeof fov / sizeof *fov; k++) {
         c->trial = c->best;
         c->trial.focal = pinhole_of(capture->width, capture->height, fov[k]).focal;

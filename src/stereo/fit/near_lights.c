@@ -10,13 +10,13 @@ void pst_near_lights_at(const pst_problem *p, vec3 at, pst_near_lights *out)
     for (int k = 0; k < padded; k++)
         out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
     for (int k = 0; k < count; k++) {
-        const pst_light *from = &p->light[k];
-        vec3 to = vec3_sub(from->position, at);
+        const merlin_light *from = &p->light[k];
+        vec3 to = vec3_sub(vec3_of(from->position), at);
         float squared = fmaxf(vec3_dot(to, to), 1e-12f);
         vec3 l = vec3_scale(to, 1 / sqrtf(squared));
         float power = 1 / squared;
-        if (from->lobe > 0 && vec3_dot(from->direction, from->direction) > 0)
-            power *= powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe);
+        if (from->lobe > 0 && vec3_dot(vec3_of(from->direction), vec3_of(from->direction)) > 0)
+            power *= powf(fmaxf(-vec3_dot(l, vec3_of(from->direction)), 0), from->lobe);
         out->x[k] = l.x;
         out->y[k] = l.y;
         out->z[k] = l.z;

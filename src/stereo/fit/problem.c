@@ -16,13 +16,13 @@ static void add_square(vec3 v, const double about[3], double m[9])
         m[j] += d[j / 3] * d[j % 3];
 }
 
-status pst_check_directions(const pst_light *light, int count)
+status pst_check_directions(const merlin_light *light, int count)
 {
     if (count < 3)
         return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", count);
     double m[9] = {0}, eigenvalue[6];
     for (int i = 0; i < count; i++)
-        add_square(light[i].direction, (const double[3]){0}, m);
+        add_square(vec3_of(light[i].direction), (const double[3]){0}, m);
     if (!dense_eigen(m, 3, false, eigenvalue)) return fail(MERLIN_BAD_INPUT, "the light directions are not numbers");
     if (!(eigenvalue[0] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(MERLIN_BAD_INPUT, "the %d light directions lie in one plane; light the object from a third side",
@@ -31,16 +31,16 @@ status pst_check_directions(const pst_light *light, int count)
 }
 
 /* Refuses lights on one line: from any point their directions lie in a plane, too. */
-status pst_check_positions(const pst_light *light, int count)
+status pst_check_positions(const merlin_light *light, int count)
 {
     double m[9] = {0}, eigenvalue[6], mean[3] = {0};
     for (int i = 0; i < count; i++) {
-        mean[0] += (double)light[i].position.x / count;
-        mean[1] += (double)light[i].position.y / count;
-        mean[2] += (double)light[i].position.z / count;
+        mean[0] += (double)light[i].position[0] / count;
+        mean[1] += (double)light[i].position[1] / count;
+        mean[2] += (double)light[i].position[2] / count;
     }
     for (int i = 0; i < count; i++)
-        add_square(light[i].position, mean, m);
+        add_square(vec3_of(light[i].position), mean, m);
     if (!dense_eigen(m, 3, false, eigenvalue)) return fail(MERLIN_BAD_INPUT, "the light positions are not numbers");
     if (!(eigenvalue[1] > flattest_lights * flattest_lights * eigenvalue[2]))
         return fail(MERLIN_BAD_INPUT, "the %d light positions lie on one line; light the object from a third side",
@@ -48,7 +48,7 @@ status pst_check_positions(const pst_light *light, int count)
     return OK;
 }
 
-status pst_list_pixels(const pst_capture *c, pst_problem *p)
+status pst_list_pixels(const merlin_capture *c, pst_problem *p)
 {
     size_t size = (size_t)c->width * (size_t)c->height, n = 0;
     p->pixel = malloc(size * sizeof *p->pixel);

@@ -21,22 +21,22 @@ typedef struct pst_effort {
 void pst_effort_add(pst_effort *e, size_t fits);
 
 typedef struct pst_problem {
-    const pst_capture *capture; /* of at most PST_MAX_LIGHTS pictures, but for ls */
-    const pst_light *light;     /* count; intensities above 0. The capture's own unless a solver found better */
+    const merlin_capture *capture; /* of at most PST_MAX_LIGHTS pictures, but for ls */
+    const merlin_light *light;     /* count; intensities above 0. The capture's own unless a solver found better */
     uint32_t *pixel; /* indices of the mask's pixels, rows from the top; NULL for ls, which streams them all */
     size_t pixel_count;
-    float shadow, saturation; /* shares of full scale: usable is shadow < value < saturation */
-    int iterations;           /* 0: the solver's own */
-    pst_effort *effort;       /* may be NULL */
+    float saturation;   /* a share of full scale: what is below it is usable */
+    int iterations;     /* 0: the solver's own */
+    pst_effort *effort; /* may be NULL */
 } pst_problem;
 
 /* Directions are unit already. Fewer than 3 lights, or all in a plane through the origin, are refused. */
-status pst_check_directions(const pst_light *light, int count);
+status pst_check_directions(const merlin_light *light, int count);
 /* Refuses lights that are all on one line. */
-status pst_check_positions(const pst_light *light, int count);
+status pst_check_positions(const merlin_light *light, int count);
 
 /* Sets pixel (malloc'ed, NULL on failure) and pixel_count, from a mask of the pictures' size. */
-status pst_list_pixels(const pst_capture *c, pst_problem *p);
+status pst_list_pixels(const merlin_capture *c, pst_problem *p);
 
 /* The rectangle that the pixels fill, all four inside it; of one pixel at least. */
 typedef struct pst_bounds {

@@ -26,10 +26,9 @@ static vec3 normal_at(const integration_steps *s, int node)
 static vec3 ray_of(const integration_steps *s, int node)
 {
     const pinhole *c = &s->camera;
-    if (!c->perspective) return vec3_make(0, 0, -1);
+    if (!pinhole_is_near(c)) return vec3_make(0, 0, -1);
     int x = s->grid.pixel[node] % s->grid.width, y = s->grid.pixel[node] / s->grid.width;
-    return vec3_make(((real)x + (real)0.5 - c->center_x) / c->focal, (c->center_y - (real)y - (real)0.5) / c->focal,
-                     -1);
+    return vec3_make(((real)x + (real)0.5 - c->x) / c->focal, (c->y - (real)y - (real)0.5) / c->focal, -1);
 }
 
 /* cos of the angle between m and the line of sight at a node, at least GRAZING; times the ray's length. */
@@ -44,7 +43,7 @@ static real facing_at(const integration_steps *s, int node, vec3 m)
 static real step_to(const integration_steps *s, int direction, int to, vec3 m)
 {
     real across = direction == 0 ? m.x : -m.y, step = across / facing_at(s, to, m);
-    if (!s->camera.perspective) return step;
+    if (!pinhole_is_near(&s->camera)) return step;
     step /= s->camera.focal;
     return log1p(step > (real)-0.9 ? step : (real)-0.9);
 }
@@ -80,7 +79,7 @@ static bool prior_at(const integration_steps *s, const pst_integration *o, int n
 {
     float depth = o->prior->data[s->grid.pixel[node]];
     if (!(depth > 0) || !isfinite(depth)) return false;
-    *x = (double)(s->camera.perspective ? logf(depth) : depth);
+    *x = (double)(pinhole_is_near(&s->camera) ? logf(depth) : depth);
     return true;
 }
 
@@ -135,13 +134,13 @@ static status center(const poisson_grid *g, const int *held, double *x)
 static void write_depth(const integration_steps *s, const int *held, const double *x, img *depth)
 {
     const poisson_grid *g = &s->grid;
-    double least = INFINITY, mean = s->camera.mean_distance > 0 ? (double)s->camera.mean_distance : 1;
+    double least = INFINITY, mean = s->camera.distance > 0 ? (double)s->camera.distance : 1;
     for (int i = 0; i < g->count; i++)
         if (held[g->piece[i]] < 0 && x[i] < least) least = x[i];
     for (int i = 0; i < g->count; i++) {
         bool free_constant = held[g->piece[i]] < 0;
-        double d =
-            s->camera.perspective ? exp(x[i]) * (free_constant ? mean : 1) : x[i] + (free_constant ? 1 - least : 0);
+        double d = pinhole_is_near(&s->camera) ? exp(x[i]) * (free_constant ? mean : 1)
+                                               : x[i] + (free_constant ? 1 - least : 0);
         depth->data[g->pixel[i]] = (float)d;
     }
 }
@@ -179,8 +178,9 @@ static status check(const img *normal, const img *mask, const pinhole *camera, c
     if (has_prior(o) && o->trust && (o->trust->width != normal->width || o->trust->height != normal->height))
         return fail(MERLIN_WRONG_USE, "the trust in depths is %d × %d, the normals are %d × %d", o->trust->width,
                     o->trust->height, normal->width, normal->height);
-    if (camera->perspective && !(camera->focal > 0))
-        return fail(MERLIN_WRONG_USE, "perspective integration needs a focal length in pixels");
+    if (!(camera->focal >= 0))
+        return fail(MERLIN_WRONG_USE, "a camera's focal length is 0 (far away) or above, in pixels, not %g",
+                    (double)camera->focal);
     return OK;
 }
 

@@ -23,7 +23,7 @@ typedef struct pst_integration {
 } pst_integration;
 
 /* depth: 1 channel, distance along -z, zero outside the mask. Orthographic: in pixels, mean 0 shifted to be positive;
- * perspective: log-depth is integrated, scaled to the camera's mean_distance (1 if unknown). Each connected piece of
+ * perspective: log-depth is integrated, scaled to the camera's distance (1 if unknown). Each connected piece of
  * the mask has its own constant. */
 status pst_integrate(const img *normal, const img *mask, const pinhole *camera, const pst_integration *options,
                      img *depth);

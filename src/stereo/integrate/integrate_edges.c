@@ -49,7 +49,7 @@ static status pairs_new(const poisson_grid *g, pairs *p)
 static void find_misfits(const integration_steps *s, const double *x, int k, pairs *p)
 {
     const poisson_grid *g = &s->grid;
-    double pixels = s->camera.perspective ? (double)s->camera.focal : 1;
+    double pixels = pinhole_is_near(&s->camera) ? (double)s->camera.focal : 1;
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < g->count; i++) {
         int to = g->next[k][i];

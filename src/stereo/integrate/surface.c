@@ -16,35 +16,37 @@ int pst_method_from_name(const char *name)
     return -1;
 }
 
-const char *pst_method_name(pst_method m)
+const char *pst_method_name(merlin_stereo_method m)
 {
     return (int)m >= 0 && (int)m < (int)METHOD_COUNT ? method_names[m] : "unknown";
 }
 
-status pst_surface_integrate(const pst_capture *c, bool integrate, bool preserve_edges, const watch *shown,
-                             pst_surface *s)
+status pst_surface_integrate(const merlin_stereo_params *params, merlin_surface *s)
 {
-    if (s->depth.data && !integrate) return OK;
-    pst_integration how = {.preserve_edges = preserve_edges, .watch = shown};
-    watch_tell(shown, "integrating", 0);
+    if (s->depth.data && !params->integrate) return OK;
+    const watch shown = {params->progress, params->progress_context, params->stop};
+    pst_integration how = {.preserve_edges = params->keep_edges != 0, .watch = &shown};
+    watch_tell(&shown, "integrating", 0);
     if (s->depth.data) {
         how.prior = &s->depth;
         how.prior_weight = PST_KEEP_DEPTH;
     }
     img depth = {0};
-    status result = pst_integrate(&s->normal, &c->mask, &c->camera, &how, &depth);
+    status result = pst_integrate(&s->normal, &s->mask, &s->camera, &how, &depth);
     if (result != OK) return result;
     img_free(&s->depth);
     s->depth = depth;
     return OK;
 }
 
-void pst_surface_free(pst_surface *s)
+void merlin_surface_free(merlin_surface *surface)
 {
-    img_free(&s->normal);
-    img_free(&s->albedo);
-    img_free(&s->depth);
-    img_free(&s->residual);
-    free(s->light);
-    *s = (pst_surface){0};
+    if (!surface) return;
+    img_free(&surface->normal);
+    img_free(&surface->albedo);
+    img_free(&surface->depth);
+    img_free(&surface->residual);
+    img_free(&surface->mask);
+    free(surface->lights);
+    *surface = (merlin_surface){0};
 }

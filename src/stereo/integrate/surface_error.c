@@ -10,12 +10,12 @@ double normal_angle(vec3 a, vec3 b)
     return DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
 }
 
-static bool is_object(const pst_capture *c, size_t pixel)
+static bool is_object(const merlin_capture *c, size_t pixel)
 {
     return c->mask.data[pixel] > 0.5f;
 }
 
-double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels)
+double normal_mean_angle(const img *normal, const merlin_capture *c, size_t *pixels)
 {
     double sum = 0;
     size_t count = 0;
@@ -29,7 +29,7 @@ double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels
     return count ? sum / (double)count : 0;
 }
 
-double depth_mean_error(const img *depth, const pst_capture *c)
+double depth_mean_error(const img *depth, const merlin_capture *c)
 {
     double product = 0, square = 0, off = 0, count = 0;
     size_t total = (size_t)c->width * (size_t)c->height;

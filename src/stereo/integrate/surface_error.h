@@ -14,9 +14,9 @@ double normal_angle(vec3 a, vec3 b);
 
 /* The mean angle in degrees to c->normal_true over the mask, where the truth is known; *pixels (may be NULL) gets how
  * many those are. 0 if there are none. */
-double normal_mean_angle(const img *normal, const pst_capture *c, size_t *pixels);
+double normal_mean_angle(const img *normal, const merlin_capture *c, size_t *pixels);
 
 /* The mean share of c->depth_true by which the depth is off over the mask, once its scale is aligned. */
-double depth_mean_error(const img *depth, const pst_capture *c);
+double depth_mean_error(const img *depth, const merlin_capture *c);
 
 #endif

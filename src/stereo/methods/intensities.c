@@ -77,14 +77,15 @@ static void fit_pixel(intensities_job *job, size_t i, const double *e, float wid
     float *weight = m->weight + i * m->padded, a[6] = {0}, level = job->level[i];
     vec3 right = {0, 0, 0};
     for (int k = 0; k < m->lights; k++) {
-        vec3 d = job->problem->light[k].direction, s = vec3_scale(d, weight[k]);
+        vec3 d = vec3_of(job->problem->light[k].direction), s = vec3_scale(d, weight[k]);
         pst_add_outer3(a, s, d);
         right = vec3_fma(right, value[k] / (float)e[k], s);
     }
     m->b[i] = pst_solve3(a, right);
     float scale = width * vec3_length(m->b[i]) + 1e-12f;
     for (int k = 0; k < m->lights; k++) {
-        float seen = value[k] / (float)e[k], r = (seen - vec3_dot(m->b[i], job->problem->light[k].direction)) / scale;
+        float seen = value[k] / (float)e[k],
+              r = (seen - vec3_dot(m->b[i], vec3_of(job->problem->light[k].direction))) / scale;
         weight[k] = usable[k] > 0 && value[k] > dark * level ? 1 / ((1 + r * r) * (1 + r * r)) : 0;
     }
 }
@@ -92,7 +93,7 @@ static void fit_pixel(intensities_job *job, size_t i, const double *e, float wid
 /* One pixel's part of the form, Mᵀ (W − W L (Lᵀ W L)⁻¹ Lᵀ W) M, whatever its albedo. */
 static void add_pixel(intensities_job *job, size_t i)
 {
-    const pst_light *light = job->problem->light;
+    const merlin_light *light = job->problem->light;
     const pst_samples *m = &job->sample;
     const float *value = m->value + i * m->padded, *weight = m->weight + i * m->padded;
     float a[6] = {0}, level = vec3_length(m->b[i]);
@@ -100,7 +101,7 @@ static void add_pixel(intensities_job *job, size_t i)
     vec3 row[PST_MAX_LIGHTS]; /* W M L */
     if (!(level > 0)) return;
     for (int k = 0; k < n; k++) {
-        vec3 d = light[k].direction, s = vec3_scale(d, weight[k]);
+        vec3 d = vec3_of(light[k].direction), s = vec3_scale(d, weight[k]);
         float seen = value[k] / level;
         pst_add_outer3(a, s, d);
         row[k] = vec3_scale(s, seen);
@@ -120,7 +121,7 @@ static double from_surface(intensities_job *job, int k)
     const pst_samples *m = &job->sample;
     size_t count = 0;
     for (size_t i = 0; i < m->count; i++) {
-        float shading = vec3_dot(m->b[i], job->problem->light[k].direction);
+        float shading = vec3_dot(m->b[i], vec3_of(job->problem->light[k].direction));
         if (m->usable[i * m->padded + (size_t)k] > 0 && shading > PST_WELL_LIT * vec3_length(m->b[i]))
             job->ratio[count++] = m->value[i * m->padded + (size_t)k] / shading;
     }

@@ -20,9 +20,9 @@
 enum { SAMPLE = 1024 };
 
 typedef struct ls_job {
-    const pst_capture *capture;
+    const merlin_capture *capture;
     const ls_lights *lights;
-    pst_surface *out;
+    merlin_surface *out;
     float per_unit; /* albedo of what has 1 in the sums */
 } ls_job;
 
@@ -120,7 +120,7 @@ static void store_values(const float *restrict from, int count, const float *res
         to[i] = inside(mask[i], from[i]);
 }
 
-static void store(const answers *a, int count, const float *mask, const pst_surface *out, size_t first)
+static void store(const answers *a, int count, const float *mask, const merlin_surface *out, size_t first)
 {
     float *albedo = out->albedo.data + (size_t)out->albedo.channels * first;
     store_triples(a->normal, count, mask, out->normal.data + 3 * first);
@@ -157,7 +157,7 @@ static void solve_blocks(void *context, size_t begin, size_t end)
 }
 
 /* The most that a pixel's channels have on average in any picture, in codes. */
-static double brightest(const pst_capture *c, size_t pixel)
+static double brightest(const merlin_capture *c, size_t pixel)
 {
     uint32_t top = 0;
     size_t channels = (size_t)c->channels;
@@ -172,7 +172,7 @@ static double brightest(const pst_capture *c, size_t pixel)
 
 /* A hundredth of what the object's pixels reach at their brightest, on average over the first of every so many pixels.
  */
-static float chosen_shadow(const pst_capture *c)
+static float chosen_shadow(const merlin_capture *c)
 {
     size_t size = (size_t)c->width * (size_t)c->height, step = size / SAMPLE + 1, count = 0;
     double sum = 0;
@@ -202,7 +202,7 @@ static double mean_intensity(const pst_problem *p)
 static status lights_in_unit(const pst_problem *p, ls_limits limits, double unit, ls_lights **out)
 {
     size_t count = (size_t)p->capture->count;
-    pst_light *light = malloc(count * sizeof *light);
+    merlin_light *light = malloc(count * sizeof *light);
     if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     memcpy(light, p->light, count * sizeof *light);
     for (size_t k = 0; k < count; k++)
@@ -215,10 +215,10 @@ static status lights_in_unit(const pst_problem *p, ls_limits limits, double unit
     return s;
 }
 
-status pst_solve_ls(const pst_problem *p, pst_surface *out)
+status pst_solve_ls(const pst_problem *p, merlin_surface *out)
 {
-    const pst_capture *c = p->capture;
-    ls_limits limits = {.low = (p->shadow > 0 ? p->shadow : chosen_shadow(c)) * 65535 * (float)c->channels,
+    const merlin_capture *c = p->capture;
+    ls_limits limits = {.low = chosen_shadow(c) * 65535 * (float)c->channels,
                         .high = fminf(ceilf(p->saturation * 65535), 65535)};
     ls_lights *lights;
     double unit = mean_intensity(p);

@@ -26,9 +26,9 @@ struct ls_lights {
     ls_light at[];
 };
 
-static ls_light make_light(const pst_light *from, const uint16_t *picture, int index)
+static ls_light make_light(const merlin_light *from, const uint16_t *picture, int index)
 {
-    vec3 d = from->direction;
+    vec3 d = vec3_of(from->direction);
     ls_light l = {.x = d.x, .y = d.y, .z = d.z, .bit = (int32_t)(1u << (index % WORD)), .picture = picture};
     for (int c = 0; c < 3; c++)
         l.scale[c] = 1 / (65535 * from->intensity[c]);
@@ -39,7 +39,7 @@ static ls_light make_light(const pst_light *from, const uint16_t *picture, int i
 
 status ls_lights_new(const pst_problem *p, ls_limits limits, ls_lights **out)
 {
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     int filled = (c->count + TOGETHER - 1) / TOGETHER * TOGETHER;
     ls_lights *l = malloc(sizeof *l + (size_t)filled * sizeof l->at[0]);
     *out = l;

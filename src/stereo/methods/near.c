@@ -48,7 +48,7 @@ static const double well_told = 1.3, least_told = 0.1;
 
 typedef struct near_job {
     const pst_problem *problem;
-    pst_surface *out;
+    merlin_surface *out;
     pst_field sample; /* for the scale */
     pinhole camera;
     pst_lobe lobe;
@@ -64,11 +64,11 @@ static void fill_plane(const pst_problem *p, float distance, img *depth)
         depth->data[p->pixel[i]] = distance;
 }
 
-static float light_reach(const pst_capture *c)
+static float light_reach(const merlin_capture *c)
 {
     float sum = 0;
     for (int k = 0; k < c->count; k++)
-        sum += vec3_length(c->light[k].position);
+        sum += vec3_length(vec3_of(c->light[k].position));
     return sum / (float)c->count;
 }
 
@@ -113,7 +113,7 @@ static void rescale(near_job *job, float scale)
     img *depth = &job->out->depth;
     for (size_t i = 0; i < job->problem->pixel_count; i++)
         depth->data[job->problem->pixel[i]] *= scale;
-    job->camera.mean_distance *= scale;
+    job->camera.distance *= scale;
 }
 
 static void keep_distance(near_job *job)
@@ -123,7 +123,7 @@ static void keep_distance(near_job *job)
     for (size_t i = 0; i < p->pixel_count; i++)
         sum += (double)job->out->depth.data[p->pixel[i]];
     rescale(job, job->held_at * (float)p->pixel_count / (float)sum);
-    job->camera.mean_distance = job->held_at;
+    job->camera.distance = job->held_at;
 }
 
 /* Mean change in depth against the distance. */
@@ -179,7 +179,7 @@ static status integrate(near_job *job, const pst_integration *how)
     img before = job->out->depth;
     job->out->depth = depth;
     if (job->held_at > 0) keep_distance(job);
-    job->moved = change(job->problem, &job->out->depth, &before, job->camera.mean_distance);
+    job->moved = change(job->problem, &job->out->depth, &before, job->camera.distance);
     img_free(&before);
     return OK;
 }
@@ -245,10 +245,10 @@ static status iterate(near_job *job)
 static status find_depth(near_job *job)
 {
     const pst_problem *p = job->problem;
-    float distance = p->capture->camera.mean_distance;
+    float distance = p->capture->camera.distance;
     job->held_at = distance;
-    job->camera.mean_distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
-    fill_plane(p, job->camera.mean_distance, &job->out->depth);
+    job->camera.distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
+    fill_plane(p, job->camera.distance, &job->out->depth);
     float scale = 1;
     status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
     rescale(job, scale);
@@ -272,14 +272,13 @@ static void job_free(near_job *job)
     free((uint32_t *)job->sample.pixel);
 }
 
-static status job_new(const pst_problem *p, pst_surface *out, near_job *job)
+static status job_new(const pst_problem *p, merlin_surface *out, near_job *job)
 {
     *job = (near_job){.problem = p,
                       .out = out,
                       .sample = {.problem = p},
                       .camera = p->capture->camera,
                       .lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST}};
-    job->camera.perspective = true;
     uint32_t *pixel;
     status s = img_new(&out->depth, p->capture->width, p->capture->height, 1);
     if (s == OK) s = pst_field_sample(p, SAMPLE, &pixel, &job->sample.count);
@@ -295,12 +294,12 @@ static status job_new(const pst_problem *p, pst_surface *out, near_job *job)
 /* The depth map, the distance and the lobe from the small pictures. */
 static status find_depth_small(near_job *job, int factor)
 {
-    const pst_capture *c = job->problem->capture;
-    pst_capture small;
+    const merlin_capture *c = job->problem->capture;
+    merlin_capture small;
     status s = pst_shrink(c, pst_blocks_of(c, factor), job->problem->saturation, &small);
     if (s != OK) return s;
     pst_problem p = *job->problem;
-    pst_surface found = {0};
+    merlin_surface found = {0};
     near_job search = {0};
     p.capture = &small;
     s = pst_list_pixels(&small, &p);
@@ -311,9 +310,9 @@ static status find_depth_small(near_job *job, int factor)
     job->lobe = search.lobe;
     job->held_at = search.held_at;
     job->out->distance_unsure = found.distance_unsure;
-    job->camera.mean_distance = search.camera.mean_distance;
+    job->camera.distance = search.camera.distance;
     job_free(&search);
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     free(p.pixel);
     pst_capture_free(&small);
     return s;
@@ -338,7 +337,7 @@ static status solve(near_job *job)
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 
-status pst_solve_near(const pst_problem *p, pst_surface *out)
+status pst_solve_near(const pst_problem *p, merlin_surface *out)
 {
     near_job job;
     status s = job_new(p, out, &job);

@@ -20,7 +20,7 @@ static const float usual_view = 45;
 static const double better = 1.3, sharper = 1.1;
 
 typedef struct search {
-    pst_capture small;
+    merlin_capture small;
     const vec3 *about; /* the lights' places about the object */
     float unit;        /* the distance at which the object is as large as the lights are away */
     const watch *watch;
@@ -34,23 +34,24 @@ typedef struct placing {
     bool held, near; /* held: the object's mean distance is that one, too */
 } placing;
 
-static void put_lights(const vec3 *about, float distance, bool held, pst_capture *c)
+static void put_lights(const vec3 *about, float distance, bool held, merlin_capture *c)
 {
-    c->lighting = PST_NEAR;
-    c->camera.mean_distance = held ? distance : 0;
+    c->lighting = MERLIN_NEAR_LIGHTS;
+    c->camera.distance = held ? distance : 0;
     for (int k = 0; k < c->count; k++)
-        c->light[k].position = vec3_add(about[k], vec3_make(0, 0, -distance));
+        vec3_put(vec3_add(about[k], vec3_make(0, 0, -distance)), c->light[k].position);
 }
 
 /* The mean of what a solution leaves unexplained; held: the object's mean
  * distance is the lights' middle's. */
 static status cost_at(search *s, float extent, bool held, double *cost)
 {
-    pst_surface found;
+    merlin_surface found;
     put_lights(s->about, extent * s->unit, held, &s->small);
     watch_tell(s->watch, "finding the distance", (double)s->tried++ / (2 + COARSE + VALLEYS * FINE));
     if (watch_stops(s->watch)) return fail(MERLIN_STOPPED, "stopped");
-    status result = pst_solve(&s->small, &(pst_options){.method = PST_NEAR_LIGHTS, .iterations = ROUNDS}, &found);
+    status result =
+        pst_solve(&s->small, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR, .iterations = ROUNDS}, &found);
     if (result != OK) return result;
     double sum = 0, count = 0;
     for (size_t i = 0; i < img_value_count(&s->small.mask); i++) {
@@ -60,7 +61,7 @@ static status cost_at(search *s, float extent, bool held, double *cost)
     }
     *cost = sum / count;
     s->unsure = found.distance_unsure;
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     return OK;
 }
 
@@ -119,7 +120,7 @@ static status find_distance(search *s, float *distance, bool *told)
 }
 
 /* Half the larger side of what the object fills of the picture. */
-static float half_extent(const pst_capture *c)
+static float half_extent(const merlin_capture *c)
 {
     int left = c->width, right = 0, top = c->height, bottom = 0;
     for (int y = 0; y < c->height; y++)
@@ -134,7 +135,7 @@ static float half_extent(const pst_capture *c)
     return 0.5f * (float)(across > down ? across : down);
 }
 
-static size_t object_pixels(const pst_capture *c)
+static size_t object_pixels(const merlin_capture *c)
 {
     size_t count = 0;
     for (size_t i = 0; i < img_value_count(&c->mask); i++)
@@ -157,14 +158,14 @@ static bool are_units(const vec3 *about, int count)
     return true;
 }
 
-static status search_new(const pst_capture *c, const vec3 *about, const watch *shown, search *s)
+static status search_new(const merlin_capture *c, const vec3 *about, const watch *shown, search *s)
 {
     int factor = (int)sqrtf((float)object_pixels(c) / fminf(SMALL, (float)VALUES / (float)c->count));
     *s = (search){.about = about, .watch = shown, .unit = reach_of(about, c->count) * c->camera.focal / half_extent(c)};
     return pst_shrink(c, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, &s->small);
 }
 
-static void tell(const placing *p, const vec3 *about, pst_capture *c)
+static void tell(const placing *p, const vec3 *about, merlin_capture *c)
 {
     float reach = reach_of(about, c->count);
     if (p->near)
@@ -179,7 +180,7 @@ static void tell(const placing *p, const vec3 *about, pst_capture *c)
                      (double)reach);
 }
 
-static status refuse(const pst_capture *c)
+static status refuse(const merlin_capture *c)
 {
     return fail(MERLIN_BAD_INPUT,
                 "the lights of %s and the others are listed by their places about the object, and the pictures do not "
@@ -189,7 +190,7 @@ static status refuse(const pst_capture *c)
 }
 
 /* The object is where the lights' middle is, or before or behind it. */
-static status choose(const pst_capture *c, search *s, placing *p)
+static status choose(const merlin_capture *c, search *s, placing *p)
 {
     double afar = 0, free = 0, held = 0;
     bool told = true, asked = p->near, known = p->distance > 0;
@@ -207,15 +208,15 @@ static status choose(const pst_capture *c, search *s, placing *p)
     return result;
 }
 
-status pst_place_lights(pst_capture *c, const watch *shown)
+status pst_place_lights(merlin_capture *c, const watch *shown)
 {
-    bool asked = c->lighting == PST_NEAR;
-    placing p = {.distance = c->camera.mean_distance, .near = asked};
+    bool asked = c->lighting == MERLIN_NEAR_LIGHTS;
+    placing p = {.distance = c->camera.distance, .near = asked};
     pinhole camera = c->camera;
     vec3 *about = malloc((size_t)c->count * sizeof *about);
     if (!about) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     for (int k = 0; k < c->count; k++)
-        about[k] = c->light[k].position;
+        about[k] = vec3_of(c->light[k].position);
     if (!(camera.focal > 0)) c->camera = pinhole_of(c->width, c->height, usual_view);
     search s;
     status result = search_new(c, about, shown, &s);

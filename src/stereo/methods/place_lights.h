@@ -13,6 +13,6 @@
  * where that is not known, at the one that explains the pictures best. Lights that are not asked to be near stay
  * distant where their directions explain the pictures nearly as well, and a line in `noticed` says which it is. Refuses
  * near ones where the pictures do not tell the distance. */
-status pst_place_lights(pst_capture *c, const watch *shown);
+status pst_place_lights(merlin_capture *c, const watch *shown);
 
 #endif

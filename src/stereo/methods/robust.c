@@ -17,7 +17,7 @@ static float dear(const pst_field *f, double cost)
     return fmaxf(many, 2 * usual);
 }
 
-static status fit_all(const pst_field *f, pst_surface *out)
+static status fit_all(const pst_field *f, merlin_surface *out)
 {
     double cost;
     status s = pst_field_fit(f, &cost);
@@ -28,7 +28,7 @@ static status fit_all(const pst_field *f, pst_surface *out)
     return s == OK ? pst_field_store(f, out) : s;
 }
 
-status pst_solve_robust(const pst_problem *p, pst_surface *out)
+status pst_solve_robust(const pst_problem *p, merlin_surface *out)
 {
     pst_lobe lobe, second;
     uint32_t *pixel;

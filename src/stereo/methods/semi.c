@@ -33,7 +33,7 @@ static const float least_colour = 0.1f;
 /* The sample under intensities that change. */
 typedef struct semi_job {
     pst_problem problem;
-    pst_light *light; /* the problem's */
+    merlin_light *light; /* the problem's */
     pst_field field;
     pst_lobe lobe;
     float *weight, *model, *value, *usable; /* count × padded */
@@ -69,7 +69,7 @@ static void from_surface(const semi_job *job, double *e)
 
 static float channel_of(const semi_job *job, size_t i, int light, int channel)
 {
-    const pst_capture *c = job->problem.capture;
+    const merlin_capture *c = job->problem.capture;
     return c->picture[light][(size_t)job->field.pixel[i] * (size_t)c->channels + (size_t)channel] / 65535.0f;
 }
 
@@ -187,7 +187,7 @@ static status settle(semi_job *job, int rounds, double *e)
     return s == OK ? look(job, true, e) : s;
 }
 
-static status job_new(const pst_problem *p, pst_light *light, semi_job *job)
+static status job_new(const pst_problem *p, merlin_light *light, semi_job *job)
 {
     uint32_t *pixel;
     size_t n;
@@ -219,12 +219,12 @@ static void job_free(semi_job *job)
 }
 
 /* Into the surface's lights, which are the problem's. */
-static status find_strengths(const pst_problem *p, pst_surface *out)
+static status find_strengths(const pst_problem *p, merlin_surface *out)
 {
     int count = p->capture->count;
     semi_job job = {0};
     double told = 0, *e = calloc(3 * (size_t)count, sizeof *e);
-    status s = e ? job_new(p, out->light, &job) : fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
+    status s = e ? job_new(p, out->lights, &job) : fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     if (s == OK) s = pst_intensities_find(p, SAMPLE, e, &told);
     if (s == OK) s = settle(&job, p->iterations > 0 ? p->iterations : ITERATIONS, e);
     if (s == OK && !job.equal && p->capture->channels == 3) find_colours(&job, e);
@@ -234,15 +234,15 @@ static status find_strengths(const pst_problem *p, pst_surface *out)
     return s;
 }
 
-status pst_solve_semi(const pst_problem *p, pst_surface *out)
+status pst_solve_semi(const pst_problem *p, merlin_surface *out)
 {
     size_t count = (size_t)p->capture->count;
-    out->light = malloc(count * sizeof *out->light);
-    if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
-    memcpy(out->light, p->light, count * sizeof *out->light);
+    out->lights = malloc(count * sizeof *out->lights);
+    if (!out->lights) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
+    memcpy(out->lights, p->light, count * sizeof *out->lights);
     out->strengths_unsure = count < FEWEST_LIGHTS;
     status s = out->strengths_unsure ? OK : find_strengths(p, out);
     pst_problem known = *p;
-    known.light = out->light;
+    known.light = out->lights;
     return s == OK ? pst_solve_robust(&known, out) : s;
 }

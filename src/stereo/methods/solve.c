@@ -11,11 +11,11 @@
 #include "stereo/methods/unlit.h"
 
 /* Listed with z away from the camera, lights would be taken as they are, for a surface that hardly faces any. */
-static status check_known_directions(const pst_light *light, int count)
+static status check_known_directions(const merlin_light *light, int count)
 {
     int behind = 0;
     for (int i = 0; i < count; i++)
-        behind += light[i].direction.z <= 0;
+        behind += light[i].direction[2] <= 0;
     if (behind == count)
         return fail(MERLIN_BAD_INPUT,
                     "all %d lights stand behind or beside the object (z is nowhere above 0); z of a direction to a "
@@ -25,35 +25,36 @@ static status check_known_directions(const pst_light *light, int count)
     return pst_check_directions(light, count);
 }
 
-static pst_method choose(const pst_capture *c)
+static merlin_stereo_method choose(const merlin_capture *c)
 {
-    if (c->lighting == PST_UNKNOWN_LIGHT) return PST_UNCALIBRATED;
-    if (c->lighting == PST_NEAR) return PST_NEAR_LIGHTS;
-    return c->intensities_known ? PST_ROBUST : PST_SEMI;
+    if (c->lighting == MERLIN_UNKNOWN_LIGHTS) return MERLIN_STEREO_UNCALIBRATED;
+    if (c->lighting == MERLIN_NEAR_LIGHTS) return MERLIN_STEREO_NEAR;
+    return c->intensities_known ? MERLIN_STEREO_ROBUST : MERLIN_STEREO_SEMI;
 }
 
-static status check_method(const pst_capture *c, pst_method m)
+static status check_method(const merlin_capture *c, merlin_stereo_method m)
 {
-    bool distant = m == PST_LS || m == PST_ROBUST || m == PST_SEMI;
-    if (distant && c->lighting != PST_DISTANT)
+    bool distant = m == MERLIN_STEREO_LS || m == MERLIN_STEREO_ROBUST || m == MERLIN_STEREO_SEMI;
+    if (distant && c->lighting != MERLIN_DISTANT_LIGHTS)
         return fail(MERLIN_WRONG_USE, "method %s needs light directions, which this capture does not have; use %s",
-                    pst_method_name(m), c->lighting == PST_NEAR ? "near" : "--method uncalibrated");
-    if (m == PST_NEAR_LIGHTS && c->lighting != PST_NEAR)
+                    pst_method_name(m), c->lighting == MERLIN_NEAR_LIGHTS ? "near" : "--method uncalibrated");
+    if (m == MERLIN_STEREO_NEAR && c->lighting != MERLIN_NEAR_LIGHTS)
         return fail(MERLIN_WRONG_USE, "method near needs light positions, which this capture does not have; use %s",
-                    c->lighting == PST_DISTANT ? "robust, or say that its lights are near if its list holds positions"
-                                               : "--method uncalibrated");
-    if (m == PST_NEAR_LIGHTS && !(c->camera.focal > 0))
+                    c->lighting == MERLIN_DISTANT_LIGHTS
+                        ? "robust, or say that its lights are near if its list holds positions"
+                        : "--method uncalibrated");
+    if (m == MERLIN_STEREO_NEAR && !(c->camera.focal > 0))
         return fail(MERLIN_WRONG_USE, "method near needs the camera's focal length");
     if (c->count < 3)
         return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
-    if (c->count > PST_MAX_LIGHTS && m != PST_LS)
+    if (c->count > PST_MAX_LIGHTS && m != MERLIN_STEREO_LS)
         return fail(MERLIN_BAD_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count,
-                    PST_MAX_LIGHTS, pst_method_name(m), c->lighting == PST_DISTANT ? "; use ls" : "");
-    if (m == PST_NEAR_LIGHTS) return pst_check_positions(c->light, c->count);
+                    PST_MAX_LIGHTS, pst_method_name(m), c->lighting == MERLIN_DISTANT_LIGHTS ? "; use ls" : "");
+    if (m == MERLIN_STEREO_NEAR) return pst_check_positions(c->light, c->count);
     return distant ? check_known_directions(c->light, c->count) : OK;
 }
 
-static status check_mask(const pst_capture *c)
+static status check_mask(const merlin_capture *c)
 {
     if (c->mask.width != c->width || c->mask.height != c->height)
         return fail(MERLIN_BAD_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width,
@@ -66,7 +67,7 @@ static status check_mask(const pst_capture *c)
 
 /* Some of the object's pixels, evenly: least squares look at none of a large picture twice. */
 enum { ENOUGH = 1 << 18 };
-static size_t some_pixels(const pst_capture *c, uint32_t some[ENOUGH])
+static size_t some_pixels(const merlin_capture *c, uint32_t some[ENOUGH])
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, inside = 0, count = 0;
     for (size_t i = 0; i < pixels; i++)
@@ -93,7 +94,7 @@ static status check_lit(const pst_problem *p)
 {
     enum { FEW = 8 };
     static const double BLACK = 0.02; /* of the brightest picture; noise alone is less, the least of lights more */
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     if (c->count >= FEW) return OK;
     uint32_t *some = malloc(ENOUGH * sizeof *some);
     if (!some) return fail(MERLIN_NO_MEMORY, "no memory for a list of pixels");
@@ -114,13 +115,13 @@ static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
 
 /* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
  * divide by zero. */
-static status list_lights(const pst_capture *c, pst_method method, pst_light *light)
+static status list_lights(const merlin_capture *c, merlin_stereo_method method, merlin_light *light)
 {
     for (int i = 0; i < c->count; i++) {
-        light[i] = c->light ? c->light[i] : (pst_light){0};
+        light[i] = c->light ? c->light[i] : (merlin_light){0};
         float *e = light[i].intensity;
         bool unknown =
-            method == PST_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
+            method == MERLIN_STEREO_SEMI || !c->intensities_known || !c->light || (e[0] == 0 && e[1] == 0 && e[2] == 0);
         for (int k = 0; k < 3; k++) {
             if (unknown || (k >= c->channels && !(e[k] > 0))) e[k] = 1;
             if (!(e[k] > 0))
@@ -134,7 +135,7 @@ static status list_lights(const pst_capture *c, pst_method method, pst_light *li
     return OK;
 }
 
-static status allocate_map(const pst_capture *c, int channels, img *out)
+static status allocate_map(const merlin_capture *c, int channels, img *out)
 {
     status s = img_new(out, c->width, c->height, channels);
     size_t count = (size_t)c->width * (size_t)c->height * (size_t)channels;
@@ -142,26 +143,27 @@ static status allocate_map(const pst_capture *c, int channels, img *out)
     return s;
 }
 
-static status allocate(const pst_capture *c, pst_surface *out)
+static status allocate(const merlin_capture *c, merlin_surface *out)
 {
     status s = allocate_map(c, 3, &out->normal);
     if (s == OK) s = allocate_map(c, c->channels, &out->albedo);
     if (s == OK) s = allocate_map(c, 1, &out->residual);
+    if (s == OK) s = img_copy(&out->mask, &c->mask);
     return s;
 }
 
-static status run(const pst_problem *p, pst_surface *out)
+static status run(const pst_problem *p, merlin_surface *out)
 {
     switch (out->method) {
-    case PST_LS:
+    case MERLIN_STEREO_LS:
         return pst_solve_ls(p, out);
-    case PST_ROBUST:
+    case MERLIN_STEREO_ROBUST:
         return pst_solve_robust(p, out);
-    case PST_NEAR_LIGHTS:
+    case MERLIN_STEREO_NEAR:
         return pst_solve_near(p, out);
-    case PST_SEMI:
+    case MERLIN_STEREO_SEMI:
         return pst_solve_semi(p, out);
-    case PST_UNCALIBRATED:
+    case MERLIN_STEREO_UNCALIBRATED:
         return pst_solve_uncalibrated(p, out);
     default:
         return fail(MERLIN_WRONG_USE, "there is no such method of photometric stereo");
@@ -170,40 +172,42 @@ static status run(const pst_problem *p, pst_surface *out)
 
 /* A fit from nothing counts as four. Each method's own are so many times the pixels, near's first ones are on small
  * pictures. */
-static size_t expected_effort(const pst_problem *p, pst_method method)
+static size_t expected_effort(const pst_problem *p, merlin_stereo_method method)
 {
-    static const size_t passes[] = {[PST_ROBUST] = 9, [PST_NEAR_LIGHTS] = 11, [PST_SEMI] = 9, [PST_UNCALIBRATED] = 13};
+    static const size_t passes[] = {[MERLIN_STEREO_ROBUST] = 9,
+                                    [MERLIN_STEREO_NEAR] = 11,
+                                    [MERLIN_STEREO_SEMI] = 9,
+                                    [MERLIN_STEREO_UNCALIBRATED] = 13};
     enum { SMALL_ONES = 300000 };
     bool known = (size_t)method < sizeof passes / sizeof *passes;
-    return (known ? passes[method] : 1) * p->pixel_count + (method == PST_NEAR_LIGHTS ? SMALL_ONES : 0) + 1;
+    return (known ? passes[method] : 1) * p->pixel_count + (method == MERLIN_STEREO_NEAR ? SMALL_ONES : 0) + 1;
 }
 
-status pst_solve(const pst_capture *c, const pst_options *options, pst_surface *out)
+status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
 {
-    *out = (pst_surface){.method = options->method == PST_AUTO ? choose(c) : options->method};
+    const watch shown = {params->progress, params->progress_context, params->stop};
+    *out = (merlin_surface){.method = params->method == MERLIN_STEREO_AUTO ? choose(c) : params->method,
+                            .camera = c->camera};
     status s = check_method(c, out->method);
     if (s != OK) return s;
-    pst_light *light = calloc((size_t)c->count, sizeof *light);
+    merlin_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
-    pst_problem p = {.capture = c,
-                     .light = light,
-                     .shadow = options->shadow,
-                     .saturation = options->saturation > 0 ? options->saturation : PST_SATURATED,
-                     .iterations = options->iterations};
-    pst_effort effort = {.watch = options->watch, .owner = pthread_self()};
-    if (options->watch) p.effort = &effort;
-    watch_tell(options->watch, "solving", 0);
+    pst_problem p = {.capture = c, .light = light, .saturation = PST_SATURATED, .iterations = params->iterations};
+    pst_effort effort = {.watch = &shown, .owner = pthread_self()};
+    if (shown.tell || shown.stop) p.effort = &effort;
+    watch_tell(&shown, "solving", 0);
     s = list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
-    if (s == OK && out->method != PST_SEMI && out->method != PST_UNCALIBRATED) s = check_lit(&p);
-    if (s == OK && out->method != PST_LS) s = pst_list_pixels(c, &p);
+    if (s == OK && out->method != MERLIN_STEREO_SEMI && out->method != MERLIN_STEREO_UNCALIBRATED) s = check_lit(&p);
+    if (s == OK && out->method != MERLIN_STEREO_LS) s = pst_list_pixels(c, &p);
     effort.expected = expected_effort(&p, out->method);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
     if (s == OK && p.effort) pst_effort_add(&effort, 0); /* Other threads may have had the last pixels. */
     if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
+    if (s == OK && out->lights) out->light_count = c->count;
     free(p.pixel);
     free(light);
-    if (s != OK) pst_surface_free(out);
+    if (s != OK) merlin_surface_free(out);
     return s;
 }

@@ -6,10 +6,10 @@
 #include "stereo/fit/problem.h"
 #include "stereo/integrate/surface.h"
 
-status pst_solve_ls(const pst_problem *p, pst_surface *out);
-status pst_solve_robust(const pst_problem *p, pst_surface *out);
-status pst_solve_near(const pst_problem *p, pst_surface *out);
-status pst_solve_semi(const pst_problem *p, pst_surface *out);
-status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out);
+status pst_solve_ls(const pst_problem *p, merlin_surface *out);
+status pst_solve_robust(const pst_problem *p, merlin_surface *out);
+status pst_solve_near(const pst_problem *p, merlin_surface *out);
+status pst_solve_semi(const pst_problem *p, merlin_surface *out);
+status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out);
 
 #endif

@@ -23,7 +23,7 @@ static const float held = 1e4f, drift = 1e-6f;
 
 static float value_at(const pst_problem *p, int light, size_t pixel, int channel)
 {
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     return (float)c->picture[light][pixel * (size_t)c->channels + (size_t)channel] / p->light[light].intensity[channel];
 }
 
@@ -94,7 +94,7 @@ static void compare(void *context, size_t begin, size_t end)
 /* alike: 1 channel, the likeness of dark pixels; BRIGHT elsewhere. */
 static status find_dark(const pst_problem *p, img *alike)
 {
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     status s = img_new(alike, c->width, c->height, 1);
     if (s != OK) return s;
     for (size_t i = 0; i < img_value_count(alike); i++)
@@ -199,7 +199,7 @@ static status fill(const img *unlit, const img *around, img *normal)
     return s;
 }
 
-status pst_unlit_fill(const pst_problem *p, pst_surface *s)
+status pst_unlit_fill(const pst_problem *p, merlin_surface *s)
 {
     img unlit = {0}, around = {0};
     bool any;

@@ -11,6 +11,6 @@
 
 /* Makes the normals of pixels that are dark in every picture the smoothest that join those around them (harmonic,
  * component by component); what has no lit pixel around it faces the camera. */
-status pst_unlit_fill(const pst_problem *p, pst_surface *s);
+status pst_unlit_fill(const pst_problem *p, merlin_surface *s);
 
 #endif

@@ -22,7 +22,7 @@ static float precision_of(float value, float level)
 
 /* ---- which cells ---- */
 
-static bool on_object(const pst_capture *c, int x, int y)
+static bool on_object(const merlin_capture *c, int x, int y)
 {
     return x >= 0 && y >= 0 && x < c->width && y < c->height &&
            c->mask.data[(size_t)y * (size_t)c->width + (size_t)x] > 0.5f;
@@ -65,8 +65,8 @@ static void list_cells(bundle *b)
         for (int i = 0; i < b->columns; i++) {
             if (!is_cell(b, i, j)) continue;
             bundle_cell *cell = &b->cell[b->cells++];
-            cell->x = ((float)b->left + ((float)i + 0.5f) * (float)b->side - camera->center_x) / camera->focal;
-            cell->y = (camera->center_y - (float)b->top - ((float)j + 0.5f) * (float)b->side) / camera->focal;
+            cell->x = ((float)b->left + ((float)i + 0.5f) * (float)b->side - camera->x) / camera->focal;
+            cell->y = (camera->y - (float)b->top - ((float)j + 0.5f) * (float)b->side) / camera->focal;
             for (int k = 0; k < 4; k++)
                 cell->corner[k] = number_corner(b, i + k % 2, j + k / 2);
             sum = vec3_add(sum, vec3_make(cell->x, cell->y, -1));
@@ -78,10 +78,10 @@ static void list_cells(bundle *b)
 
 static size_t list_pixels(const bundle *b, const bundle_cell *cell, uint32_t *pixel)
 {
-    const pst_capture *c = b->problem->capture;
+    const merlin_capture *c = b->problem->capture;
     int side = b->side < MOST_PIXELS ? b->side : MOST_PIXELS;
-    float x0 = cell->x * b->camera.focal + b->camera.center_x - 0.5f * (float)b->side;
-    float y0 = b->camera.center_y - cell->y * b->camera.focal - 0.5f * (float)b->side;
+    float x0 = cell->x * b->camera.focal + b->camera.x - 0.5f * (float)b->side;
+    float y0 = b->camera.y - cell->y * b->camera.focal - 0.5f * (float)b->side;
     size_t count = 0;
     for (int k = 0; k < side * side; k++) {
         int x = (int)lroundf(x0) + (2 * (k % side) + 1) * b->side / (2 * side);

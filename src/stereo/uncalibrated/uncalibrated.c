@@ -40,23 +40,22 @@ static const double costly = 0.2, unlike = 0.55;
 
 /* Lights of one kind, and how well they explain the pictures. */
 typedef struct hypothesis {
-    pst_light *light; /* count */
-    img depth;        /* near lights: goes with them; else empty */
+    merlin_light *light; /* count */
+    img depth;           /* near lights: goes with them; else empty */
     double cost;
     double cost_of_value;  /* the same for each value of the sample, in [0, 1] */
     double likeness;       /* mean cosine between the sample's normals and the balloon's */
     pst_rotation rotation; /* distant lights: how they were told */
 } hypothesis;
 
-static pinhole perspective_of(const pst_capture *c)
+static pinhole perspective_of(const merlin_capture *c)
 {
     pinhole camera = c->camera;
-    if (!camera.perspective || !(camera.focal > 0))
+    if (!pinhole_is_near(&camera))
         camera = (pinhole){.focal = far_away * (float)(c->width > c->height ? c->width : c->height),
-                           .center_x = 0.5f * (float)c->width,
-                           .center_y = 0.5f * (float)c->height};
-    camera.perspective = true;
-    if (!(camera.mean_distance > 0)) camera.mean_distance = 1;
+                           .x = 0.5f * (float)c->width,
+                           .y = 0.5f * (float)c->height};
+    if (!(camera.distance > 0)) camera.distance = 1;
     return camera;
 }
 
@@ -115,7 +114,7 @@ static status admit_lobe(pst_field *f, pst_lobe *lobe)
 
 /* Normals from the depth that came with the lights, then a finer depth from these. More rounds gain nothing: that depth
  * fits the lights that were found with it, errors and all. */
-static status solve_near(const pst_problem *p, const img *depth, pst_surface *out)
+static status solve_near(const pst_problem *p, const img *depth, merlin_surface *out)
 {
     const pst_integration how = {.prior = depth, .prior_weight = PST_KEEP_DEPTH};
     pst_lobe lobe = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST};
@@ -135,10 +134,10 @@ static status solve_near(const pst_problem *p, const img *depth, pst_surface *ou
 static double mean_distance(const pst_problem *p, const hypothesis *h)
 {
     const pinhole *camera = &p->capture->camera;
-    float radius = sqrtf((float)p->pixel_count / 3.1415927f) / camera->focal * camera->mean_distance;
+    float radius = sqrtf((float)p->pixel_count / 3.1415927f) / camera->focal * camera->distance;
     double sum = 0;
     for (int k = 0; k < p->capture->count; k++)
-        sum += (double)vec3_length(vec3_sub(h->light[k].position, vec3_make(0, 0, -camera->mean_distance)));
+        sum += (double)vec3_length(vec3_sub(vec3_of(h->light[k].position), vec3_make(0, 0, -camera->distance)));
     return sum / (double)radius / p->capture->count;
 }
 
@@ -177,19 +176,19 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
 }
 
 /* The lights go to the surface; a depth and places in a space that no camera was known for do not. */
-static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, pst_surface *out)
+static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, merlin_surface *out)
 {
-    out->light = h->light;
+    out->lights = h->light;
     h->light = NULL;
     pst_problem found = *p;
-    found.light = out->light;
+    found.light = out->lights;
     if (!h->depth.data) return pst_solve_robust(&found, out);
     status s = solve_near(&found, &h->depth, out);
     out->lights_near = camera_known;
     if (camera_known) return s;
     img_free(&out->depth);
     for (int k = 0; k < p->capture->count; k++)
-        out->light[k].position = (vec3){0};
+        vec3_put((vec3){0}, out->lights[k].position);
     return s;
 }
 
@@ -210,13 +209,13 @@ static status check_not_flat(const pst_problem *p)
     return s;
 }
 
-status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
+status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
 {
-    const pst_capture *c = p->capture;
+    const merlin_capture *c = p->capture;
     size_t count = (size_t)c->count;
     if (count < FEWEST)
         return fail(MERLIN_BAD_INPUT, "unknown lights need %d or more pictures, not %d", FEWEST, c->count);
-    pst_capture seen = *c;
+    merlin_capture seen = *c;
     pst_problem q = *p;
     seen.camera = perspective_of(c);
     q.capture = &seen;
@@ -226,7 +225,7 @@ status pst_solve_uncalibrated(const pst_problem *p, pst_surface *out)
     if (s == OK) s = check_not_flat(&q);
     if (s == OK) s = find_both(&q, &near, &distant);
     if (s == OK) {
-        bool camera_known = c->camera.perspective && c->camera.focal > 0;
+        bool camera_known = pinhole_is_near(&c->camera);
         bool are_near = near.cost < clearly * distant.cost;
         s = solve_as(&q, are_near ? &near : &distant, camera_known, out);
         bool near_unsure = near.cost_of_value > costly || near.likeness < unlike;

@@ -135,12 +135,12 @@ static status pseudo_surface(const pst_problem *p, const lights3 *l, pst_pseudo 
     f->problem = p;
     f->b = field.b = malloc(p->pixel_count * sizeof *f->b);
     f->slot = pst_field_slots(&field);
-    pst_light *light = malloc((size_t)l->count * sizeof *light);
+    merlin_light *light = malloc((size_t)l->count * sizeof *light);
     status s = f->b && f->slot && light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu pixels", p->pixel_count);
     if (s == OK) {
         for (int k = 0; k < l->count; k++) {
             light[k] = p->light[k];
-            light[k].direction = vec3_make(l->x[k], l->y[k], l->z[k]);
+            vec3_put(vec3_make(l->x[k], l->y[k], l->z[k]), light[k].direction);
         }
         pst_problem under = *p;
         under.light = light;
@@ -152,7 +152,7 @@ static status pseudo_surface(const pst_problem *p, const lights3 *l, pst_pseudo 
     return s;
 }
 
-static status name_lights(const pst_problem *p, const lights3 *l, pst_light *light)
+static status name_lights(const pst_problem *p, const lights3 *l, merlin_light *light)
 {
     double mean = 0;
     for (int k = 0; k < l->count; k++)
@@ -160,14 +160,14 @@ static status name_lights(const pst_problem *p, const lights3 *l, pst_light *lig
     for (int k = 0; k < l->count; k++) {
         vec3 v = vec3_make(l->x[k], l->y[k], l->z[k]);
         light[k] = p->light[k];
-        light[k].direction = vec3_normalize(v);
+        vec3_put(vec3_normalize(v), light[k].direction);
         for (int ch = 0; ch < 3; ch++)
             light[k].intensity[ch] *= fmaxf(vec3_length(v) / (float)mean, 1e-6f);
     }
     return pst_check_directions(light, l->count);
 }
 
-status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, pst_rotation *rotation)
+status pst_find_distant_lights(const pst_problem *p, const img *balloon, merlin_light *light, pst_rotation *rotation)
 {
     if (p->pixel_count < PST_FEWEST_PIXELS) return pst_too_thin();
     int count = p->capture->count;

@@ -158,7 +158,7 @@ static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *
     return s;
 }
 
-static status take_result(const bundle *b, pst_light *light, img *depth)
+static status take_result(const bundle *b, merlin_light *light, img *depth)
 {
     const pst_problem *p = b->problem;
     size_t width = (size_t)p->capture->width;
@@ -166,18 +166,18 @@ static status take_result(const bundle *b, pst_light *light, img *depth)
     if (s != OK) return s;
     for (size_t i = 0; i < p->pixel_count; i++) {
         size_t column = p->pixel[i] % width, row = p->pixel[i] / width;
-        depth->data[p->pixel[i]] = b->camera.mean_distance * bundle_depth(b, (float)column + 0.5f, (float)row + 0.5f);
+        depth->data[p->pixel[i]] = b->camera.distance * bundle_depth(b, (float)column + 0.5f, (float)row + 0.5f);
     }
     for (int k = 0; k < b->lights; k++) {
         light[k] = p->light[k];
         light[k].lobe = 0;
-        light[k].position = vec3_scale(b->position[k], b->camera.mean_distance);
-        light[k].direction = vec3_normalize(vec3_sub(b->position[k], b->centre));
+        vec3_put(vec3_scale(b->position[k], b->camera.distance), light[k].position);
+        vec3_put(vec3_normalize(vec3_sub(b->position[k], b->centre)), light[k].direction);
     }
     return OK;
 }
 
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, pst_light *light, img *depth)
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth)
 {
     bundle coarse = {0}, fine = {0};
     status s = solve_coarse(p, camera, &coarse);

@@ -8,10 +8,10 @@
 
 /* Directions and strengths of distant lights (uncalibrated_distant.c); light: count entries, from the problem's.
  * balloon: unit normals of one of the object's outline (inflate.h). rotation: the last step to them, and its doubts. */
-status pst_find_distant_lights(const pst_problem *p, const img *balloon, pst_light *light, pst_rotation *rotation);
+status pst_find_distant_lights(const pst_problem *p, const img *balloon, merlin_light *light, pst_rotation *rotation);
 
 /* Positions of near lights of one power, and a depth map that goes with them (uncalibrated_near.c). camera: with a
  * perspective. depth is made here. */
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, pst_light *light, img *depth);
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth);
 
 #endif

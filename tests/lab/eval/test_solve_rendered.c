@@ -25,15 +25,15 @@ static void generate(uint64_t index, scene_object *object)
     object->material->bumps = 0;
 }
 
-static void take(const rendered *how, const scene_object *object, pst_capture *c)
+static void take(const rendered *how, const scene_object *object, merlin_capture *c)
 {
     if (rendered_capture(how, object, c) != OK) fail_msg("%s", status_message());
 }
 
-static double rendered_angle(const rendered *how, uint64_t index, pst_method method)
+static double rendered_angle(const rendered *how, uint64_t index, merlin_stereo_method method)
 {
     scene_object object;
-    pst_capture c;
+    merlin_capture c;
     generate(index, &object);
     take(how, &object, &c);
     double angle = solve_angle(&c, method);
@@ -55,7 +55,7 @@ static void robust_sees_through_microfacets_of_any_roughness(void **state)
     for (size_t i = 0; i < sizeof roughness / sizeof *roughness; i++) {
         rendered how = glossy;
         how.roughness = roughness[i];
-        assert_true(rendered_angle(&how, 3 + i, PST_ROBUST) < robust_bound);
+        assert_true(rendered_angle(&how, 3 + i, MERLIN_STEREO_ROBUST) < robust_bound);
     }
 }
 
@@ -66,13 +66,13 @@ static void robust_sees_through_cosine_lobes(void **state)
     how.phong = 0.5f;
     how.exponent = 20;
     how.exposure = 1.5f;
-    double ls = rendered_angle(&how, 5, PST_LS);
+    double ls = rendered_angle(&how, 5, MERLIN_STEREO_LS);
     assert_true(ls > 5);
-    assert_true(rendered_angle(&how, 5, PST_ROBUST) < robust_bound);
+    assert_true(rendered_angle(&how, 5, MERLIN_STEREO_ROBUST) < robust_bound);
 }
 
 /* Squares of eight pixels, as on a chessboard, get the other's pictures. */
-static void inlay(const pst_capture *from, pst_capture *to)
+static void inlay(const merlin_capture *from, merlin_capture *to)
 {
     size_t channels = (size_t)to->channels;
     for (int i = 0; i < to->width * to->height; i++) {
@@ -88,7 +88,7 @@ static void robust_tells_two_materials_apart(void **state)
 {
     (void)state;
     scene_object object;
-    pst_capture c, other;
+    merlin_capture c, other;
     rendered how = glossy;
     generate(9, &object);
     how.exposure = 2;
@@ -97,7 +97,7 @@ static void robust_tells_two_materials_apart(void **state)
     how.exponent = 60;
     take(&how, &object, &other);
     inlay(&other, &c);
-    double angle = solve_angle(&c, PST_ROBUST);
+    double angle = solve_angle(&c, MERLIN_STEREO_ROBUST);
     print_message("object 9 of two materials: %.2f degrees\n", angle);
     assert_true(angle < 0.29);
     scene_object_free(&object);
@@ -111,7 +111,7 @@ static void robust_finds_that_a_picture_has_perspective(void **state)
     (void)state;
     rendered how = glossy;
     how.fov = 60;
-    assert_true(rendered_angle(&how, 11, PST_ROBUST) < robust_bound);
+    assert_true(rendered_angle(&how, 11, MERLIN_STEREO_ROBUST) < robust_bound);
 }
 
 static void robust_bears_indirect_light_and_few_bits(void **state)
@@ -120,7 +120,7 @@ static void robust_bears_indirect_light_and_few_bits(void **state)
     rendered how = glossy;
     how.paths = 8;
     how.eight_bit = true;
-    assert_true(rendered_angle(&how, 14, PST_ROBUST) < 1.35 * robust_bound);
+    assert_true(rendered_angle(&how, 14, MERLIN_STEREO_ROBUST) < 1.35 * robust_bound);
 }
 
 /* Strengths of 0.4 to 1, and the same without the directions too, equal strengths then. */
@@ -128,17 +128,17 @@ static void unknown_light_is_found_despite_highlights(void **state)
 {
     (void)state;
     scene_object object;
-    pst_capture c;
+    merlin_capture c;
     generate(9, &object);
     take(&glossy, &object, &c);
-    c.lighting = PST_UNKNOWN_LIGHT;
-    double uncalibrated = solve_angle(&c, PST_AUTO);
-    c.lighting = PST_DISTANT;
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    double uncalibrated = solve_angle(&c, MERLIN_STEREO_AUTO);
+    c.lighting = MERLIN_DISTANT_LIGHTS;
     c.intensities_known = false;
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height * c.channels; i++)
             c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.4f + 0.15f * (float)(k * 7 % 5)));
-    double semi = solve_angle(&c, PST_AUTO);
+    double semi = solve_angle(&c, MERLIN_STEREO_AUTO);
     print_message("object 9: uncalibrated %.2f, semi %.2f degrees\n", uncalibrated, semi);
     assert_true(semi < robust_bound);
     assert_true(uncalibrated < 15);
@@ -149,17 +149,17 @@ static void unknown_light_is_found_despite_highlights(void **state)
 static void check_leds(uint64_t index, const rendered *how, double angle_bound)
 {
     scene_object object;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     generate(index, &object);
     take(how, &object, &c);
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_NEAR_LIGHTS}, &s), OK);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR}, &s), OK);
     double angle = mean_angle(&c, &s.normal), error = depth_mean_error(&s.depth, &c);
     print_message("object %d under %d LEDs: %.2f degrees, depth off by %.2f %%\n", (int)index, c.count, angle,
                   100 * error);
     assert_true(angle < angle_bound);
     assert_true(error < 0.02);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     scene_object_free(&object);
     pst_capture_free(&c);
 }

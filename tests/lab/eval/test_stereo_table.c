@@ -27,7 +27,7 @@ static const sphere ball = {.centre = {0, 0, -1}, .radius = 0.28f, .albedo = {0.
 /* Through the middle of a pixel, z = -1. */
 static vec3 ray_of(const pinhole *c, int x, int y)
 {
-    return vec3_make(((float)x + 0.5f - c->center_x) / c->focal, (c->center_y - (float)y - 0.5f) / c->focal, -1);
+    return vec3_make(((float)x + 0.5f - c->x) / c->focal, (c->y - (float)y - 0.5f) / c->focal, -1);
 }
 
 /* A matte ball under `count` lights without bounces; shadows are its own alone, which shading has anyway. */
@@ -72,7 +72,7 @@ static void a_sample_is_cut_to_its_object_and_keeps_its_camera(void **state)
     sample s = ball_sample(96, 3);
     stereo_object o;
     read_back(&s, &o);
-    const pst_capture *c = &o.capture;
+    const merlin_capture *c = &o.capture;
     assert_true(c->width < 96 && c->width == c->height && o.photo.width == c->width);
     assert_int_equal(c->count, 3);
     assert_string_equal(o.name, "0 union");
@@ -96,30 +96,30 @@ static void real_pictures_of_a_sample_give_its_normals(void **state)
     stereo_object o;
     read_back(&s, &o);
     assert_int_equal(draw_count(&o.capture), DRAW_MOST);
-    pst_surface first, again, other;
+    merlin_surface first, again, other;
     size_t pixels;
-    assert_int_equal(draw_solve(&o.capture, 0, PST_AUTO, &first), OK);
-    assert_int_equal(draw_solve(&o.capture, 0, PST_AUTO, &again), OK);
-    assert_int_equal(draw_solve(&o.capture, 1, PST_AUTO, &other), OK);
+    assert_int_equal(draw_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &first), OK);
+    assert_int_equal(draw_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &again), OK);
+    assert_int_equal(draw_solve(&o.capture, 1, MERLIN_STEREO_AUTO, &other), OK);
     double angle = normal_mean_angle(&first.normal, &o.capture, &pixels);
     print_message("ball under 32 of 34 near lights: %.2f degrees over %zu pixels\n", angle, pixels);
     assert_true(angle < 2 && pixels > 400);
     size_t bytes = 3 * sizeof(float) * (size_t)o.capture.width * (size_t)o.capture.height;
     assert_memory_equal(first.normal.data, again.normal.data, bytes);
     assert_memory_not_equal(first.normal.data, other.normal.data, bytes);
-    pst_surface_free(&first);
-    pst_surface_free(&again);
-    pst_surface_free(&other);
+    merlin_surface_free(&first);
+    merlin_surface_free(&again);
+    merlin_surface_free(&other);
     stereo_object_free(&o);
     sample_free(&s);
 }
 
 /* 40 × 24 grey pixels, the object from (10, 4) to (29, 19): a square of 25 pixels around it, which shrinks by 3 to
  * at most 10 a side. */
-static pst_capture make_wide_capture(void)
+static merlin_capture make_wide_capture(void)
 {
-    pst_capture c = {.width = 40, .height = 24, .channels = 1, .count = 1, .lighting = PST_DISTANT};
-    c.camera = (pinhole){.perspective = true, .focal = 60, .center_x = 20, .center_y = 12};
+    merlin_capture c = {.width = 40, .height = 24, .channels = 1, .count = 1, .lighting = MERLIN_DISTANT_LIGHTS};
+    c.camera = (pinhole){.focal = 60, .x = 20, .y = 12};
     c.picture = calloc(1, sizeof *c.picture);
     c.light = calloc(1, sizeof *c.light);
     c.name = calloc(1, sizeof *c.name);
@@ -136,7 +136,7 @@ static pst_capture make_wide_capture(void)
 static void a_wide_capture_is_cut_and_shrunk_with_its_camera(void **state)
 {
     (void)state;
-    pst_capture c = make_wide_capture();
+    merlin_capture c = make_wide_capture();
     c.picture[0][40 * 10 + 20] = UINT16_MAX;
     img photo;
     assert_int_equal(img_new(&photo, 40, 24, 3), OK);
@@ -161,7 +161,7 @@ static void a_wide_capture_is_cut_and_shrunk_with_its_camera(void **state)
 static void normals_keep_their_angle_to_the_line_of_sight(void **state)
 {
     (void)state;
-    pinhole from = {.perspective = true, .focal = 8, .center_x = 4, .center_y = 4}, to = {.perspective = false};
+    pinhole from = {.focal = 8, .x = 4, .y = 4}, to = {.focal = 0};
     img n;
     assert_int_equal(img_new(&n, 8, 8, 3), OK);
     for (int i = 0; i < 64; i++) {

@@ -85,7 +85,7 @@ static void a_large_disc_is_inflated_as_well(void **state)
 static const rendered bare = {
     .size = 64, .lights = 32, .strata = 2, .roughness = 0.5f, .exposure = 0.15f, .fov = 60, .bulbs = true};
 
-static void render(const rendered *how, uint64_t seed, uint64_t index, pst_capture *c)
+static void render(const rendered *how, uint64_t seed, uint64_t index, merlin_capture *c)
 {
     scene_object object;
     assert_int_equal(scene_object_generate(seed, index, how->fov, &object), OK);
@@ -95,12 +95,12 @@ static void render(const rendered *how, uint64_t seed, uint64_t index, pst_captu
 }
 
 /* Mean angle between the lights' true and found directions from the object's middle, degrees. */
-static double light_angle(const pst_capture *c, float distance, const pst_light *found)
+static double light_angle(const merlin_capture *c, float distance, const merlin_light *found)
 {
     double sum = 0;
     for (int k = 0; k < c->count; k++) {
-        vec3 to = vec3_sub(c->light[k].position, vec3_make(0, 0, -distance));
-        sum += normal_angle(to, found[k].direction) / c->count;
+        vec3 to = vec3_sub(vec3_of(c->light[k].position), vec3_make(0, 0, -distance));
+        sum += normal_angle(to, vec3_of(found[k].direction)) / c->count;
     }
     return sum;
 }
@@ -108,21 +108,21 @@ static double light_angle(const pst_capture *c, float distance, const pst_light 
 /* Unknown lights about a generated object; angles in degrees. */
 static void solve_bare(uint64_t index, bool camera_known, double *normals, double *lights)
 {
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     render(&bare, 1, index, &c);
-    c.lighting = PST_UNKNOWN_LIGHT;
-    float distance = c.camera.mean_distance;
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    float distance = c.camera.distance;
     if (!camera_known) c.camera = (pinhole){0};
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
-    assert_int_equal(s.method, PST_UNCALIBRATED);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
+    assert_int_equal(s.method, MERLIN_STEREO_UNCALIBRATED);
     *normals = mean_angle(&c, &s.normal);
-    *lights = light_angle(&c, distance, s.light);
+    *lights = light_angle(&c, distance, s.lights);
     print_message("object %d, camera %s: normals %.2f, lights %.2f degrees\n", (int)index,
                   camera_known ? "known" : "unknown", *normals, *lights);
     assert_true(s.lights_near == camera_known);
     assert_true((s.depth.data != NULL) == camera_known);
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     pst_capture_free(&c);
 }
 
@@ -156,26 +156,26 @@ static void half_a_surface_that_faces_away_is_no_answer(void **state)
     static const uint64_t index[] = {2, 12};
     for (size_t i = 0; i < sizeof index / sizeof *index; i++) {
         rendered dark = bare;
-        pst_capture c;
-        pst_surface s;
+        merlin_capture c;
+        merlin_surface s;
         dark.lights = 12;
         dark.roughness = 0.35f;
         dark.paleness = 0.15f;
         render(&dark, 1, index[i], &c);
-        c.lighting = PST_UNKNOWN_LIGHT;
-        assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), OK);
+        c.lighting = MERLIN_UNKNOWN_LIGHTS;
+        assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
         double normals = mean_angle(&c, &s.normal);
         print_message("object %d: normals %.2f degrees\n", (int)index[i], normals);
         assert_true(s.lights_near);
         assert_true(normals <
                     45); /* 22 and 26 measured, give or take some by the order of sums; 77 and 71 by that answer */
-        pst_surface_free(&s);
+        merlin_surface_free(&s);
         pst_capture_free(&c);
     }
 }
 
 /* Uniform, up to this share of full scale. */
-static void add_noise(float share, pst_capture *c)
+static void add_noise(float share, merlin_capture *c)
 {
     rng r = rng_at(3, 0, 0);
     for (int k = 0; k < c->count; k++) {
@@ -191,12 +191,12 @@ static void a_noisy_ball_is_not_turned(void **state)
 {
     (void)state;
     const relief ball = {.size = 48, .lights = 12, .channels = 1, .exposure = 1.8f};
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&ball, &c);
     add_noise(0.02f, &c);
-    pst_light some[12], found[12];
+    merlin_light some[12], found[12];
     for (int k = 0; k < 12; k++)
-        some[k] = (pst_light){.intensity = {1, 1, 1}};
+        some[k] = (merlin_light){.intensity = {1, 1, 1}};
     pst_problem p = {.capture = &c, .light = some, .saturation = PST_SATURATED};
     assert_int_equal(pst_list_pixels(&c, &p), OK);
     img balloon, height;
@@ -204,7 +204,7 @@ static void a_noisy_ball_is_not_turned(void **state)
     assert_int_equal(pst_inflate(&c.mask, &balloon, &height), OK);
     assert_int_equal(pst_find_distant_lights(&p, &balloon, found, &rotation), OK);
     for (int k = 0; k < 12; k++)
-        assert_true(normal_angle(c.light[k].direction, found[k].direction) < 2); /* 0.3 on average */
+        assert_true(normal_angle(vec3_of(c.light[k].direction), vec3_of(found[k].direction)) < 2); /* 0.3 on average */
     assert_false(rotation.unsure);
     img_free(&balloon);
     img_free(&height);
@@ -213,19 +213,19 @@ static void a_noisy_ball_is_not_turned(void **state)
 }
 
 /* Of a capture whose lights and camera are forgotten, in degrees. */
-static double bare_angle_said(pst_capture *c, bool *unsure)
+static double bare_angle_said(merlin_capture *c, bool *unsure)
 {
-    pst_surface s;
-    c->lighting = PST_UNKNOWN_LIGHT;
+    merlin_surface s;
+    c->lighting = MERLIN_UNKNOWN_LIGHTS;
     c->camera = (pinhole){0};
-    assert_int_equal(pst_solve(c, &(pst_options){.method = PST_AUTO}, &s), OK);
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
     double angle = mean_angle(c, &s.normal);
     *unsure = s.lights_unsure;
-    pst_surface_free(&s);
+    merlin_surface_free(&s);
     return angle;
 }
 
-static double bare_angle(pst_capture *c)
+static double bare_angle(merlin_capture *c)
 {
     bool unsure;
     return bare_angle_said(c, &unsure);
@@ -237,7 +237,7 @@ static const rendered afar = {.size = 64, .lights = 16, .strata = 2, .roughness 
 static void noise_between_neighbours_does_not_turn_an_object(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     bool unsure;
     render(&afar, 77, 9, &c);
     add_noise(0.01f, &c);
@@ -252,7 +252,7 @@ static void noise_between_neighbours_does_not_turn_an_object(void **state)
 static void doubtful_lights_are_said_to_be(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     bool unsure;
     render(&afar, 78, 0, &c);
     print_message("doubtful object: normals %.2f degrees\n", bare_angle_said(&c, &unsure));
@@ -265,7 +265,7 @@ static void a_relief_whose_sign_is_chance_is_said_to_be(void **state)
 {
     (void)state;
     const relief bumps = {.size = 64, .lights = 12, .channels = 1, .bump = 4, .exposure = 1.5f};
-    pst_capture c;
+    merlin_capture c;
     bool unsure;
     relief_capture(&bumps, &c);
     bare_angle_said(&c, &unsure);
@@ -279,7 +279,7 @@ static void flattened_contrast_makes_no_bowl_of_a_ball(void **state)
 {
     (void)state;
     const relief ball = {.size = 48, .lights = 12, .channels = 1, .exposure = 1.5f};
-    pst_capture c;
+    merlin_capture c;
     relief_capture(&ball, &c);
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height; i++)
@@ -289,7 +289,7 @@ static void flattened_contrast_makes_no_bowl_of_a_ball(void **state)
 }
 
 /* The inside of a sphere's cap, as wide as 2, and lamps so far from it. */
-static void bowl_capture(float distance, pst_capture *c)
+static void bowl_capture(float distance, merlin_capture *c)
 {
     enum { SIZE = 48, LIGHTS = 16 };
     const float steepest = 0.85f;
@@ -312,7 +312,7 @@ static void bowl_capture(float distance, pst_capture *c)
 static void a_bowl_under_near_lights_is_a_bowl(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     bowl_capture(4, &c);
     assert_true(bare_angle(&c) < 3); /* 62 as a ball */
     capture_drop(&c);
@@ -320,7 +320,7 @@ static void a_bowl_under_near_lights_is_a_bowl(void **state)
 
 /* A white sphere's cap that fills the picture, turned to the camera by up to 33 degrees, under distant lights whose
  * strengths differ by up to this factor from 1. */
-static void cap_capture(float factor, pst_capture *c)
+static void cap_capture(float factor, merlin_capture *c)
 {
     enum { SIZE = 64, LIGHTS = 12 };
     const float bend = 0.4f;
@@ -328,13 +328,13 @@ static void cap_capture(float factor, pst_capture *c)
     capture_new(c, SIZE, LIGHTS, 1);
     for (int k = 0; k < LIGHTS; k++) {
         float strength = 30000 * powf(factor, rng_range(&r, -1, 1));
-        c->light[k].direction = relief_light(k, LIGHTS);
+        vec3_put(relief_light(k, LIGHTS), c->light[k].direction);
         for (int i = 0; i < SIZE * SIZE; i++) {
             float x = bend * ((float)(i % SIZE) - 31.5f) / 32, y = bend * (31.5f - (float)(i / SIZE)) / 32;
             vec3 n = vec3_make(x, y, sqrtf(1 - x * x - y * y));
             c->mask.data[i] = 1;
             memcpy(c->normal_true.data + 3 * i, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-            c->picture[k][i] = (uint16_t)(strength * fmaxf(vec3_dot(n, c->light[k].direction), 0));
+            c->picture[k][i] = (uint16_t)(strength * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0));
         }
     }
 }
@@ -343,7 +343,7 @@ static void cap_capture(float factor, pst_capture *c)
 static void a_cap_is_no_saddle(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     bool unsure;
     cap_capture(1, &c);
     assert_true(bare_angle_said(&c, &unsure) < 0.5); /* 0.0; 22 as a saddle */
@@ -355,7 +355,7 @@ static void a_cap_is_no_saddle(void **state)
 static void few_lights_of_unequal_strengths_do_not_pass_for_equal(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     cap_capture(1.5f, &c);
     assert_true(bare_angle(&c) < 0.5);
     capture_drop(&c);
@@ -365,7 +365,7 @@ static void few_lights_of_unequal_strengths_do_not_pass_for_equal(void **state)
 static void one_colour_tells_what_lights_almost_equal_do_not(void **state)
 {
     (void)state;
-    pst_capture c;
+    merlin_capture c;
     cap_capture(1.1f, &c);
     assert_true(bare_angle(&c) < 0.5); /* 7 if the lights are taken for equal */
     capture_drop(&c);
@@ -375,8 +375,8 @@ static void one_colour_tells_what_lights_almost_equal_do_not(void **state)
 static void a_plane_under_unknown_lights_is_refused(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     rng r = rng_at(6, 0, 0);
     const vec3 n = vec3_normalize(vec3_make(-0.3f, 0.1f, 1));
     capture_new(&c, 32, 10, 1);
@@ -387,8 +387,8 @@ static void a_plane_under_unknown_lights_is_refused(void **state)
             c.picture[k][i] =
                 (uint16_t)(50000 * (albedo * vec3_dot(n, relief_light(k, 10)) + rng_range(&r, -0.005f, 0.005f)));
     }
-    c.lighting = PST_UNKNOWN_LIGHT;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "nothing but their brightness"));
     capture_drop(&c);
 }
@@ -396,15 +396,15 @@ static void a_plane_under_unknown_lights_is_refused(void **state)
 static void a_speck_under_unknown_lights_is_refused(void **state)
 {
     (void)state;
-    pst_capture c;
-    pst_surface s;
+    merlin_capture c;
+    merlin_surface s;
     capture_new(&c, 16, 8, 1);
     for (int i = 0; i < 16 * 16 * 8; i++)
         c.picture[i % 8][i / 8] = (uint16_t)(20000 + i * 7919 % 30000);
-    c.lighting = PST_UNKNOWN_LIGHT;
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
     for (int i = 0; i < 4; i++)
         c.mask.data[7 * 16 + 6 + i] = 1;
-    assert_int_equal(pst_solve(&c, &(pst_options){.method = PST_AUTO}, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "known lights"));
     pst_capture_free(&c);
 }

@@ -5,7 +5,7 @@
 
 static vec3 sight(const pinhole *camera, int x, int y)
 {
-    return camera->perspective ? vec3_normalize(pst_ray(camera, x, y)) : vec3_make(0, 0, -1);
+    return pinhole_is_near(camera) ? vec3_normalize(pst_ray(camera, x, y)) : vec3_make(0, 0, -1);
 }
 
 /* v turned by the least rotation that takes unit a to unit b (Rodrigues' formula; a and b are not opposite). */

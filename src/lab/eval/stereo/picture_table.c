@@ -24,20 +24,20 @@ typedef struct run {
 /* ---- one picture ---- */
 
 /* Returns how far a light stands aside, in degrees; NAN of a near one, whose direction differs from place to place. */
-static double aside_of(const pst_capture *c, int i)
+static double aside_of(const merlin_capture *c, int i)
 {
-    if (c->lighting != PST_DISTANT) return (double)NAN;
-    return normal_angle(c->light[i].direction, vec3_make(0, 0, 1));
+    if (c->lighting != MERLIN_DISTANT_LIGHTS) return (double)NAN;
+    return normal_angle(vec3_of(c->light[i].direction), vec3_make(0, 0, 1));
 }
 
-static double light_error(const pst_capture *c, int i, const merlin_found_light *found)
+static double light_error(const merlin_capture *c, int i, const merlin_found_light *found)
 {
     vec3 way = vec3_of(found->lamp);
-    if (c->lighting != PST_DISTANT || !found->known || !(vec3_length(way) > 0)) return (double)NAN;
-    return normal_angle(c->light[i].direction, way);
+    if (c->lighting != MERLIN_DISTANT_LIGHTS || !found->known || !(vec3_length(way) > 0)) return (double)NAN;
+    return normal_angle(vec3_of(c->light[i].direction), way);
 }
 
-static status judge(const pst_capture *c, const merlin_maps *maps, picture_score *score)
+static status judge(const merlin_capture *c, const merlin_maps *maps, picture_score *score)
 {
     img normal = {0};
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
@@ -53,7 +53,7 @@ static status judge(const pst_capture *c, const merlin_maps *maps, picture_score
     return OK;
 }
 
-static status measure(run *r, const pst_capture *c, int i, picture_score *score)
+static status measure(run *r, const merlin_capture *c, int i, picture_score *score)
 {
     merlin_maps maps = {0};
     img photo = {0};
@@ -71,19 +71,19 @@ static status measure(run *r, const pst_capture *c, int i, picture_score *score)
 
 /* ---- an object ---- */
 
-static status find_truth(pst_capture *c)
+static status find_truth(merlin_capture *c)
 {
     if (c->normal_true.data) return OK;
-    pst_surface solved;
-    status s = pst_solve(c, &(pst_options){.method = PST_AUTO}, &solved);
+    merlin_surface solved;
+    status s = pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &solved);
     if (s != OK) return s;
     c->normal_true = solved.normal;
     solved.normal = (img){0};
-    pst_surface_free(&solved);
+    merlin_surface_free(&solved);
     return OK;
 }
 
-static status measure_all(run *r, const pst_capture *c, picture_column *out)
+static status measure_all(run *r, const merlin_capture *c, picture_column *out)
 {
     out->picture = calloc((size_t)c->count, sizeof *out->picture);
     if (!out->picture) return fail(MERLIN_NO_MEMORY, "no memory for a table of %d pictures", c->count);
@@ -100,10 +100,10 @@ static status measure_all(run *r, const pst_capture *c, picture_column *out)
 
 static status measure_folder(run *r, const char *folder, picture_column *out)
 {
-    pst_capture c = {0};
+    merlin_capture c = {0};
     snprintf(out->name, sizeof out->name, "%s", file_name_of(folder));
-    status s =
-        pst_capture_read(folder, &(pst_read_options){.lights = r->options->lights, .linear = r->options->linear}, &c);
+    status s = pst_capture_read(
+        folder, &(merlin_capture_files){.lights = r->options->lights, .linear = r->options->linear}, &c);
     if (s == OK) s = stereo_frame(&c, NULL, STEREO_OBJECT_SIDE);
     out->true_normals = c.normal_true.data != NULL;
     if (s == OK) s = find_truth(&c);

@@ -45,7 +45,7 @@ typedef struct picture_options {
     size_t count;
     const char *lights;          /* list of all captures' lights, or NULL: found in the folders */
     const char *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
-    bool linear;                 /* 8-bit pictures are, as of pst_read_options */
+    bool linear;                 /* 8-bit pictures are, as of merlin_capture_files */
     bool quiet;
     int (*stopped)(void); /* asked between pictures; NULL: never */
 } picture_options;

@@ -21,14 +21,14 @@ typedef struct job {
     const rendered *how;
     const scene_object *object;
     trace_device *device;
-    pst_capture *capture;
+    merlin_capture *capture;
     status result;
 } job;
 
 /* and what is one thread's. */
 typedef struct rendering {
     const rendered *how;
-    pst_capture *capture;
+    merlin_capture *capture;
     trace_scene scene;
     sequence spread;
     rng random;
@@ -55,11 +55,11 @@ static vec3 distant_light(int i, int count)
 }
 
 /* Rings of LEDs about the camera that look at the object, one to two of its sizes away. */
-static pst_light led(int i, int count)
+static merlin_light led(int i, int count)
 {
     float phi = 6.2831853f * (float)i / (float)count * 2, ring = i % 2 ? 0.3f : 0.65f;
-    pst_light light = {.position = vec3_make(ring * cosf(phi), ring * sinf(phi), i % 2 ? -0.05f : -0.3f), .lobe = 1.5f};
-    light.direction = vec3_normalize(vec3_sub(vec3_make(0, 0, -1), light.position));
+    merlin_light light = {.position = {ring * cosf(phi), ring * sinf(phi), i % 2 ? -0.05f : -0.3f}, .lobe = 1.5f};
+    vec3_put(vec3_normalize(vec3_sub(vec3_make(0, 0, -1), vec3_of(light.position))), light.direction);
     return light;
 }
 
@@ -75,15 +75,15 @@ static bool is_near(const rendered *how)
     return how->leds || how->bulbs;
 }
 
-static pst_light light_of(const rendered *how, int i)
+static merlin_light light_of(const rendered *how, int i)
 {
-    pst_light light = {0};
+    merlin_light light = {0};
     if (how->leds)
         light = led(i, how->lights);
     else if (how->bulbs)
-        light.position = bulb(i, how->lights);
+        vec3_put(bulb(i, how->lights), light.position);
     else
-        light.direction = distant_light(i, how->lights);
+        vec3_put(distant_light(i, how->lights), light.direction);
     for (int k = 0; k < 3; k++)
         light.intensity[k] = 1;
     return light;
@@ -120,17 +120,17 @@ static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view,
 }
 
 /* Radiance by one light. */
-static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const pst_light *from)
+static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const merlin_light *from)
 {
     bool near = is_near(r->how);
-    vec3 position = near ? from->position : vec3_scale(from->direction, far_away), sum = {0, 0, 0};
-    vec3 to = vec3_sub(position, at->position), l = near ? vec3_normalize(to) : from->direction;
+    vec3 position = near ? vec3_of(from->position) : vec3_scale(vec3_of(from->direction), far_away), sum = {0, 0, 0};
+    vec3 to = vec3_sub(position, at->position), l = near ? vec3_normalize(to) : vec3_of(from->direction);
     float power = near ? 1 / vec3_dot(to, to) : 1;
     if (is_lit(r, at, l, vec3_length(to))) sum = vec3_scale(reflected(r->how, at, view, l), power);
     if (r->how->paths > 0)
         sum = vec3_add(sum, by_way_of_surfaces(r, at, view, position, near ? 1 : far_away * far_away));
     /* the lobe is applied to all that the LED sends, as seen from the surface */
-    return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, from->direction), 0), from->lobe)) : sum;
+    return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, vec3_of(from->direction)), 0), from->lobe)) : sum;
 }
 
 static void camera_ray_of(const rendered *how, float x, float y, vec3 *origin, vec3 *direction)
@@ -165,7 +165,7 @@ static bool look(rendering *r, int i, int j, sight *out)
     return true;
 }
 
-static bool store_truth(const sight *seen, size_t pixel, pst_capture *c)
+static bool store_truth(const sight *seen, size_t pixel, merlin_capture *c)
 {
     vec3 normal = {0, 0, 0};
     float depth = 0;
@@ -190,7 +190,7 @@ static uint16_t code_of(const rendered *how, float value)
 static void render_pixel(rendering *r, int i, int j)
 {
     const rendered *how = r->how;
-    pst_capture *c = r->capture;
+    merlin_capture *c = r->capture;
     size_t pixel = (size_t)j * (size_t)how->size + (size_t)i, channels = (size_t)c->channels;
     sight seen;
     if (!look(r, i, j, &seen) || !store_truth(&seen, pixel, c)) return;
@@ -233,7 +233,7 @@ static void render_rows(void *context, size_t begin, size_t end)
     all->result = s;
 }
 
-static status allocate(const rendered *how, pst_capture *c)
+static status allocate(const rendered *how, merlin_capture *c)
 {
     size_t values = (size_t)how->size * (size_t)how->size * (size_t)c->channels;
     status s = pst_capture_reserve(c, (size_t)how->lights);
@@ -249,14 +249,14 @@ static status allocate(const rendered *how, pst_capture *c)
     return OK;
 }
 
-status rendered_capture(const rendered *how, const scene_object *object, pst_capture *out)
+status rendered_capture(const rendered *how, const scene_object *object, merlin_capture *out)
 {
-    *out = (pst_capture){.width = how->size,
-                         .height = how->size,
-                         .channels = how->grey ? 1 : 3,
-                         .lighting = is_near(how) ? PST_NEAR : PST_DISTANT,
-                         .intensities_known = true,
-                         .camera = is_near(how) ? pinhole_of(how->size, how->size, how->fov) : (pinhole){0}};
+    *out = (merlin_capture){.width = how->size,
+                            .height = how->size,
+                            .channels = how->grey ? 1 : 3,
+                            .lighting = is_near(how) ? MERLIN_NEAR_LIGHTS : MERLIN_DISTANT_LIGHTS,
+                            .intensities_known = true,
+                            .camera = is_near(how) ? pinhole_of(how->size, how->size, how->fov) : (pinhole){0}};
     job all = {.how = how, .object = object, .capture = out, .result = OK};
     status s = allocate(how, out);
     if (s == OK) s = trace_device_new(&all.device);
@@ -265,7 +265,7 @@ status rendered_capture(const rendered *how, const scene_object *object, pst_cap
         trace_device_free(all.device);
         s = all.result == OK ? OK : fail(all.result, "cannot trace a %s", object->shape);
     }
-    if (s == OK && is_near(how)) out->camera.mean_distance = (float)img_mean_within(&out->depth_true, &out->mask);
+    if (s == OK && is_near(how)) out->camera.distance = (float)img_mean_within(&out->depth_true, &out->mask);
     if (s != OK) pst_capture_free(out);
     return s;
 }

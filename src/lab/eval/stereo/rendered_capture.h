@@ -3,12 +3,12 @@
  * photometric stereo against: cast shadows always, light between surfaces if asked for.
  *
  *     rendered how = {.size = 64, .lights = 50, .roughness = 0.3f, .exposure = 1};
- *     pst_capture c;
+ *     merlin_capture c;
  *     status s = rendered_capture(&how, &object, &c);
  *     pst_capture_free(&c);
  *
  * Distant lights shine with radiance 1 a steradian; near lights are LEDs about the camera, or bare bulbs on the frontal
- * hemisphere, and the camera's mean_distance is the true one then. A pixel belongs to the mask if all of it shows the
+ * hemisphere, and the camera's distance is the true one then. A pixel belongs to the mask if all of it shows the
  * object, not at grazing angles. */
 #ifndef MERLIN_LAB_EVAL_STEREO_RENDERED_CAPTURE_H
 #define MERLIN_LAB_EVAL_STEREO_RENDERED_CAPTURE_H
@@ -30,6 +30,6 @@ typedef struct rendered {
 } rendered;
 
 /* Equal scenes give equal pictures, whatever the number of threads. On failure *out needs no freeing. */
-status rendered_capture(const rendered *how, const scene_object *object, pst_capture *out);
+status rendered_capture(const rendered *how, const scene_object *object, merlin_capture *out);
 
 #endif

@@ -36,68 +36,69 @@ static rendered scene_of(const evaluation *e)
                       .exposure = 3};
 }
 
-static status solve(const pst_capture *c, pst_method method, double *angle, size_t *pixels, pst_surface *out)
+static status solve(const merlin_capture *c, merlin_stereo_method method, double *angle, size_t *pixels,
+                    merlin_surface *out)
 {
-    status s = pst_solve(c, &(pst_options){.method = method}, out);
+    status s = pst_solve(c, &(merlin_stereo_params){.method = method}, out);
     if (s != OK) return fail_in(s, "%s", pst_method_name(method));
     *angle = normal_mean_angle(&out->normal, c, pixels);
     return OK;
 }
 
-static status angle_of(const pst_capture *c, pst_method method, double *angle, size_t *pixels)
+static status angle_of(const merlin_capture *c, merlin_stereo_method method, double *angle, size_t *pixels)
 {
-    pst_surface found;
+    merlin_surface found;
     status s = solve(c, method, angle, pixels, &found);
-    if (s == OK) pst_surface_free(&found);
+    if (s == OK) merlin_surface_free(&found);
     return s;
 }
 
 /* ---- the captures ---- */
 
-static status lambert(const pst_capture *c, solver_row *row)
+static status lambert(const merlin_capture *c, solver_row *row)
 {
-    return angle_of(c, PST_LS, &row->figure[SOLVER_LAMBERT_LS], NULL);
+    return angle_of(c, MERLIN_STEREO_LS, &row->figure[SOLVER_LAMBERT_LS], NULL);
 }
 
-static status glossy(const pst_capture *c, solver_row *row)
+static status glossy(const merlin_capture *c, solver_row *row)
 {
-    status s = angle_of(c, PST_LS, &row->figure[SOLVER_GLOSSY_LS], &row->pixels);
+    status s = angle_of(c, MERLIN_STEREO_LS, &row->figure[SOLVER_GLOSSY_LS], &row->pixels);
     double best = HUGE_VAL;
     for (int i = 0; i < TIMED_RUNS && s == OK; i++) {
         double began = clock_seconds();
-        s = angle_of(c, PST_ROBUST, &row->figure[SOLVER_GLOSSY_ROBUST], NULL);
+        s = angle_of(c, MERLIN_STEREO_ROBUST, &row->figure[SOLVER_GLOSSY_ROBUST], NULL);
         best = fmin(best, clock_seconds() - began);
     }
     if (s == OK) row->figure[SOLVER_ROBUST_TIME] = best * timed_pixels / (double)row->pixels;
     return s;
 }
 
-static status near_lights(const pst_capture *c, double *angle, double *depth)
+static status near_lights(const merlin_capture *c, double *angle, double *depth)
 {
-    pst_surface found;
-    status s = solve(c, PST_NEAR_LIGHTS, angle, NULL, &found);
+    merlin_surface found;
+    status s = solve(c, MERLIN_STEREO_NEAR, angle, NULL, &found);
     if (s != OK) return s;
     *depth = depth_mean_error(&found.depth, c);
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     return OK;
 }
 
-static status near_matte(const pst_capture *c, solver_row *row)
+static status near_matte(const merlin_capture *c, solver_row *row)
 {
     return near_lights(c, &row->figure[SOLVER_NEAR_MATTE], &row->figure[SOLVER_NEAR_MATTE_DEPTH]);
 }
 
-static status near_glossy(const pst_capture *c, solver_row *row)
+static status near_glossy(const merlin_capture *c, solver_row *row)
 {
     return near_lights(c, &row->figure[SOLVER_NEAR_GLOSSY], &row->figure[SOLVER_NEAR_GLOSSY_DEPTH]);
 }
 
-typedef status (*capture_figures)(const pst_capture *c, solver_row *row);
+typedef status (*capture_figures)(const merlin_capture *c, solver_row *row);
 
 static status measure(evaluation *e, const rendered *how, capture_figures take)
 {
     if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
-    pst_capture c;
+    merlin_capture c;
     status s = rendered_capture(how, &e->object, &c);
     if (s != OK) return s;
     s = take(&c, e->row);

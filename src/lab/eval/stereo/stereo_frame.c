@@ -38,9 +38,9 @@ static void make_unit(img *normal)
 }
 
 /* The small one's pictures, lights, mask and camera in the place of the large one's. */
-static void take_place(pst_capture *small, pst_capture *c)
+static void take_place(merlin_capture *small, merlin_capture *c)
 {
-    pst_capture large = *c;
+    merlin_capture large = *c;
     c->width = small->width;
     c->height = small->height;
     c->camera = small->camera;
@@ -52,14 +52,14 @@ static void take_place(pst_capture *small, pst_capture *c)
     pst_capture_free(&large);
 }
 
-status stereo_frame(pst_capture *c, img *photo, int most_side)
+status stereo_frame(merlin_capture *c, img *photo, int most_side)
 {
     crop_square square;
     status s = crop_around(&c->mask, &square);
     if (s != OK) return s;
     int factor = (square.side + most_side - 1) / most_side, side = (square.side + factor - 1) / factor;
     pst_blocks frame = {.x = square.x, .y = square.y, .columns = side, .rows = side, .factor = factor, .whole = true};
-    pst_capture small;
+    merlin_capture small;
     s = pst_shrink(c, frame, PST_SATURATED, &small);
     if (s != OK) return s;
     take_place(&small, c);
@@ -70,7 +70,7 @@ status stereo_frame(pst_capture *c, img *photo, int most_side)
     return s;
 }
 
-status stereo_frame_check(const pst_capture *c, const merlin_maps *maps)
+status stereo_frame_check(const merlin_capture *c, const merlin_maps *maps)
 {
     if (maps->crop.x == 0 && maps->crop.y == 0 && maps->crop.side == c->width) return OK;
     return fail(MERLIN_BAD_INPUT,

@@ -83,7 +83,7 @@ static void sum_into(const img *a, const img *b, float white, img *out)
         out->data[i] = fminf((a->data[i] + b->data[i]) / white, 1);
 }
 
-static status take_targets(const sample *from, pst_capture *c)
+static status take_targets(const sample *from, merlin_capture *c)
 {
     img picture = {0};
     status s = near_capture_new(&from->mask, &from->depth, from->fov, c);
@@ -116,12 +116,12 @@ static status read_sample(const char *path, stereo_object *out)
 /* ---- a capture on disk ---- */
 
 /* How far a light is from being a flash beside the lens. */
-static float distance_from_flash(const pst_capture *c, int i)
+static float distance_from_flash(const merlin_capture *c, int i)
 {
-    return c->lighting == PST_NEAR ? vec3_length(c->light[i].position) : -c->light[i].direction.z;
+    return c->lighting == MERLIN_NEAR_LIGHTS ? vec3_length(vec3_of(c->light[i].position)) : -c->light[i].direction[2];
 }
 
-int stereo_object_frontal(const pst_capture *c)
+int stereo_object_frontal(const merlin_capture *c)
 {
     int best = 0;
     for (int i = 1; i < c->count; i++)
@@ -129,7 +129,7 @@ int stereo_object_frontal(const pst_capture *c)
     return best;
 }
 
-status stereo_object_photo(const pst_capture *c, int picture, img *photo)
+status stereo_object_photo(const merlin_capture *c, int picture, img *photo)
 {
     status s = img_new(photo, c->width, c->height, 3);
     if (s != OK) return s;

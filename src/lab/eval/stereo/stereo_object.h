@@ -22,8 +22,8 @@ enum { STEREO_OBJECT_SIDE = 256 };
 
 typedef struct stereo_object {
     char name[32];
-    img photo;           /* 3, linear in [0, 1] */
-    pst_capture capture; /* square, with normal_true */
+    img photo;              /* 3, linear in [0, 1] */
+    merlin_capture capture; /* square, with normal_true */
 } stereo_object;
 
 /* The objects of a folder, sorted: samples, objects' folders, or the folder itself if it is an object's. Free with
@@ -34,8 +34,8 @@ status stereo_object_read(const char *path, stereo_object *out);
 void stereo_object_free(stereo_object *o);
 
 /* Returns the picture whose light is nearest to a flash. */
-int stereo_object_frontal(const pst_capture *c);
+int stereo_object_frontal(const merlin_capture *c);
 /* Makes a photograph of a capture's picture, its light as if it were white: 3 channels, linear in [0, 1]. */
-status stereo_object_photo(const pst_capture *c, int picture, img *photo);
+status stereo_object_photo(const merlin_capture *c, int picture, img *photo);
 
 #endif

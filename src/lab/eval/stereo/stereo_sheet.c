@@ -19,7 +19,7 @@ status stereo_sheet_new(size_t objects, sheet_rows **out)
 }
 
 /* The angle to the truth; WHITE degrees are white. */
-static status show_angle(const img *normal, const pst_capture *c, img *out)
+static status show_angle(const img *normal, const merlin_capture *c, img *out)
 {
     status s = img_new(out, c->width, c->height, 1);
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; s == OK && i < n; i++) {
@@ -34,7 +34,7 @@ static status show_angle(const img *normal, const pst_capture *c, img *out)
 status stereo_sheet_add(sheet_rows *sheet, const stereo_object *o, const img normal[STEREO_ROWS])
 {
     img *row = sheet_rows_begin(sheet);
-    const pst_capture *c = &o->capture;
+    const merlin_capture *c = &o->capture;
     if (!row) return OK;
     status s = img_copy(&row[0], &o->photo);
     if (s == OK) s = figure_normals(&c->normal_true, &c->mask, &row[1]);

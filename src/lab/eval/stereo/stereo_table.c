@@ -56,10 +56,10 @@ static status estimate(evaluation *e, subject *s)
     return OK;
 }
 
-static status solve_draw(subject *s, stereo_row row, const pst_capture *from, int draw, double *angle)
+static status solve_draw(subject *s, stereo_row row, const merlin_capture *from, int draw, double *angle)
 {
-    pst_method method = row >= STEREO_RELIT_UNCALIBRATED ? PST_UNCALIBRATED : PST_AUTO;
-    pst_surface found;
+    merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
+    merlin_surface found;
     status result = draw_solve(from, draw, method, &found);
     if (result != OK) return result;
     normal_frame_change(&found.normal, &from->camera, &s->object.capture.camera);
@@ -67,12 +67,12 @@ static status solve_draw(subject *s, stereo_row row, const pst_capture *from, in
     img_free(&s->shown[row]);
     s->shown[row] = found.normal;
     found.normal = (img){0};
-    pst_surface_free(&found);
+    merlin_surface_free(&found);
     return OK;
 }
 
 /* A draw that a solver can make nothing of is a result too. */
-static status solve_draws(evaluation *e, subject *s, stereo_row row, const pst_capture *from)
+static status solve_draws(evaluation *e, subject *s, stereo_row row, const merlin_capture *from)
 {
     stereo_score *score = &s->column->row[row];
     double sum = 0, squares = 0, angle = 0, count = 0;
@@ -100,7 +100,7 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     snprintf(s->column->name, sizeof s->column->name, "%s", s->object.name);
     s->column->pictures = s->object.capture.count;
     result = estimate(e, s);
-    const pst_capture *made = &s->relit.capture, *taken = &s->object.capture;
+    const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
     if (result == OK) result = solve_draws(e, s, STEREO_RELIT, made);
     if (result == OK) result = solve_draws(e, s, STEREO_REAL, taken);
     if (result == OK) result = solve_draws(e, s, STEREO_RELIT_UNCALIBRATED, made);
