@@ -6,15 +6,15 @@
 #include "base/parallel.h"
 #include "image/resize.h"
 
-/* Lines of `values` neighbouring values, `step` apart, to be summed over the lines around each. */
+/* Lines of `values` consecutive values, `step` apart, each to be replaced by the sum over its neighbours. */
 typedef struct strip {
     float *first;
     size_t step, values;
     int count, radius;
 } strip;
 
-/* Running sums, in double so that adding and taking away leaves no trace; and the lines that their sums have replaced
- * already and that are still to be taken away. */
+/* Running sums, in double so that adding and subtracting a line cancels exactly, and the original lines that were
+ * overwritten by sums but are still to be subtracted. */
 typedef struct running {
     double *sums;
     float *replaced; /* radius + 1 lines */
@@ -76,7 +76,7 @@ static void sum_along_rows(void *context, size_t begin, size_t end)
     running_free(&r);
 }
 
-/* Of the values begin .. end of a row and of those below them. */
+/* Sums columns begin .. end of values over the rows. */
 static void sum_down(void *context, size_t begin, size_t end)
 {
     box_job *job = context;

@@ -8,10 +8,10 @@ enum { GUESSES = 4096 };
 
 static pthread_once_t once8 = PTHREAD_ONCE_INIT, once16 = PTHREAD_ONCE_INIT;
 static float decode8[256], decode16[65536];
-static float threshold[257];             /* the smallest linear value of each code, and none for a 256th */
-static uint8_t first_guess[GUESSES + 1]; /* the code at i / GUESSES, from below */
+static float threshold[257];             /* threshold: smallest linear value of each code, and infinity for a 256th */
+static uint8_t first_guess[GUESSES + 1]; /* first_guess: code at i / GUESSES, rounded down */
 
-/* IEC 61966-2-1. */
+/* Encodes by IEC 61966-2-1. */
 float srgb_encode(float linear)
 {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
@@ -66,7 +66,7 @@ void srgb_codes8(const float *linear, size_t count, uint8_t *codes)
     for (size_t i = 0; i < count; i++) {
         float x = linear[i] > 0 ? linear[i] : 0;
         x = x < 1 ? x : 1;
-        /* two codes begin at least 1/3295 apart, so that no more than one does behind a guess */
+        /* codes are at least 1/3295 apart, so that at most one begins between the guess and x */
         int code = first_guess[(int)(x * GUESSES)];
         codes[i] = (uint8_t)(code + (x >= threshold[code + 1]));
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Guided filter (He, Sun & Tang 2013): in every window the map is a linear function of the guide, q = a·I + b. Fast
- * form (He & Sun 2015): a and b are found at the map's size and enlarged. All means are weighted by the mask, so that a
- * window over the border sees only what is inside. */
+ * form (He & Sun 2015): a and b are computed at the map's size and enlarged. All means are weighted by the mask, so
+ * that a window across the border sees only what is inside. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +10,10 @@
 
 enum { GUIDE = 3, PAIRS = 6 };
 
-/* The order of planes in the statistics image: weight, guide, guide × guide (upper triangle), then map, guide × map. */
+/* Planes of the statistics image: weight, guide, guide × guide (upper triangle), then map, guide × map. */
 enum { AT_WEIGHT = 0, AT_GUIDE = 1, AT_PAIRS = AT_GUIDE + GUIDE, AT_MAP = AT_PAIRS + PAIRS };
 
-/* Coefficients of one map channel, behind one plane of weight: a (3 values) and b. */
+/* Coefficients of one map channel: a (3 values) and b; they follow one plane of weight. */
 enum { PER_CHANNEL = GUIDE + 1 };
 
 static float guide_value(const img *guide, size_t pixel, int c)
@@ -21,7 +21,7 @@ static float guide_value(const img *guide, size_t pixel, int c)
     return guide->data[pixel * (size_t)guide->channels + (size_t)(guide->channels == GUIDE ? c : 0)];
 }
 
-/* The guide at the map's size, each pixel the mean of what the mask lets in. */
+/* Shrinks the guide to the map's size, each pixel the mean of what lies inside the mask. */
 static status shrink_guide(const img *guide, const img *mask, int width, int height, img *out)
 {
     img cover = {0};
@@ -61,7 +61,7 @@ static void fill_statistics(const img *low, const img *low_mask, const img *guid
     }
 }
 
-/* Inverse of the symmetric matrix m (upper triangle: xx xy xz yy yz zz), in the same order. */
+/* Inverts the symmetric matrix m (upper triangle: xx xy xz yy yz zz), in the same order. */
 static void invert(const double m[PAIRS], double out[PAIRS])
 {
     double xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];
@@ -74,7 +74,8 @@ static void invert(const double m[PAIRS], double out[PAIRS])
     out[5] = (m[0] * m[3] - m[1] * m[1]) / determinant;
 }
 
-/* a and b of one window from its sums (He et al. 2013, eq. 14 and 15), into out's PER_CHANNEL values a channel. */
+/* Computes a and b of one window from its sums (He et al. 2013, eq. 14 and 15), into out's PER_CHANNEL values a
+ * channel. */
 static void solve_window(const float *sums, int channels, double epsilon, float *out)
 {
     double w = sums[AT_WEIGHT], mean[GUIDE], covariance[PAIRS] = {0}, inverse[PAIRS];
@@ -98,7 +99,8 @@ static void solve_window(const float *sums, int channels, double epsilon, float 
     }
 }
 
-/* Every window's coefficients, premultiplied by their weight (1 where the window saw anything of the mask). */
+/* Computes every window's coefficients, premultiplied by their weight (1 where the window saw anything inside the
+ * mask). */
 static void solve_windows(const img *sums, int channels, double epsilon, img *coefficients)
 {
     size_t pixels = (size_t)sums->width * (size_t)sums->height;
@@ -112,7 +114,7 @@ static void solve_windows(const img *sums, int channels, double epsilon, img *co
     }
 }
 
-/* The four nearest windows' coefficients, weighted bilinearly, into out (weight first). */
+/* Interpolates the four nearest windows' coefficients bilinearly into out (weight first). */
 static void sample(const img *coefficients, double x, double y, float *out)
 {
     int x0 = (int)floor(x), y0 = (int)floor(y), planes = coefficients->channels;
@@ -128,7 +130,7 @@ static void sample(const img *coefficients, double x, double y, float *out)
     }
 }
 
-/* The map's mean over its mask: the answer where no window is near. */
+/* Computes the map's mean over its mask, the result where no window is near. */
 static void find_mean(const img *low, const img *low_mask, float *mean)
 {
     size_t pixels = (size_t)low->width * (size_t)low->height, n = (size_t)low->channels;
@@ -193,7 +195,7 @@ static status check_sizes(const img *low, const img *low_mask, const img *guide,
     return OK;
 }
 
-/* All windows' mean coefficients at the map's size. */
+/* Computes the mean coefficients of all windows at the map's size. */
 static status find_coefficients(const img *low, const img *low_mask, const img *guide, int radius, float epsilon,
                                 img *coefficients)
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* With the pixels that allocate gives for so many bytes. */
+/* Makes an image with the pixels that `allocate` returns. */
 static status make(img *out, int width, int height, int channels, void *(*allocate)(size_t bytes))
 {
     *out = (img){0};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Float images, interleaved, rows from the top, linear sRGB primaries unless a name says otherwise.
  *
- * A large new image takes memory only where something was written: what is done to the pictures of an object leaves the
- * zeros beside it alone. */
+ * A large new image takes memory only where something was written, so that functions leave the zeros around an object
+ * untouched. */
 #ifndef MERLIN_IMAGE_IMAGE_H
 #define MERLIN_IMAGE_IMAGE_H
 
@@ -11,22 +11,23 @@
 #include "base/status.h"
 #include "merlin/image.h"
 
-/* The library's own image, by a short name for the inside. */
+/* The library's public image type under a short name for internal use. */
 typedef merlin_image img;
 
-/* Zero-filled. Refuses sizes below 1 or beyond memory. img_free leaves an empty image; freeing one is fine. */
+/* Allocates an image of zeros. Refuses sizes below 1 or beyond memory. img_free leaves an empty image, which may be
+ * freed again. */
 status img_new(img *out, int width, int height, int channels);
 void img_free(img *image);
 status img_copy(img *out, const img *from);
 
-/* Where a row of a mask (1 channel) is not zero: from its first such pixel to before `end`; 0 to 0 if nowhere. */
+/* The part of a mask's row (1 channel) that is not zero: from the first such pixel to before `end`; 0 to 0 if there is
+ * none. */
 typedef struct img_span {
     int first, end;
 } img_span;
 img_span img_row_span(const img *mask, int y);
 
-/* The pixels that share a side with one: left, right, above, below, but for what is beside the picture. Returns how
- * many. */
+/* Lists the neighbours of a pixel inside the picture: left, right, above, below. Returns how many there are. */
 static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
 {
     const size_t w = (size_t)width, x = pixel % w, y = pixel / w;
@@ -38,13 +39,13 @@ static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
     return count;
 }
 
-/* What no light has, values that are not finite or negative, becomes 0. */
+/* Sets values that are not finite or negative, which no radiance is, to 0. */
 void img_zero_invalid(img *image);
 
-/* Mean of 1 channel over the pixels where the mask, of the same size, is above a half; 0 if there are none. */
+/* Returns the mean of a 1-channel image where the mask, of the same size, is above one half; 0 if it is nowhere. */
 double img_mean_within(const img *a, const img *mask);
 
-/* sum += part, of the same size; its zeros leave the sum alone. */
+/* Adds part to sum, of the same size; where part is zero the sum is not touched. */
 void img_add(const img *part, img *sum);
 
 static inline size_t img_value_count(const img *image)

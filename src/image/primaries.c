@@ -5,7 +5,7 @@
 
 static const float srgb[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
 
-/* XYZ to the responses of the eye's cones (Lam 1985). */
+/* Matrix from XYZ to the cone responses of the eye (Lam 1985). */
 static const double bradford[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
 
 static void apply(const double m[9], const double v[3], double out[3])
@@ -35,7 +35,7 @@ bool primaries_invert(const double m[9], double out[9])
     return true;
 }
 
-/* Of luminance 1. */
+/* Returns the white point at luminance 1. */
 static void white_of(const float xy[8], double white[3])
 {
     double x = xy[6], y = xy[7];
@@ -44,7 +44,7 @@ static void white_of(const float xy[8], double white[3])
     white[2] = (1 - x - y) / y;
 }
 
-/* Primaries as strong as makes their sum the white. */
+/* Computes the matrix from the primaries to XYZ, scaled so that their sum is white. */
 static bool to_xyz(const float xy[8], double m[9])
 {
     double inverse[9], white[3], strength[3];

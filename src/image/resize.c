@@ -21,7 +21,7 @@ static double lanczos3(double x)
     return 3 * sin(pi * x) * sin(pi * x / 3) / (pi * pi * x * x);
 }
 
-/* The share of input pixel k that lies in [low, high]. */
+/* Returns the share of input pixel k that lies in [low, high]. */
 static double overlap(int k, double low, double high)
 {
     double share = fmin(k + 1, high) - fmax(k, low);
@@ -67,7 +67,7 @@ static void kernel_free(kernel *k)
     free(k->weights);
 }
 
-/* With a number of channels that the compiler knows, the sums stay in registers. */
+/* Weights pixels. With a constant number of channels the sums stay in registers. */
 static inline void weigh_pixels(const float *row, const int channels, const kernel *k, float *out)
 {
     for (int x = 0; x < k->count; x++, out += channels) {
@@ -101,7 +101,7 @@ static const float *multiply_row(const img *from, const img *mask, int y, float 
     return product;
 }
 
-/* mask may be NULL. */
+/* Resamples rows; mask may be NULL. */
 static status resize_rows(const img *from, const img *mask, const kernel *k, img *to)
 {
     int failed = 0;
@@ -124,7 +124,7 @@ static status resize_rows(const img *from, const img *mask, const kernel *k, img
     return failed ? fail(MERLIN_NO_MEMORY, "no memory to resize an image") : OK;
 }
 
-/* cover may be NULL. */
+/* Resamples columns; cover may be NULL. */
 static void resize_columns(const img *from, const img *cover, const kernel *k, img *to)
 {
 #pragma omp parallel for schedule(static)
@@ -141,7 +141,7 @@ static void resize_columns(const img *from, const img *cover, const kernel *k, i
     }
 }
 
-/* mask weighs what goes in, cover is where anything comes out; either may be NULL. */
+/* Resamples an image. mask weights the input, cover restricts the output; either may be NULL. */
 static status resize(const img *from, const img *mask, const img *cover, int width, int height, img *out)
 {
     *out = (img){0};

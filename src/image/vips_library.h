@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The functions of libvips, which is loaded by vips_begin (image/vips_start.h) and not when the program starts.
+/* The functions of libvips, which vips_begin (image/vips_start.h) loads when they are first needed.
  *
  *     status s = vips_begin();
  *     if (s == OK) failed = vips()->autorot(image, &made, NULL);
@@ -11,7 +11,7 @@
 
 #include "base/status.h"
 
-/* What is used of it: vips_NAME for every NAME. */
+/* Functions of libvips that are used: vips_NAME for every NAME. */
 #define VIPS_FUNCTIONS(USE)                                                                                            \
     USE(autorot)                                                                                                       \
     USE(band_format_get_type)                                                                                          \
@@ -63,7 +63,7 @@
     USE(webpload)                                                                                                      \
     USE(webpsave_buffer)
 
-/* And of GLib below it: g_NAME. */
+/* Functions of GLib, on which libvips is built: g_NAME. */
 #define GLIB_FUNCTIONS(USE)                                                                                            \
     USE(free)                                                                                                          \
     USE(log_set_handler)                                                                                               \
@@ -82,7 +82,7 @@ typedef struct vips_functions {
 #undef VIPS_MEMBER
 #undef GLIB_MEMBER
 
-/* Brings the functions, but starts nothing: for vips_begin (image/vips_start.h) alone. */
+/* Loads the functions without starting libvips: only for vips_begin (image/vips_start.h). */
 status vips_load(void);
 /* Returns the functions; to be called after vips_begin. */
 const vips_functions *vips(void);

@@ -32,7 +32,7 @@ static void start(void)
     vips()->cache_set_max(0);
 }
 
-/* GLib ends the program where it gets no memory or no thread. */
+/* Checks that there is memory and a thread to be had: GLib ends the program if it is refused either. */
 static status check_room(void)
 {
     static const size_t some = (size_t)64 << 20;
@@ -53,19 +53,19 @@ status vips_begin(void)
 
 void vips_without_modules(void)
 {
-    (void)setenv("VIPSHOME", "/nonexistent", 0); /* where it looks for them; whoever set it wants others */
+    (void)setenv("VIPSHOME", "/nonexistent", 0); /* where it looks for modules; a value set by the user is kept */
 }
 
 bool vips_load_heif(void)
 {
-    typedef const gchar *registration(void *module); /* what GModule, which libvips would load it by, calls */
+    typedef const gchar *registration(void *module); /* what GModule, libvips' loader of modules, calls */
     char path[1024];
     snprintf(path, sizeof path, MERLIN_VIPS_LIBDIR "/vips-modules-%d.%d/vips-heif.so", vips()->version(0),
              vips()->version(1));
-    void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL); /* for good: its types stay registered */
+    void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL); /* never closed: its types stay registered */
     registration *begin = NULL;
     void *found = module ? dlsym(module, "g_module_check_init") : NULL;
-    memcpy(&begin, &found, sizeof begin); /* ISO C converts no data pointer to a function */
+    memcpy(&begin, &found, sizeof begin); /* ISO C has no conversion from data to function pointers */
     return begin && !begin(NULL);
 }
 

@@ -26,13 +26,13 @@ static inline vec3 mat3_apply(const mat3 *m, vec3 v)
     return vec3_make(vec3_dot(m->row[0], v), vec3_dot(m->row[1], v), vec3_dot(m->row[2], v));
 }
 
-/* The transpose applied, the inverse of a rotation. */
+/* Applies the transpose, which is the inverse of a rotation. */
 static inline vec3 mat3_apply_transposed(const mat3 *m, vec3 v)
 {
     return vec3_fma(vec3_fma(vec3_scale(m->row[0], v.x), v.y, m->row[1]), v.z, m->row[2]);
 }
 
-enum { MESH_PARTS = 32 }; /* parts of a mesh are below it */
+enum { MESH_PARTS = 32 }; /* part numbers are below it */
 
 typedef struct triangle_mesh {
     uint32_t vertex_count, vertex_capacity, triangle_count, triangle_capacity;
@@ -48,30 +48,30 @@ void mesh_copy(const triangle_mesh *mesh, triangle_mesh *out);
 uint32_t mesh_add_vertex(triangle_mesh *mesh, vec3 position); /* its reference is its position */
 void mesh_add_triangle(triangle_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint8_t part);
 void mesh_add_quad(triangle_mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint8_t part);
-/* Any polygon, concave ones too. corner is used up. */
+/* Adds any polygon, concave ones too. corner is overwritten. */
 void mesh_add_polygon(triangle_mesh *mesh, uint32_t *corner, int count, uint8_t part);
 
-/* Applies p = linear p + offset to positions (and references too if asked) from vertex `first` on. */
+/* Applies p = linear p + offset to positions (and to references if asked) from vertex `first` on. */
 void mesh_transform(triangle_mesh *mesh, uint32_t first, const mat3 *linear, vec3 offset, bool references);
 
-/* Centres positions and scales them to a largest distance of 1; references alike when they follow. */
+/* Centres positions and scales them to a largest distance of 1, and references with them if they are equal. */
 void mesh_normalize(triangle_mesh *mesh);
 
-/* Area-weighted smooth normals of all vertices into normal[vertex_count]. */
+/* Computes area-weighted smooth normals of all vertices into normal[vertex_count]. */
 void mesh_smooth_normals(const triangle_mesh *mesh, vec3 *normal);
 
-/* Six times the enclosed volume, positive when triangles wind counter-clockwise from outside. */
+/* Returns six times the enclosed volume, positive if triangles wind counter-clockwise seen from outside. */
 double mesh_signed_volume(const triangle_mesh *mesh);
 
-/* For meshes from files: drops vertices that no triangle uses and, where normals are not known, makes those of exactly
- * one place one, whatever else (texture coordinates, materials) told them apart in the file. */
+/* Merges the vertices of a mesh from a file: drops those that no triangle uses and, if normals are not known, merges
+ * those at exactly one position, whatever else (texture coordinates, materials) separated them in the file. */
 void mesh_weld(triangle_mesh *mesh);
-/* Drops triangles that lie exactly where one before does and face its way, if half of all do or more: each ray there
- * asks all of them. A few do no harm, and modellers leave some. */
+/* Drops triangles that coincide with an earlier one of the same orientation, if they are half of all or more: every ray
+ * there would test all of them. A few are harmless, and modelling programs leave some. */
 void mesh_drop_repeated(triangle_mesh *mesh);
 
-/* Drops triangles without area and unused vertices; gives vertices normals (unless they have them), splitting those at
- * edges where faces meet at more than the angle whose cosine is given. MERLIN_NO_MEMORY; MERLIN_BAD_INPUT when no
+/* Drops triangles without area and unused vertices; computes the normals of vertices without them, splitting vertices
+ * at edges where faces meet at more than the angle whose cosine is given. MERLIN_NO_MEMORY; MERLIN_BAD_INPUT if no
  * triangle is left. */
 status mesh_finish(triangle_mesh *mesh, float crease_cosine);
 

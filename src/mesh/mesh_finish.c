@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The last step of a mesh: no triangle without area, no vertex without use, normals with creases. */
+/* Finishes a mesh: removes triangles without area and unused vertices, computes normals with creases. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/number.h"
 #include "mesh/mesh.h"
 
-/* Everything one pass over the vertices needs; faces around vertex v are face[start[v]] .. face[start[v + 1] - 1]. */
+/* State of a pass over the vertices; faces around vertex v are face[start[v]] .. face[start[v + 1] - 1]. */
 typedef struct finisher {
     triangle_mesh *mesh;
     uint32_t *start, *face;
@@ -50,8 +50,8 @@ static void collect_faces(finisher *f)
             f->face[f->start[m->triangle[i][k] + 1]++] = 3 * i + (uint32_t)k;
 }
 
-/* Writes one new vertex for the faces of v in group g and sends their corners to it (the corner is kept as ~index until
- * the end, so that old and new indices never mix). */
+/* Writes one new vertex for the faces of v in group g and points their corners to it (kept as ~index until the end, so
+ * that old and new indices never mix). */
 static void emit(finisher *f, uint32_t v, const uint8_t *group, uint8_t g)
 {
     triangle_mesh *m = f->mesh;
@@ -70,7 +70,7 @@ static void emit(finisher *f, uint32_t v, const uint8_t *group, uint8_t g)
     f->normal[f->count++] = normal;
 }
 
-/* Faces around a vertex fall into groups that are smooth among themselves. */
+/* Most faces around a vertex, which are divided into groups that are smooth among themselves. */
 enum { FACES = 48 };
 
 static int group_faces(const finisher *f, uint32_t v, float crease_cosine, uint8_t *group)
@@ -130,7 +130,7 @@ static void take_over(finisher *f)
 status mesh_finish(triangle_mesh *mesh, float crease_cosine)
 {
     if (mesh->failed) return fail(MERLIN_NO_MEMORY, "no memory for a shape");
-    /* a corner makes at most one vertex */
+    /* at most one vertex a corner */
     uint32_t corners = 3 * mesh->triangle_count + 1;
     finisher f = {.mesh = mesh, .capacity = corners};
     f.start = malloc((mesh->vertex_count + 2) * sizeof *f.start);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Polygons of more than three corners, cut into triangles ear by ear (Meisters 1975). */
+/* Polygons of more than three corners, cut into triangles by ear clipping (Meisters 1975). */
 #include <string.h>
 
 #include "mesh/mesh.h"
 
-/* Above 0 where a -> b -> c turns counter-clockwise, seen against the polygon's normal n. */
+/* Returns a value above 0 if a -> b -> c turns counter-clockwise, seen against the polygon's normal n. */
 static float turn(vec3 a, vec3 b, vec3 c, vec3 n)
 {
     return vec3_dot(vec3_cross(vec3_sub(b, a), vec3_sub(c, b)), n);
 }
 
-/* Twice the area, along the normal; corners need not lie in a plane. */
+/* Returns twice the area, along the normal; corners need not lie in a plane. */
 static vec3 area_of(const triangle_mesh *mesh, const uint32_t *corner, int count)
 {
     vec3 sum = {0, 0, 0}, first = mesh->position[corner[0]];
@@ -21,8 +21,8 @@ static vec3 area_of(const triangle_mesh *mesh, const uint32_t *corner, int count
     return sum;
 }
 
-/* Tells whether corner i may be cut off: the polygon bulges there, and no other corner lies in the way. Takes the
- * corners it looked at from *work. */
+/* Tells whether corner i may be cut off: the polygon is convex there, and no other corner lies inside. Subtracts the
+ * number of corners tested from *work. */
 static bool is_ear(const triangle_mesh *mesh, const uint32_t *corner, int count, int i, vec3 n, long *work)
 {
     vec3 a = mesh->position[corner[(i + count - 1) % count]], b = mesh->position[corner[i]];
@@ -41,10 +41,10 @@ void mesh_add_polygon(triangle_mesh *mesh, uint32_t *corner, int count, uint8_t 
 {
     if (mesh->failed || count < 3) return;
     vec3 n = vec3_normalize(area_of(mesh, corner, count));
-    int i = 1, passed = 0;          /* from the second on, a convex polygon becomes a fan about the first */
-    long work = 2L * count * count; /* twice what a simple polygon takes; one made to take longer is cut anyhow */
+    int i = 1, passed = 0;          /* beginning at the second corner, a convex polygon becomes a fan about the first */
+    long work = 2L * count * count; /* twice what a simple polygon needs; beyond it, cut without tests */
     while (count > 3) {
-        /* one that crosses itself may have no ear: it is cut somewhere all the same */
+        /* a self-intersecting polygon may have no ear, and is then cut anywhere */
         if (passed < count && work > 0 && !is_ear(mesh, corner, count, i, n, &work)) {
             i = (i + 1) % count;
             passed++;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Vertices and triangles as a surface needs them rather than as a file lists them. */
+/* Merges vertices and drops triangles that a file lists repeatedly. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/mesh.h"
 
-enum { UNUSED = 0, USED = 1 }; /* what becomes of a vertex, before its new index is known */
+enum { UNUSED = 0, USED = 1 }; /* state of a vertex before its new index is known */
 
-/* Places that were met, by hash with open addressing; a slot holds a vertex's new index + 1, 0 is free. */
+/* Positions seen so far, in a hash table with open addressing; a slot holds a vertex's new index + 1, 0 is free. */
 typedef struct places {
     uint32_t *slot;
     size_t mask;
@@ -25,7 +25,7 @@ static uint64_t hash_of(vec3 p)
     return h;
 }
 
-/* Slots for `count` things, at most half of them in use. */
+/* Allocates slots for `count` entries, at most half of them in use. */
 static bool places_make(places *known, size_t count)
 {
     known->mask = 1;
@@ -35,10 +35,10 @@ static bool places_make(places *known, size_t count)
     return known->slot != NULL;
 }
 
-/* The new index of the vertex at p: that of an earlier one there, else `next`. */
+/* Returns the new index of the vertex at p: that of an earlier one there, else `next`. */
 static uint32_t index_at(places *known, const triangle_mesh *mesh, vec3 p, uint32_t next)
 {
-    p = vec3_add(p, (vec3){0, 0, 0}); /* -0 is 0 */
+    p = vec3_add(p, (vec3){0, 0, 0}); /* turns -0 into 0 */
     for (size_t i = hash_of(p) & known->mask;; i = (i + 1) & known->mask) {
         if (known->slot[i] == 0) {
             known->slot[i] = next + 1;
@@ -49,7 +49,7 @@ static uint32_t index_at(places *known, const triangle_mesh *mesh, vec3 p, uint3
     }
 }
 
-/* Moves what is kept to the front; to[v] becomes the new index of vertex v, where it is used. */
+/* Moves the vertices that are kept to the front; to[v] becomes the new index of a used vertex v. */
 static void renumber(triangle_mesh *mesh, places *known, uint32_t *to)
 {
     uint32_t kept = 0;
@@ -85,13 +85,13 @@ void mesh_weld(triangle_mesh *mesh)
     free(to);
 }
 
-/* A triangle's corners, from the one on that comes first by its numbers. */
+/* Returns a triangle's corner positions, rotated to begin with the smallest. */
 static void places_of(const triangle_mesh *mesh, const uint32_t t[3], vec3 out[3])
 {
     int first = 0;
     vec3 p[3];
     for (int k = 0; k < 3; k++) {
-        p[k] = vec3_add(mesh->position[t[k]], (vec3){0, 0, 0}); /* -0 is 0 */
+        p[k] = vec3_add(mesh->position[t[k]], (vec3){0, 0, 0}); /* turns -0 into 0 */
         const vec3 a = p[k], b = p[first];
         if (a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)))) first = k;
     }
@@ -106,7 +106,7 @@ static bool is_same(const vec3 a[3], const vec3 b[3])
     return true;
 }
 
-/* Tells whether no triangle before lies there, which from now on one does. */
+/* Tells whether no earlier triangle has these corners, and records this one. */
 static bool is_new(places *known, const triangle_mesh *mesh, const uint32_t t[3], uint32_t index)
 {
     vec3 here[3], there[3];
@@ -122,7 +122,7 @@ static bool is_new(places *known, const triangle_mesh *mesh, const uint32_t t[3]
     }
 }
 
-/* The number of triangles that are left when those that repeat one are dropped; it is done where `drop`. */
+/* Returns the number of triangles without those that repeat an earlier one; removes them if `drop`. */
 static uint32_t without_repeated(triangle_mesh *mesh, places *known, bool drop)
 {
     uint32_t kept = 0;

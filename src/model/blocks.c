@@ -5,7 +5,7 @@
 
 enum { NAME = 96 };
 
-/* "a.b" in the caller's buffer: the graph copies names. */
+/* Writes "a.b" to the caller's buffer; the graph copies names. */
 static const char *join(char *buffer, const char *a, const char *b)
 {
     snprintf(buffer, NAME, "%.63s.%.31s", a, b);
@@ -27,7 +27,7 @@ nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width)
     return nn_add(g, x, nn_batch_norm_zero(g, y, join(buffer, name, "b.norm")));
 }
 
-/* `name.block0`, `name.block1`, ...: *blocks of them; blocks NULL: none. */
+/* Adds residual blocks `name.block0`, `name.block1`, ...: *blocks of them; blocks NULL: none. */
 static nn_node *residual_blocks(nn_graph *g, nn_node *x, const char *name, const int *blocks, int width)
 {
     for (int i = 0; blocks && i < *blocks; i++) {
@@ -38,7 +38,7 @@ static nn_node *residual_blocks(nn_graph *g, nn_node *x, const char *name, const
     return x;
 }
 
-/* block_conv of the packed picture, with what is told beside it: nothing until that is trained. */
+/* Adds block_conv of the packed picture; a side input joins through a convolution that is zero until it is trained. */
 static nn_node *first_layer(nn_graph *g, nn_node *x, const char *level, const char *name,
                             const block_encoder_shape *shape)
 {
@@ -54,7 +54,7 @@ static nn_node *first_layer(nn_graph *g, nn_node *x, const char *level, const ch
 void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
                    nn_node *features[MODEL_LEVELS])
 {
-    /* packing 2×2 pixels into channels gives the first layer the channels that vector units want */
+    /* packing 2×2 pixels into channels gives the first layer enough channels for the vector units */
     nn_node *y = nn_space_to_depth(g, nn_compute(g, x), 2);
     for (int i = 0; i < MODEL_LEVELS; i++) {
         char level[NAME], buffer[NAME];
@@ -66,8 +66,8 @@ void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encode
     }
 }
 
-/* Oktay et al. 2018: sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the coarse signal's resolution,
- * brought to the skip's, times the skip. */
+/* Adds an attention gate (Oktay et al. 2018): sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the
+ * coarse signal's resolution, enlarged to the skip's, times the skip. */
 static nn_node *attention_gate(nn_graph *g, nn_node *skip, nn_node *signal, const char *name, int inner)
 {
     char buffer[NAME];
@@ -93,7 +93,7 @@ void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *feature
         int width = in->widths[i];
         nn_node *parts[3];
         int count = 0;
-        /* reducing before upsampling costs a quarter of doing it behind */
+        /* reducing channels before upsampling costs a quarter of doing it after */
         parts[count++] = nn_upsample_bilinear(g, nn_conv2d(g, d, join(buffer, stage, "up"), width, 1, 1, NN_BIAS));
         parts[count++] = skip_through(g, in, in->skips[i], d, join(buffer, stage, "gate"), width / 2);
         if (in->shared)

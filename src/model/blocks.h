@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The pieces MERLiN's encoders and decoders are made of. Channels last; level 0 is half the image's size, each further
+/* Building blocks of MERLiN's encoders and decoders. Channels last; level 0 is half the image's size, each further
  * level half of the one before. */
 #ifndef MERLIN_MODEL_BLOCKS_H
 #define MERLIN_MODEL_BLOCKS_H
@@ -7,36 +7,37 @@
 #include "model/model_config.h"
 #include "nn/nn.h"
 
-/* 3×3 convolution, batch norm, ReLU: parameters `name.conv.*` and `name.norm.*`. */
+/* Adds a 3×3 convolution, batch norm and ReLU: parameters `name.conv.*` and `name.norm.*`. */
 nn_node *block_conv(nn_graph *g, nn_node *x, const char *name, int out, int stride);
 
-/* A residual block: two 3×3 convolutions beside x, whose width is `width`, parameters `name.a.*` and `name.b.*`; x
- * itself until it is trained (nn_batch_norm_zero). He et al. 2016, without the last ReLU. */
+/* Adds a residual block: two 3×3 convolutions in parallel to x, whose width is `width`, parameters `name.a.*` and
+ * `name.b.*`; it is the identity until it is trained (nn_batch_norm_zero). He et al. 2016, without the last ReLU. */
 nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width);
 
 typedef struct block_encoder_shape {
     const int *widths, *blocks; /* MODEL_LEVELS of each; blocks NULL: none */
-    nn_node *beside;            /* full-size, told the first layer beside its input (`name.beside.*`); NULL: nothing */
+    nn_node *beside;            /* full-size side input of the first layer (`name.beside.*`); NULL: none */
 } block_encoder_shape;
 
-/* The packed full-size input (float, any channels) to features at every level. */
+/* Adds an encoder from the packed full-size input (float, any channels) to features at every level. */
 void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
                    nn_node *features[MODEL_LEVELS]);
 
 typedef struct block_decoder_inputs {
     const char *name;
     const int *widths;
-    const int *blocks; /* residual blocks behind levels 0 to 3; NULL: none */
+    const int *blocks; /* residual blocks after levels 0 to 3; NULL: none */
     bool gated;
     nn_node *bottleneck;    /* at level 4 */
     nn_node *const *skips;  /* the encoder's features, levels 0 to 4 */
     nn_node *const *shared; /* another decoder's features, levels 0 to 3; NULL: none */
 } block_decoder_inputs;
 
-/* From the bottleneck up to level 0; features receives levels 0 to 3. */
+/* Adds a decoder from the bottleneck up to level 0; features receives levels 0 to 3. */
 void block_decoder(nn_graph *g, const block_decoder_inputs *in, nn_node *features[MODEL_LEVELS - 1]);
 
-/* From level 0 to full size: a 3×3 convolution whose outputs are the four pixels of each 2×2 block. Float. */
+/* Adds the step from level 0 to full size: a 3×3 convolution whose outputs are the four pixels of each 2×2 block.
+ * Float. */
 nn_node *block_head(nn_graph *g, nn_node *x, const char *name, int channels);
 
 #endif

@@ -42,17 +42,17 @@ typedef struct network {
     nn_graph *g;
     const model_config *config;
     nn_node *mask, *light_position;
-    nn_node *sight, *lens; /* NULL but under any light */
+    nn_node *sight, *lens; /* NULL unless "lighting" is "any" */
     nn_node *encoder[MODEL_LEVELS];
-    nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of the four decoders' */
+    nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of those of four decoders */
     maps maps;
     nn_node *light;                          /* the target's lighting code */
-    nn_node *environment_code, *environment; /* NULL but for both lights */
-    nn_node *lights, *visibility;            /* NULL but under any light */
+    nn_node *environment_code, *environment; /* NULL unless for both lights */
+    nn_node *lights, *visibility;            /* NULL unless "lighting" is "any" */
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
 
-/* fminf and fmaxf promise something about NaN, which costs calls. */
+/* fminf and fmaxf would be library calls, because of what they promise about NaN */
 void model_encode_image(const float *linear, float *encoded, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -84,8 +84,8 @@ void model_sight(const camera *lens, bool flash, int size, float *out)
         }
 }
 
-/* What becomes of radiance in band 0, 1 and 2 on its way to a diffuse white surface, over the root of the sphere's
- * area: the mean over all normals of a squared radiance is the sum of the squared code. */
+/* Factors from radiance in bands 0, 1 and 2 to the light of a diffuse white surface, divided by the root of the
+ * sphere's area: then the mean over all normals of the squared light is the sum of the squared code. */
 static const float sh_scale[3] = {0.28209479f, 0.18806319f, 0.07052370f};
 enum { SH_BANDS = 3 };
 static const int sh_first[SH_BANDS] = {0, 3, 12}, sh_count[SH_BANDS] = {3, 9, 15};
@@ -104,7 +104,7 @@ void model_decode_sh(const float code[MODEL_SH], float sh[9][3])
             sh[i / 3][i % 3] = code[i] / sh_scale[band];
 }
 
-/* model_decode_sh in the graph. */
+/* Adds model_decode_sh to the graph. */
 static nn_node *decode_sh(nn_graph *g, nn_node *code)
 {
     nn_node *parts[SH_BANDS];
@@ -113,8 +113,8 @@ static nn_node *decode_sh(nn_graph *g, nn_node *code)
     return nn_concat(g, parts, SH_BANDS);
 }
 
-/* 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. The range of a bare tanh would end at 0.95, behind
- * the front of an object that stands at 1. */
+/* Adds depth = 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. With a plain tanh the nearest depth
+ * would be 0.95, behind the front of an object at 1. */
 static nn_node *shape_depth(nn_graph *g, nn_node *x)
 {
     return nn_reciprocal(g, nn_tanh(g, x), 1.2f, 1.45f);
@@ -186,8 +186,8 @@ static void relight_by_network(network *n)
     n->relit_direct = nn_gate(g, y, n->mask);
 }
 
-/* A vector from the encoder's two deepest features, averaged over the image: what lit the photograph. Small from the
- * first step on, lest a dazzling light teach the maps to be black. */
+/* Adds a vector predicted from the encoder's two deepest features, averaged over the image: the photograph's light. It
+ * is scaled to be small at first, lest a bright prediction teach the maps to be black. */
 static nn_node *estimate_light(network *n, const char *first, const char *second, int values)
 {
     nn_graph *g = n->g;
@@ -198,19 +198,19 @@ static nn_node *estimate_light(network *n, const char *first, const char *second
     return nn_float(g, nn_scale_shift(g, nn_linear(g, y, second, values), 0.1f, 0.0f));
 }
 
-/* What the lamp of the rendering layer does not: direct is all of bounce 1, environment (or NULL) the part of it that
- * an environment sends. */
+/* Inputs of the global-illumination network that one point light does not give: direct is all of bounce 1, environment
+ * (or NULL) the part of it from an environment. */
 typedef struct first_bounce {
     nn_node *direct, *environment;
 } first_bounce;
 
-/* The residual light of bounces 2 and up (under an environment also its shadows), from what bounce 1 looks like and the
- * maps. */
+/* Adds the network that predicts the residual light of bounces 2 and up (under an environment also its shadows), from
+ * the image of bounce 1 and the maps. */
 static nn_node *global_illumination(nn_graph *g, const model_config *config, const first_bounce *light, const maps *m,
                                     nn_node *mask)
 {
     nn_node *parts[7] = {light->direct, m->albedo, m->normal, m->roughness, m->depth, mask, light->environment};
-    /* maps mean nothing outside the mask */
+    /* maps are undefined outside the mask */
     nn_node *x = nn_gate(g, nn_concat(g, parts, light->environment ? 7 : 6), mask);
     nn_node *encoder[MODEL_LEVELS], *features[MODEL_LEVELS - 1];
     block_encoder(g, x, "indirect.encoder", &(block_encoder_shape){.widths = config->gi_widths}, encoder);
@@ -291,7 +291,7 @@ static int feature_level(int feature)
     return feature % MODEL_LEVELS;
 }
 
-/* Where one of model_features is in the network. */
+/* Returns where one of model_features is stored in the network. */
 static nn_node **feature_node(network *n, int feature)
 {
     return feature < MODEL_LEVELS ? &n->encoder[feature] : &n->material[feature_level(feature)];
@@ -333,7 +333,7 @@ static void name_outputs(const network *n)
     if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
 }
 
-/* Relighting by the maps' BRDF is worth a loss of its own beside the network's. */
+/* Adds the losses of relighting: by the network, and by the maps' BRDF where that has a loss of its own. */
 static void add_relighting_losses(network *n, model_part part, nn_node *mask)
 {
     nn_graph *g = n->g;
@@ -346,7 +346,8 @@ static void add_relighting_losses(network *n, model_part part, nn_node *mask)
     if (both) nn_masked_dssim(g, n->relit_brdf, relit_true, mask, "relight_brdf_ssim", 1.0f);
 }
 
-/* Of what lit a photograph, and what of it the object itself kept away. A vector's loss by how much there is to say. */
+/* Adds the losses of the predicted light and of the visibility of the strongest lamp. A vector's weight depends on how
+ * much there is to predict. */
 static void add_light_losses(network *n)
 {
     nn_graph *g = n->g;
@@ -370,7 +371,7 @@ static void add_light_losses(network *n)
                  "visibility", 1.0f);
 }
 
-/* The paper's losses, weight 2 for normals and 1 for the rest, and what is beside them. */
+/* Adds the paper's losses, weight 2 for normals and 1 for the rest, and the additional ones. */
 static void add_losses(network *n, model_part part)
 {
     nn_graph *g = n->g;

@@ -2,32 +2,38 @@
 /* MERLiN and its ablations as graphs.
  *
  * A model is its configuration (JSON: configs/models/NAME.json, and inside every weights file) plus parameters. The
- * graph's inputs and outputs have fixed names, so that training, evaluation and inference speak to every variant alike:
+ * graph's inputs and outputs have fixed names, so that training, evaluation and inference treat every variant alike:
  *
- *   inputs   "image"  3, model_encode_image of the linear image, multiplied by the mask      "mask"   1
- *            "light"  vector 3 or 30: the target's lighting code: a place, and with "lighting": "both" an environment's
- *                     model_encode_sh               "light_position" vector 3: the target light's place
- *   outputs  "albedo" 3 in [-1, 1]   "normal" 3 unit   "roughness" 1 in [-1, 1]   "depth" 1, scene units
- *            "direct" 3: rendering layer under the flash    "indirect" 3: global-illumination residual for "direct"
- *            "relit_direct" 3: by the relighting decoder    "relit_brdf" 3: by the rendering layer
- *            Maps mean nothing outside the mask; images are zero there. A variant without global illumination has no
- *            "indirect", one that relights by BRDF no "light" and no "relit_direct" (nn_output_data: NULL). "indirect"
- * may dip below zero. With "lighting": "both" the photograph shows the object under its flash and an environment at
- * once: "environment_code" vector 27 is what the network takes that for, "environment" 3 what the rendering layer makes
- * of it, "direct" includes it, and both relit images are under point light and environment. training adds inputs
- * "loss_mask" 1, "albedo_true" 3 and "roughness_true" 1 in [-1, 1], "normal_true" 3, "depth_true" 1, "direct_true" 3,
- * "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and the losses "albedo", "normal", "depth",
- * "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"; for both lights also vector 27
- * "environment_true" and the loss "environment".
+ *  inputs   "image"  3, model_encode_image of the linear image, multiplied by the mask
+ *           "mask"   1
+ *           "light"  vector 3 or 30: the target's lighting code: a position, and with "lighting": "both" an
+ *                    environment's model_encode_sh
+ *           "light_position" vector 3: the target light's position
+ *  outputs  "albedo" 3 in [-1, 1]   "normal" 3 unit   "roughness" 1 in [-1, 1]   "depth" 1, scene units
+ *           "direct" 3: rendering layer under the flash    "indirect" 3: global-illumination residual for "direct"
+ *           "relit_direct" 3: by the relighting decoder    "relit_brdf" 3: by the rendering layer
  *
- * With "lighting": "any" the photograph shows the object under any light through any lens. Inputs beside: "sight" 4,
- * what is known of the lens (model_sight), and "lens" vector 3 (nn_render_inputs), the lens that the maps are rendered
- * through. "depth" is relief in widths of the frame then, as of nn_render; "direct", "indirect" and "relit_brdf" are
- * what a flash or the target light would show, whatever lit the photograph. What did: "lights" vector MODEL_LIGHTS, and
- * "visibility" 1 in [0, 1], the share of the strongest lamp's light that the rest of the object lets through. Training
- * has inputs "lights_true", "lamp_weight" and "rest_weight" (vectors of 1), "visibility_true" 1 and "visibility_weight"
- * 1, and the losses "flash", "lamp", "lamp_distance", "lamp_light", "environment" and "visibility".
- */
+ * Maps are undefined outside the mask; images are zero there. A variant without global illumination has no "indirect",
+ * one that relights by BRDF no "light" and no "relit_direct" (nn_output_data: NULL). "indirect" may be slightly
+ * negative.
+ *
+ * With "lighting": "both" the photograph shows the object under its flash and an environment at once:
+ * "environment_code" (vector 27) is the predicted environment, "environment" (3) what the rendering layer makes of it,
+ * "direct" includes it, and both relit images are under point light and environment.
+ *
+ * Training adds inputs "loss_mask" 1, "albedo_true" 3 and "roughness_true" 1 in [-1, 1], "normal_true" 3, "depth_true"
+ * 1, "direct_true" 3, "indirect_true" 3, "reconstruction_true" 3 and "relit_true" 3, and the losses "albedo", "normal",
+ * "depth", "roughness", "roughness_gradient", "direct", "indirect", "reconstruction", "relight"; for both lights also
+ * "environment_true" (vector 27) and the loss "environment".
+ *
+ * With "lighting": "any" the photograph shows the object under any light through any lens. Additional inputs are
+ * "sight" 4, what is known of the lens (model_sight), and "lens" (vector 3, nn_render_inputs), the lens through which
+ * the maps are rendered. "depth" is then relief in widths of the frame, as for nn_render; "direct", "indirect" and
+ * "relit_brdf" are under a flash or the target light, whatever lit the photograph. The photograph's light is "lights"
+ * (vector MODEL_LIGHTS), and "visibility" 1 in [0, 1], the share of the strongest lamp's light that is not blocked by
+ * the object itself. Training adds inputs "lights_true", "lamp_weight" and "rest_weight" (vectors of 1),
+ * "visibility_true" 1 and "visibility_weight" 1, and the losses "flash", "lamp", "lamp_distance", "lamp_light",
+ * "environment" and "visibility". */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 
@@ -37,57 +43,57 @@
 
 enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
 
-/* The losses by name; a variant may lack some (nn_loss: NAN). New ones come last, behind the columns of older curves.
- */
+/* Names of the losses; a variant may lack some (nn_loss: NAN). New ones are appended, so that columns of older curves
+ * keep their meaning. */
 extern const char *const model_losses[MODEL_LOSSES];
 
-/* Where the parts of "lights" begin. Strengths are in the photograph's radiance: 1 is what the lamp of power
- * LIGHT_POWER gives at distance 1. They span orders of magnitude, hence model_encode_strength. */
+/* Offsets of the parts of "lights". Strengths are in the photograph's radiance: 1 is that of a lamp of power
+ * LIGHT_POWER at distance 1. They span orders of magnitude, hence model_encode_strength. */
 enum {
-    MODEL_LIGHTS_FLASH = 0, /* the flash's strength, encoded */
-    MODEL_LIGHTS_LAMP = 1,  /* from the object's middle toward the strongest lamp, as long as the network is sure: 3 */
-    MODEL_LIGHTS_DISTANCE = 4, /* the inverse of its distance from there; 0: far away */
+    MODEL_LIGHTS_FLASH = 0,    /* the flash's strength, encoded */
+    MODEL_LIGHTS_LAMP = 1,     /* direction to the strongest lamp, as long as the network is confident: 3 */
+    MODEL_LIGHTS_DISTANCE = 4, /* inverse of its distance from there; 0: far away */
     MODEL_LIGHTS_STRENGTH = 5, /* its strength in the object's middle, encoded, by channel: 3 */
-    MODEL_LIGHTS_REST = 8,     /* model_encode_sh of everything else: MODEL_SH */
+    MODEL_LIGHTS_REST = 8,     /* model_encode_sh of all other light: MODEL_SH */
     MODEL_LIGHTS = 8 + MODEL_SH
 };
 
-/* Radiance above which the network sees no more: photographs whose white lies higher are scaled down before. */
+/* Largest radiance that the network distinguishes: photographs whose white is higher are scaled down first. */
 #define MODEL_BRIGHTEST 4.0f
 
-/* What the input "image" holds: the square root of radiance clamped to [0, MODEL_BRIGHTEST], which spends the network's
- * precision as the eye (and sRGB) does. Radiance is in the unit of the lights' power; where a photograph saturates
- * (radiance 1 in the published data, up to 2.5 in training) it stays flat. n values; in place is fine. */
+/* Encodes the input "image": the square root of radiance clamped to [0, MODEL_BRIGHTEST], which distributes the
+ * network's precision as the eye (and sRGB) does. Radiance is in the unit of the lights' power; where a photograph is
+ * saturated (radiance 1 in the published data, up to 2.5 in training) it is constant. n values; in place is allowed. */
 void model_encode_image(const float *linear, float *encoded, size_t n);
 
-/* An environment's nine coefficients (optics/sh.h) as the network sees them: scaled by what the clamped cosine keeps of
- * their band, so that the mean square of a difference is that of the radiance of a white surface over all normals. In
- * place is fine. */
+/* Encodes an environment's nine coefficients (optics/sh.h): scaled by the clamped cosine's factor of their band, so
+ * that the mean square of a difference is that of a white surface's radiance over all normals; model_decode_sh is the
+ * inverse. In place is allowed. */
 void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
 void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
 
-/* A light's strength as the network says it, ln(1 + strength), and back, not below 0. */
+/* Encode a light's strength as ln(1 + strength), and back; not below 0. */
 float model_encode_strength(float strength);
 float model_decode_strength(float code);
 
-/* What the network is told of how a photograph was taken: of a picture of size × size, MODEL_SIGHT values a pixel. lens
- * NULL: nothing is known of it. flash: the photograph is lit by a flash alone, as far as anybody knows. */
+/* Fills in the input "sight", what is known of how a photograph was taken: for a picture of size × size, MODEL_SIGHT
+ * values a pixel. lens NULL: unknown. flash: the photograph is lit by a flash alone, as far as is known. */
 enum { MODEL_SIGHT = 4 };
 void model_sight(const camera *lens, bool flash, int size, float *out);
 
-/* What the relighting decoder takes of a photograph, whatever the light, NULL behind: the encoder's features at levels
- * 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant
- * without feature sharing has no use for the latter (nn_input_data: NULL), one that relights by BRDF for any. */
+/* Names of the relighting decoder's inputs that do not depend on the light, ended by NULL: the encoder's features at
+ * levels 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant
+ * without feature sharing does not use the latter (nn_input_data: NULL), one that relights by BRDF none. */
 enum { MODEL_FEATURES = 2 * MODEL_LEVELS - 1 };
 extern const char *const model_features[MODEL_FEATURES + 1];
-/* Values of one of them, of a picture of size × size. */
+/* Returns the number of values of one of them, for a picture of size × size. */
 size_t model_feature_values(const model_config *config, int feature, int size);
 
 typedef enum model_part {
-    MODEL_WHOLE,         /* everything a photograph goes through once */
-    MODEL_TRAINING,      /* the same with losses */
-    MODEL_TRAINING_BRDF, /* beside them "relight_brdf", of "relit_brdf", where "relight" is the network's */
-    MODEL_TRAINING_SSIM, /* beside these "relight_ssim" and "relight_brdf_ssim", structural dissimilarity of both */
+    MODEL_WHOLE,         /* everything that is computed once for a photograph */
+    MODEL_TRAINING,      /* MODEL_WHOLE with losses */
+    MODEL_TRAINING_BRDF, /* with "relight_brdf" of "relit_brdf", too, where "relight" is the network's */
+    MODEL_TRAINING_SSIM, /* with "relight_ssim" and "relight_brdf_ssim", too, structural dissimilarity of both */
     MODEL_MAPS,          /* MODEL_WHOLE without what depends on a new light, but with the outputs model_features */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                        "mask", for both lights "environment"; output "indirect" */
@@ -95,10 +101,10 @@ typedef enum model_part {
 } model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);
 
-/* A weights file: configuration and parameters. *params matches MODEL_WHOLE's graph and are to be
- * used, not trained (nn_params_open). */
+/* Reads a weights file: configuration and parameters. *params fits MODEL_WHOLE's graph and is for inference only
+ * (nn_params_open). */
 status model_load(const char *weights, model_config *config, nn_params **params);
-/* The configuration alone. */
+/* Reads the configuration alone. */
 status model_load_config(const char *weights, model_config *config);
 
 #endif

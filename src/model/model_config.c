@@ -7,7 +7,7 @@
 
 #include "base/text/json_file.h"
 
-/* Three times a width is the most that a layer takes in: what it shares, what comes up and what was there before. */
+/* Limits. A layer's input is at most three times a width: shared features, upsampled features and the skip. */
 enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };
 
 static const char *const relight_words[] = {"network", "brdf"};
@@ -15,13 +15,13 @@ static const char *const lighting_words[] = {"point", "both", "any"};
 
 static status check_widths(const char *where, const char *key, const int *widths)
 {
-    /* the vector units work on blocks of 8 channels and more, and a gate's inner width is half of its level's */
+    /* vector units work on blocks of 8 channels or more, and a gate's inner width is half of its level's */
     for (int i = 0; i < MODEL_LEVELS; i++)
         if (widths[i] % 8) return fail(MERLIN_BAD_INPUT, "%s: \"%s\" must be multiples of 8", where, key);
     return OK;
 }
 
-/* A name stands in messages, reports and JSON as it is. */
+/* Checks a name, which is used unchanged in messages, reports and JSON. */
 static status check_name(const char *name, const char *where)
 {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";

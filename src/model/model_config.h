@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A model's configuration, and as JSON. */
+/* A model's configuration, and its JSON form. */
 #ifndef MERLIN_MODEL_MODEL_CONFIG_H
 #define MERLIN_MODEL_MODEL_CONFIG_H
 
@@ -15,9 +15,9 @@ typedef enum model_lighting { MODEL_LIGHT_POINT, MODEL_LIGHT_BOTH, MODEL_LIGHT_A
 
 typedef struct model_config {
     char name[64];
-    bool input_global;     /* input with indirect light (the paper's Img-g) or direct only (Img-d) */
+    bool input_global;     /* the input has indirect light (the paper's Img-g), or direct light only (Img-d) */
     int material_decoders; /* 1 or 4 */
-    bool feature_sharing;  /* relighting decoder sees the material decoder's features */
+    bool feature_sharing;  /* the relighting decoder gets the material decoder's features */
     bool gated_attention;
     model_relight relight; /* by network: has a relighting decoder */
     bool global_illumination;
@@ -25,20 +25,20 @@ typedef struct model_config {
     model_lighting lighting;
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
-    int encoder_blocks[MODEL_LEVELS];      /* residual blocks behind each level's convolutions */
-    int material_blocks[MODEL_LEVELS - 1]; /* behind each stage of the material decoders */
+    int encoder_blocks[MODEL_LEVELS];      /* residual blocks after each level's convolutions */
+    int material_blocks[MODEL_LEVELS - 1]; /* residual blocks after each level of the material decoders */
 } model_config;
 
-/* Parses JSON; every key but the two of blocks (0 where left out) is required, unknown keys are refused, values are
+/* Parses JSON. Every key is required except the two of blocks (0 if left out), unknown keys are refused, values are
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
 /* Reads a file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files
- * that it names (base/text/json_file.h). */
+ * that it refers to (base/text/json_file.h). */
 status model_config_read(const char *path, model_config *out);
-/* malloc'ed JSON that model_config_parse reads back; NULL if memory ran out. */
+/* Returns malloc'ed JSON that model_config_parse can read; NULL if memory ran out. */
 char *model_config_write(const model_config *config);
 
-/* Length of the lighting code: 3 or 30. */
+/* Returns the length of the lighting code: 3 or 30. */
 int model_light_size(const model_config *config);
 
 #endif

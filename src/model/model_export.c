@@ -8,7 +8,7 @@
 #include "base/half.h"
 #include "nn/safetensors.h"
 
-/* Batch norm is a few numbers, and its variances span more than a half float. */
+/* Tells whether a parameter stays float32: batch norm has few numbers, and its variances exceed half's range. */
 static bool keeps_float32(const nn_param *p)
 {
     return p->rank == 1;

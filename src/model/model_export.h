@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Writes weights as they ship: half floats, but for batch norms, which are a few numbers whose variances span more.
+/* Writes weights for distribution: as half floats, except batch norm, whose few numbers exceed half's range.
  *
  *     const char *const metadata[][2] = {{"config", json}};
  *     status s = model_export("weights.safetensors", params, metadata, 1);
@@ -9,7 +9,7 @@
 
 #include "nn/nn.h"
 
-/* Writes all parameters under their names, and key, value pairs of metadata; atomically. */
+/* Writes all parameters under their names, and metadata as key, value pairs; atomically. */
 status model_export(const char *path, nn_params *params, const char *const (*metadata)[2], size_t metadata_count);
 
 #endif

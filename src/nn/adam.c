@@ -13,7 +13,7 @@ struct nn_adam {
     nn_params *params;
     nn_adam_options options;
     int64_t steps, skipped;
-    float *moments; /* the first of every value, then the second */
+    float *moments; /* first moments of all values, then second moments */
 };
 
 status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out)
@@ -52,7 +52,8 @@ static double gradient_norm(const nn_adam *adam)
     return sqrt(sum);
 }
 
-/* Squares of what is larger overflow: the second moment would stay infinite, and its parameter where it is. */
+/* Largest gradient norm that is applied; the square of a larger one overflows, so that the second moment would stay
+ * infinite and its parameter would never change again. */
 static const double LARGEST_NORM = 1e19;
 
 status nn_adam_step(nn_adam *adam, float learning_rate)

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Adam's step as a device is asked for it, one parameter at a time. Internal to src/nn. */
+/* The arguments of Adam's step on a device, for one parameter at a time. Internal to src/nn. */
 #ifndef MERLIN_NN_ADAM_STEP_H
 #define MERLIN_NN_ADAM_STEP_H
 
 typedef struct adam_step {
     float learning_rate, beta1, beta2, epsilon;
     float correction1, correction2; /* 1 - beta^t */
-    float gradient_scale;           /* from clipping */
+    float gradient_scale;           /* factor from clipping */
 } adam_step;
 
 #endif

@@ -8,8 +8,8 @@
 #include "nn/nn_program.h"
 #include "nn/weights_ahead.h"
 
-/* Everything of a compilation in progress. Time runs 0 .. n-1 through the forward steps and n .. 2n-1 backward through
- * the same steps. */
+/* State of a compilation. Time runs 0 .. n-1 through the forward steps and n .. 2n-1 backward through the same steps.
+ */
 typedef struct compilation {
     lowering low;
     nn_program *program;
@@ -23,7 +23,7 @@ static int backward_time(const compilation *c, int step)
     return 2 * c->low.step_count - 1 - step;
 }
 
-/* The value that a step's k-th input is. */
+/* Returns the value that is a step's k-th input. */
 static lowered_value *input_of(const compilation *c, int step, int k)
 {
     const lowered_step *from = &c->low.steps[step];
@@ -82,7 +82,7 @@ static status create_steps(compilation *c)
     return OK;
 }
 
-/* The first gradient written to a value is written, the others are added. */
+/* Decides which steps write a gradient and which add to it: the first write, the others add. */
 static void order_gradients(compilation *c)
 {
     bool *written = (bool *)c->step_buffers; /* borrowed until the buffers are planned */
@@ -104,7 +104,7 @@ static int add_buffer(compilation *c, size_t bytes, int time)
     return c->buffer_count++;
 }
 
-/* Makes sure that a buffer exists and lives at this time. */
+/* Makes sure that a buffer exists and is alive at this time. */
 static void use_buffer(compilation *c, int *buffer, size_t bytes, int time)
 {
     if (*buffer < 0) *buffer = add_buffer(c, bytes, time);
@@ -156,7 +156,7 @@ static status take_arena(nn_program *p, const nn_program *beside)
 static status plan(compilation *c)
 {
     int count = c->low.graph->count, end = 2 * c->low.step_count;
-    for (int i = 0; i < count; i++) { /* what the caller fills or reads lives all the time */
+    for (int i = 0; i < count; i++) { /* what the caller fills or reads is alive all the time */
         lowered_value *v = &c->low.values[i];
         if (!v->live || (v->node->op != OP_INPUT && !v->is_output)) continue;
         use_buffer(c, &v->buffer, tensor_bytes(&v->tensor), v->node->op == OP_INPUT ? -1 : end);
@@ -199,8 +199,8 @@ static status bind_step(compilation *c, int i)
     return s == OK ? OK : fail_in(s, "%s", step->name);
 }
 
-/* Weights of a file are as they will be: while the steps behind are bound, which keeps one thread, another takes them
- * over. */
+/* Binds the steps, which occupies one thread; another meanwhile converts the weights of steps already bound, unless
+ * parameters may still change before the first run. */
 static status bind_steps(compilation *c)
 {
     weights_ahead ahead = {0};
@@ -213,7 +213,7 @@ static status bind_steps(compilation *c)
     return weights_ahead_end(&ahead, s);
 }
 
-/* The host's side of an input or output: the device's memory where that is float32. */
+/* Makes the host's side of an input or output: the device's memory itself if that is float32. */
 static status make_port(compilation *c, program_port *port, const char *name, const lowered_value *v)
 {
     nn_tensor tensor = v->tensor;
@@ -295,7 +295,7 @@ status nn_compile(const nn_graph *g, nn_params *params, const nn_options *option
     free(c.buffers);
     free(c.step_buffers);
     lowering_free(&c.low);
-    p->options.beside = NULL; /* these may be gone before this one */
+    p->options.beside = NULL; /* the arguments may be freed before this program */
     p->options.outputs = NULL;
     if (s == OK)
         *out = p;

@@ -170,7 +170,7 @@ nn_node *nn_float(nn_graph *g, nn_node *x)
     return node;
 }
 
-/* An operation with parameters, in compute precision. */
+/* Appends an operation with parameters, in compute precision. */
 static nn_node *append_named(nn_graph *g, nn_op op, nn_node *x, const char *name, int channels)
 {
     nn_node *node = append1(g, op, x);
@@ -250,7 +250,7 @@ nn_node *nn_sigmoid(nn_graph *g, nn_node *x)
     return append1(g, OP_SIGMOID, x);
 }
 
-/* Whether b can be combined with the node's first input pixel by pixel. */
+/* Tells whether b can be combined with the node's first input pixel by pixel. */
 static bool matches(const nn_node *node, const nn_node *b, bool channels)
 {
     const nn_node *a = node->in[0];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The graph as the builder leaves it: nodes in topological order, shapes as channels and reduction, the first error.
- * Internal to src/nn. */
+/* The graph that the builder functions make: nodes in topological order, shapes as channels and reduction, the first
+ * error. Internal to src/nn. */
 #ifndef MERLIN_NN_GRAPH_H
 #define MERLIN_NN_GRAPH_H
 
@@ -11,18 +11,18 @@ enum { NN_MAX_INPUTS = 8 };
 
 typedef struct nn_attributes {
     int kernel, stride, block, first;
-    bool bias, zero; /* zero: weights of a convolution before training */
+    bool bias, zero; /* zero: initial weights of a convolution are 0 */
     float scale, shift;
     float fov, light_power;
     float weight;       /* of a loss */
-    float first_weight; /* batch norm's, before training */
+    float first_weight; /* initial weight of batch norm */
 } nn_attributes;
 
 struct nn_node {
     nn_graph *graph;
     int index;
     nn_op op;
-    char *name; /* of parameters, input or loss; NULL for the rest */
+    char *name; /* of parameters, input or loss; NULL for other nodes */
     nn_node *in[NN_MAX_INPUTS];
     int inputs;
     int channels, reduction;
@@ -40,11 +40,11 @@ struct nn_graph {
     int count, capacity;
     graph_output *outputs;
     int output_count;
-    status error; /* the first one */
+    status error; /* first error */
     char message[256];
 };
 
-/* Repeats the graph's first error, or OK. */
+/* Returns the graph's first error again, or OK. */
 status graph_check(const nn_graph *g);
 
 #endif

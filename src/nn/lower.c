@@ -69,7 +69,7 @@ static void find_differentiable(lowering *l)
 {
     if (l->options.purpose != NN_TRAIN) return;
     int count = l->graph->count;
-    for (int i = 0; i < count; i++) { /* depends on a parameter */
+    for (int i = 0; i < count; i++) { /* it depends on a parameter */
         lowered_value *v = &l->values[i];
         v->differentiable = op_has_params(v->node->op);
         for (int k = 0; k < v->node->inputs; k++)
@@ -84,7 +84,7 @@ static void find_differentiable(lowering *l)
     }
 }
 
-/* The node that alone uses i and has this operation, or -1. */
+/* Returns the only node that uses i if it has this operation, or -1. */
 static int sole_consumer(const lowering *l, int i, nn_op op)
 {
     const lowered_value *v = &l->values[i];
@@ -92,7 +92,7 @@ static int sole_consumer(const lowering *l, int i, nn_op op)
     return l->values[v->consumer].node->op == op ? v->consumer : -1;
 }
 
-/* Returns the node that adds the value of one before this convolution to its result, and which one; or -1. */
+/* Returns the node that adds another value to this convolution's result, and which value in *beside; or -1. */
 static int sum_behind(const lowering *l, const lowered_step *step, int *beside)
 {
     int sum = sole_consumer(l, step->result, OP_ADD);
@@ -103,7 +103,7 @@ static int sum_behind(const lowering *l, const lowered_step *step, int *beside)
     return is_there && is_alike && v->tensor.type == l->options.type ? sum : -1;
 }
 
-/* Extends a step that starts at a convolution or batch norm by what can be computed with it. */
+/* Extends a step that starts at a convolution or batch norm by the operations that can be fused with it. */
 static void fuse(const lowering *l, lowered_step *step)
 {
     nn_op op = l->values[step->head].node->op;
@@ -119,7 +119,7 @@ static void fuse(const lowering *l, lowered_step *step)
         step->relu = relu >= 0;
         if (step->relu) step->result = relu;
     }
-    /* a convolution writes float32 as easily as bfloat16, and that saves a pass; batch norm does not */
+    /* a convolution writes float32 as fast as bfloat16, which saves a pass; batch norm does not */
     if (op_is_conv(op) && !(train && step->relu)) {
         int converted = sole_consumer(l, step->result, OP_FLOAT);
         if (converted >= 0) step->result = converted;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a program costs, where its time goes, and what the machine can do. */
+/* Measures the cost of a program, where its time goes, and the machine's peak. */
 #include <math.h>
 #include <string.h>
 
@@ -67,7 +67,7 @@ status nn_measure_layers(nn_program *p, int runs, nn_layer_seen *seen, void *con
     if (runs < 1) return fail(MERLIN_WRONG_USE, "layers measured by %d runs", runs);
     status s = nn_forward(p);
     if (s != OK) return s;
-    p->forwarded = false; /* what forward left is not kept for a backward */
+    p->forwarded = false; /* forward's results are no longer there for a backward pass */
     p->device->begin(p->context);
     s = measure_steps(p, &(layer_watch){runs, seen, context});
     p->device->end(p->context);

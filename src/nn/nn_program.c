@@ -104,7 +104,7 @@ status nn_forward(nn_program *p)
     p->device->end(p->context);
     if (s != OK) return s;
     p->forwarded = true;
-    /* running statistics have changed: other programs fold them anew, this one holds nothing converted from them */
+    /* running statistics have changed: other programs must fold them again, this one holds nothing derived from them */
     if (p->options.purpose == NN_TRAIN) p->version = ++p->params->version;
     return OK;
 }
@@ -114,7 +114,7 @@ status nn_backward(nn_program *p)
     if (p->options.purpose != NN_TRAIN || !p->forwarded)
         return fail(MERLIN_WRONG_USE,
                     "nn_backward needs a program compiled for NN_TRAIN and a forward run before each");
-    p->forwarded = false; /* gradients take the memory of what forward left */
+    p->forwarded = false; /* gradients overwrite forward's results */
     for (size_t i = 0; i < nn_params_count(p->params); i++) {
         nn_param *param = nn_params_at(p->params, i);
         if (p->untouched[i] && param->gradient) memset(param->gradient, 0, param->count * sizeof(float));

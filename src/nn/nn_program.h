@@ -7,12 +7,12 @@
 
 typedef struct program_port {
     char *name;
-    nn_tensor device; /* where the program reads or leaves it */
-    float *host;      /* what the caller sees; the same memory where types agree */
+    nn_tensor device; /* where the program reads or writes it */
+    float *host;      /* the caller's buffer; the same memory if the types are equal */
     bool owned;       /* host was allocated for this port */
 } program_port;
 
-/* Activations and scratch, of one program or of several that never run at once. */
+/* Activations and scratch memory, of one program or of several that never run at the same time. */
 typedef struct program_arena {
     void *memory;
     size_t bytes;
@@ -29,13 +29,13 @@ struct nn_program {
     program_port *inputs, *outputs;
     int input_count, output_count;
     program_arena *arena;
-    size_t arena_bytes, own_bytes; /* of the arena: what this program needs */
-    uint64_t version;              /* of the parameters that the steps hold converted copies of */
+    size_t arena_bytes, own_bytes; /* arena_bytes: what this program needs of the arena */
+    uint64_t version;              /* version of the parameters whose converted copies the steps hold */
     bool *untouched;               /* per parameter: no step writes its gradient */
     bool forwarded;
 };
 
-/* The step's own copies of its parameters as they are now. */
+/* Updates the step's own copies of its parameters. */
 status program_refresh_step(nn_step *step);
 
 #endif

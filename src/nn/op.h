@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The operations of a network, and what graph and compiler know of each on whatever device: a row of op.c's table.
- * How a device computes it stands in a table of the device (cpu/ops.c). Internal to src/nn. */
+/* The operations of a network, and what graph and compiler know about each on any device: a row of op.c's table. Its
+ * implementation is in a table of the device (cpu/ops.c). Internal to src/nn. */
 #ifndef MERLIN_NN_OP_H
 #define MERLIN_NN_OP_H
 
@@ -37,11 +37,11 @@ typedef enum nn_op {
 } nn_op;
 
 typedef struct op_row {
-    const char *name; /* "conv2d", for messages and profiles */
+    const char *name; /* such as "conv2d", for messages and profiles */
     bool is_conv;     /* convolution and fully connected: a weight and maybe a bias */
     bool is_loss;
     bool has_params;
-    int gradients; /* how many of its inputs, from the first, a gradient flows to; 0: all */
+    int gradients; /* number of its inputs, from the first, that a gradient flows to; 0: all */
 } op_row;
 
 const op_row *op_row_of(nn_op op);

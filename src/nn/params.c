@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters: float32 masters by name, their first values, their gradients. */
+/* Parameters: float32 masters by name, their initial values, their gradients. */
 #include "nn/params.h"
 
 #include <math.h>
@@ -17,9 +17,9 @@ typedef struct param_spec {
     char name[NAME_LIMIT];
     int rank;
     int64_t shape[4];
-    double fan_in; /* 0: no weights, but as many constants */
+    double fan_in; /* 0: constants instead of random weights */
     float constant;
-    bool trained, zero; /* zero: weights that begin as nothing */
+    bool trained, zero; /* zero: initial weights are 0 */
 } param_spec;
 
 static param_spec vector_spec(const nn_node *node, const char *suffix, float constant, bool trained)
@@ -40,7 +40,7 @@ static param_spec weight_spec(const nn_node *node)
     return spec;
 }
 
-/* Fills specs in the order of node_params; returns how many. */
+/* Fills in specs in the order of node_params; returns how many there are. */
 static int node_specs(const nn_node *node, param_spec specs[PARAMS_PER_NODE])
 {
     int count = 0;
@@ -66,16 +66,16 @@ static uint64_t hash_name(const char *name)
 
 enum { LINE_FLOATS = MEMORY_ALIGNMENT / sizeof(float) };
 
-/* Floats with room to start the next parameter on a cache line. */
+/* Returns a number of floats rounded up so that the next parameter starts on a cache line. */
 static size_t padded(size_t count)
 {
     return (count + LINE_FLOATS - 1) / LINE_FLOATS * LINE_FLOATS;
 }
 
-/* Where parameters have their first values from. */
+/* The source of initial values. */
 typedef struct source {
     const uint64_t *seed;         /* NULL: zeros instead of random numbers */
-    const safetensors_file *file; /* NULL, or what decides which weights are kept as half floats */
+    const safetensors_file *file; /* NULL, or the file that decides which weights are kept as half floats */
 } source;
 
 static bool stays_half(const source *from, const param_spec *spec)
@@ -84,7 +84,8 @@ static bool stays_half(const source *from, const param_spec *spec)
     return t && t->type == SAFETENSORS_F16;
 }
 
-/* How many values all parameters have as floats, as half floats and of gradients, or where the next one's begin. */
+/* Numbers of values of all parameters as floats, as half floats and of gradients, or where the next parameter's begin.
+ */
 typedef struct room {
     size_t values, halves, gradients;
 } room;
@@ -115,7 +116,7 @@ static void fill_param(nn_param *p, const param_spec *spec, const uint64_t *seed
 
 static status fill_params(nn_params *params, const nn_graph *g, const source *from, const room *needed)
 {
-    /* the gradients of a model that is not trained are pages that nobody touches */
+    /* gradients of a model that is not trained are pages that are never touched */
     params->values = memory_new(needed->values * sizeof *params->values);
     uint16_t *halves = params->halves = needed->halves ? memory_new(needed->halves * sizeof *halves) : NULL;
     float *gradients = params->gradients = memory_new(needed->gradients * sizeof *gradients);

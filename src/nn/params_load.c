@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters from a safetensors file. */
+/* Loads parameters from a safetensors file. */
 #include <string.h>
 
 #include "base/parallel.h"
@@ -24,7 +24,7 @@ static status check_tensor(const nn_param *p, const safetensors_tensor *t, const
     return OK;
 }
 
-/* Where a parameter is kept as half floats, the tensor has them. */
+/* Copies a tensor's values; a parameter kept as half floats has a tensor of half floats. */
 static status take_values(const nn_param *p, const safetensors_tensor *t)
 {
     if (!p->half) return safetensors_to_float(t, p->value);

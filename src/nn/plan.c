@@ -23,7 +23,7 @@ static size_t aligned(size_t bytes)
     return (bytes + PLAN_ALIGNMENT - 1) / PLAN_ALIGNMENT * PLAN_ALIGNMENT;
 }
 
-/* The smallest gap between buffers (sorted by offset) that holds b, else the place behind them all. */
+/* Returns the smallest gap between buffers (sorted by offset) that holds b, else the offset behind all of them. */
 static size_t best_offset(const plan_buffer *b, plan_buffer *const *placed, size_t count)
 {
     size_t end = 0, best = SIZE_MAX, best_gap = SIZE_MAX;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading: the header is parsed into a list of tensors sorted by place, each checked by itself, then the list as a
- * whole, then the data's checksum. */
+/* Reads safetensors files: the header is parsed into a list of tensors sorted by position, each is checked, then the
+ * list as a whole, then the data's checksum. */
 #include "nn/safetensors.h"
 
 #include <cjson/cJSON.h>
@@ -14,14 +14,15 @@
 #include "base/half.h"
 #include "nn/safetensors_format.h"
 
-/* Files are mapped, not copied. Checkpoints are four times a model, and one that was written must be read again. */
+/* Largest file that is read. Files are mapped, not copied; checkpoints are four times a model's size, and one that was
+ * written must be readable. */
 static const size_t FILE_LIMIT = (size_t)1 << 36;
 enum { WORTH_SHARING = 1 << 16 /* values: for fewer a second thread is not woken */ };
 
 struct safetensors_file {
-    file_view view; /* the bytes, if safetensors_open looked at them */
+    file_view view; /* the mapped bytes, if safetensors_open mapped them */
     cJSON *header;
-    safetensors_tensor *tensors; /* by place */
+    safetensors_tensor *tensors; /* sorted by position */
     const safetensors_tensor **by_name;
     size_t count;
     const char *where;
@@ -35,13 +36,13 @@ const char *safetensors_type_name(safetensors_type type)
     return names[type];
 }
 
-/* Where a tensor lies in the data. */
+/* Returns where a tensor begins in the data. */
 static size_t begin_of(const safetensors_file *f, const safetensors_tensor *t)
 {
     return (size_t)((const unsigned char *)t->data - f->data);
 }
 
-/* A non-negative whole number that a double holds exactly. */
+/* Reads a non-negative whole number that a double holds exactly. */
 static bool read_size(const cJSON *item, size_t *out)
 {
     if (!cJSON_IsNumber(item)) return false;
@@ -115,7 +116,7 @@ static int compare_places(const void *a, const void *b)
     return strcmp(x->name, y->name);
 }
 
-/* The tensors tile the data without holes, overlaps or a rest. */
+/* Checks that the tensors tile the data without gaps, overlaps or a remainder. */
 static status check_places(const safetensors_file *f)
 {
     size_t expected = 0;
@@ -136,7 +137,7 @@ static int compare_names(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Names end up in messages, which are one line on a terminal. */
+/* Tells whether a name can be part of a message, which is one line on a terminal. */
 static bool is_printable(const char *name)
 {
     for (; *name; name++)
@@ -251,7 +252,7 @@ static status read_header(safetensors_file *f, const unsigned char *bytes, size_
     return s == OK ? check_sum(f) : s;
 }
 
-/* Takes over `view`. */
+/* Parses a file and takes over `view`. */
 static status parse(const char *where, file_view view, const void *bytes, size_t size, safetensors_file **out)
 {
     safetensors_file *f = calloc(1, sizeof *f);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What reader and writer of safetensors files share. Internal to src/nn.
+/* Constants and functions shared by the reader and the writer of safetensors files. Internal to src/nn.
  *
  * A file is the length of its header (8 bytes, little-endian), the header (JSON, padded with spaces), the data. */
 #ifndef MERLIN_NN_SAFETENSORS_FORMAT_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Writing: the whole file is put together in memory and written at once. */
+/* Writes safetensors files: the whole file is assembled in memory and written at once. */
 #include "nn/safetensors.h"
 
 #include <libdeflate.h>
@@ -29,7 +29,7 @@ static void describe_metadata(cJSON *header, const char *const (*metadata)[2], s
     json_put_text(item, SAFETENSORS_CHECKSUM, checksum);
 }
 
-/* malloc'ed JSON; NULL when memory runs out. */
+/* Returns the header as malloc'ed JSON; NULL if memory ran out. */
 static char *header_of(const safetensors_tensor *tensors, size_t count, const char *const (*metadata)[2],
                        size_t metadata_count)
 {
@@ -39,7 +39,7 @@ static char *header_of(const safetensors_tensor *tensors, size_t count, const ch
     for (size_t i = 0; i < count; i++) {
         describe(header, &tensors[i], at);
         at += safetensors_bytes_of(&tensors[i]);
-        /* it starts over when given no buffer, as an empty tensor has none */
+        /* libdeflate restarts the checksum when given NULL, as an empty tensor's data is */
         if (tensors[i].count > 0) sum = libdeflate_crc32(sum, tensors[i].data, safetensors_bytes_of(&tensors[i]));
     }
     char checksum[SAFETENSORS_CHECKSUM_SIZE];

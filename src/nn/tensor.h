@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A dense channels-last tensor in a device's memory: what steps and kernels work on. */
+/* A dense channels-last tensor in a device's memory, on which steps and kernels work. */
 #ifndef MERLIN_NN_TENSOR_H
 #define MERLIN_NN_TENSOR_H
 

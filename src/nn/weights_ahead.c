@@ -5,7 +5,7 @@
 
 #include "base/threads.h"
 
-/* How many steps are bound once it is more than `done`, or `done` if no more will be. */
+/* Waits until more than `done` steps are bound, and returns how many; returns `done` if there will be no more. */
 static int wait_for_more(weights_ahead *a, int done)
 {
     pthread_mutex_lock(&a->lock);
@@ -31,7 +31,7 @@ static void *refresh(void *context)
 {
     weights_ahead *a = context;
     const nn_device *device = a->program->device;
-    threads_use_here(1); /* this one's alone: the other processors are busy */
+    threads_use_here(1); /* one thread only: the other processors are busy */
     device->begin(a->program->context);
     a->result = refresh_steps(a);
     device->end(a->program->context);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What reading and writing EXR share: an OpenEXR Core context that never prints.
+/* An OpenEXR Core context that never prints, shared by reading and writing.
  *
- * The library's complaints are kept by thread, not in the context's user data: while writing it calls the error handler
- * with its lock held, and asking it for the user data there waits for ever (3.1.5). */
+ * The library's error messages are kept per thread, not in the context's user data: while writing it calls the error
+ * handler with its lock held, and asking it for the user data there deadlocks (3.1.5). */
 #ifndef MERLIN_IMAGE_EXR_EXR_CONTEXT_H
 #define MERLIN_IMAGE_EXR_EXR_CONTEXT_H
 
@@ -11,14 +11,14 @@
 
 #include "base/status.h"
 
-/* An initializer with a silent error handler; forgets this thread's complaints so far. */
+/* Returns an initializer with a silent error handler, and clears this thread's stored message. */
 exr_context_initializer_t exr_quiet(void);
 void exr_forget_complaint(void);
 
-/* Says whether the first complaint since the last forgetting has the words in it. */
+/* Tells whether the first message since it was cleared contains these words. */
 bool exr_complained_of(const char *words);
 
-/* "cannot VERB PATH: the library's first words since the last forgetting" with status s. */
+/* Fails with "cannot VERB PATH: the library's first message since it was cleared" and status s. */
 status exr_fail(status s, const char *verb, const char *path, exr_result_t code);
 
 #endif

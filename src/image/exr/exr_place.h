@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Values that were read from an EXR file, put where its display window has them.
+/* Places values read from an EXR file where its display window has them.
  *
  *     s = exr_read(f, targets, n);
  *     const exr_frame seen = exr_display(f);
@@ -11,8 +11,8 @@
 #include "image/exr/exr.h"
 #include "image/image.h"
 
-/* Gives the image the frame's size: the values that lie in it, and zero around them. The frame's sides must be those of
- * an image; after a failure the image is as it was. */
+/* Crops and pads the image to the frame's size: stored values inside it, and zeros around them. The frame's size must
+ * be valid for an image; after a failure the image is unchanged. */
 status exr_place(const exr_frame *frame, img *image);
 
 #endif

@@ -14,13 +14,13 @@
 struct exr_file {
     char *path;
     exr_context_t context;
-    int part, parts; /* what follows is of this one */
+    int part, parts; /* the current part, which the fields below describe, and the number of parts */
     exr_attr_box2i_t window, display;
     const exr_attr_chlist_t *channels;
     exr_storage_t storage;
 };
 
-/* Where one asked channel lies in a chunk's line, in bytes per pixel of the channels before it. */
+/* Where a requested channel lies in a line of a chunk: bytes per pixel of the channels before it. */
 typedef struct source {
     size_t bytes_before;
     exr_pixel_type_t type;
@@ -72,7 +72,7 @@ static status open_file(exr_file *f)
     if (s != OK) return s;
     exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
-    /* a method that OpenEXR does not know: it complains and takes it for ZIP */
+    /* an unknown method: OpenEXR reports it and then assumes ZIP */
     if (r == EXR_ERR_SUCCESS && exr_complained_of("'compression'")) r = EXR_ERR_FEATURE_NOT_IMPLEMENTED;
     if (r == EXR_ERR_SUCCESS) exr_forget_complaint();
     if (r == EXR_ERR_SUCCESS) r = exr_get_count(f->context, &f->parts);
@@ -180,7 +180,8 @@ static void clear_values(int first, int end, float *to, int stride)
         if (to[(size_t)i * (size_t)stride] != 0) to[(size_t)i * (size_t)stride] = 0;
 }
 
-/* Zeros beside what a line shows are not written where they are already (image.h). */
+/* Converts a line. Zeros are not written where the target is already zero, so that untouched pages stay unallocated
+ * (image.h). */
 static void convert_line(const uint8_t *from, exr_pixel_type_t type, int count, float *to, int stride)
 {
     size_t bytes = type == EXR_PIXEL_HALF ? 2 : 4, first = 0, end = (size_t)count * bytes;
@@ -204,7 +205,7 @@ typedef struct reader {
     bool started;
 } reader;
 
-/* Readies the decoder for a chunk: reading and unzipping are the library's, unpacking is ours. */
+/* Prepares the decoder for a chunk: the library reads and decompresses, unpacking is done here. */
 static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
 {
     exr_context_t context = r->file->context;
@@ -217,12 +218,12 @@ static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
     return code;
 }
 
-/* Decodes one chunk and spreads the asked channels over their targets; x, y: its first pixel in the image. */
+/* Decodes one chunk and copies the requested channels to their targets; x, y: its first pixel in the image. */
 static exr_result_t read_chunk(reader *r, const exr_chunk_info_t *chunk, int x, int y)
 {
     exr_decode_pipeline_t *d = &r->decoder;
     exr_result_t code = aim_decoder(r, chunk);
-    /* what packing did not make smaller is stored as it was, which OpenEXR 3.1.5 unpacks all the same in a file of B44
+    /* a chunk that compression did not shrink is stored raw, which OpenEXR 3.1.5 decompresses all the same in B44 files
      */
     bool as_it_was = chunk->packed_size == chunk->unpacked_size;
     d->decompress_fn = as_it_was ? NULL : r->decompress;
@@ -276,11 +277,11 @@ static exr_result_t read_tiles(reader *r)
     return code;
 }
 
-/* Refuses what a small file unfolds to that no memory should be given: pixels that are all but empty. */
+/* Refuses small files that expand to too much memory: pixels that are nearly all empty. */
 static status check_density(const exr_file *f, size_t channels)
 {
-    const double harmless = 512 * 0x1p20, densest = 256; /* bytes of memory, and how many of them for one of the file */
-    size_t with_colour = channels < 3 ? channels + 3 : channels; /* grey may be wanted as colour */
+    const double harmless = 512 * 0x1p20, densest = 256;         /* bytes always allowed, and per byte of the file */
+    size_t with_colour = channels < 3 ? channels + 3 : channels; /* grey may be requested as colour */
     double bytes = (double)(with_colour * sizeof(float)) * exr_width(f) * exr_height(f);
     struct stat about;
     if (bytes <= harmless || stat(f->path, &about) != 0 || bytes <= densest * (double)about.st_size) return OK;

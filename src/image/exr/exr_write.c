@@ -17,10 +17,10 @@ typedef struct writer {
     int width, height;
     const exr_channel *channels;
     size_t channel_count;
-    uint16_t *samples; /* one chunk: channel × line × pixel, of one half or of a float in the place of two */
+    uint16_t *samples; /* one chunk: channel × line × pixel, halves, or floats in two units each */
     size_t chunk_bytes;
     struct libdeflate_compressor *packer;
-    uint8_t *shuffled, *changes, *zipped; /* a chunk each, on its way to the file */
+    uint8_t *shuffled, *changes, *zipped; /* one chunk each, at successive stages of compression */
 } writer;
 
 static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
@@ -97,8 +97,9 @@ static void fill_chunk(const writer *w, exr_encode_pipeline_t *encoder)
     }
 }
 
-/* The format's ZIP: even bytes before odd ones, each less the one before, then a zlib stream; or the chunk as it is
- * where that is no longer. The library's own does the same with zlib, in three times the time. */
+/* Compresses a chunk by the format's ZIP: even bytes before odd ones, differences of successive bytes, then a zlib
+ * stream; or stores it raw if that is no longer. The library's own function does the same with zlib in three times the
+ * time. */
 static exr_result_t zip_chunk(exr_encode_pipeline_t *encoder)
 {
     const writer *w = encoder->encoding_user_data;
@@ -137,7 +138,7 @@ static exr_result_t write_chunks(writer *w, int lines_per_chunk)
         encoder.compress_fn = zip_chunk;
         if (r == EXR_ERR_SUCCESS) r = exr_encoding_run(w->context, 0, &encoder);
     }
-    encoder.compressed_buffer = NULL; /* ours */
+    encoder.compressed_buffer = NULL; /* ours, not the library's to free */
     exr_encoding_destroy(w->context, &encoder);
     return r;
 }
@@ -182,7 +183,8 @@ static status write_file(writer *w, const char *temporary, const exr_attribute *
     return r == EXR_ERR_SUCCESS ? OK : exr_fail(MERLIN_CANNOT_WRITE, "write", w->path, r);
 }
 
-/* Done here because the library, refusing a channel, keeps its lock (3.1.5) and then never finishes. */
+/* Checks the channels before the library sees them: when it refuses one it keeps its lock (3.1.5) and never finishes.
+ */
 static status check_channels(const char *path, const exr_channel *channels, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

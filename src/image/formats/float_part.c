@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How floats are packed in TIFF and DNG: Adobe's TIFF technical note 3 (the predictor of floats), and the DNG
+/* Floats as packed in TIFF and DNG: Adobe's TIFF technical note 3 (the floating-point predictor), and the DNG
  * specification's floats of 16 and 24 bits. */
 #include <libdeflate.h>
 #include <math.h>
@@ -13,7 +13,7 @@ enum {
     OF_FLOATS = 3,
     OF_FLOATS_2 = 34894,
     OF_FLOATS_4 = 34895
-}; /* predictors: by the sample 1, 2 or 4 pixels before */
+}; /* predictors: from the sample 1, 2 or 4 pixels before */
 
 static bool inflate(const void *data, size_t size, void *out, size_t bytes)
 {
@@ -23,7 +23,7 @@ static bool inflate(const void *data, size_t size, void *out, size_t bytes)
     return done;
 }
 
-/* Makes a float of a sign, so many bits of an exponent and the rest of a fraction. */
+/* Assembles a float from a code of a sign bit, an exponent and a fraction. */
 static float float_of(uint32_t code, int exponent_bits, int fraction_bits)
 {
     uint32_t fraction = code & ((1U << fraction_bits) - 1);
@@ -41,7 +41,8 @@ static float float_of_bits(uint32_t code, int bits)
     return bits == 16 ? float_of(code, 5, 10) : bits == 24 ? float_of(code, 7, 16) : value;
 }
 
-/* Takes a row whose bytes are differences, and whose first bytes, the most significant, come before all second ones. */
+/* Reverts the floating-point predictor for a row: its bytes are differences, all most significant bytes first, then all
+ * second ones, and so on. */
 static void undo_predictor(const float_parts *p, uint8_t *row, float *out)
 {
     int apart = p->predictor == OF_FLOATS_2 ? 2 : p->predictor == OF_FLOATS_4 ? 4 : 1;

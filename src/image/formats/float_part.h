@@ -6,16 +6,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A page's pixels in parts, strips or tiles, of floats: deflated or as they are. */
+/* Layout of a page's floats in strips or tiles, deflated or uncompressed. */
 typedef struct float_parts {
-    int width, height, samples, bits; /* of the page; a sample's */
+    int width, height, samples, bits; /* size of the page, channels, and bits a sample */
     int part_width, part_height;
     int predictor, compression;
     bool big_endian;
 } float_parts;
 
-/* Makes the floats of a part from its bytes in the file; false if it is damaged. out: part_width × part_height ×
- * samples; room: as many bytes as they have in the file. */
+/* Decodes a part from its bytes in the file; returns false if it is damaged. out: part_width × part_height × samples;
+ * room: as many bytes as these samples have in the file. */
 bool float_part_unpack(const float_parts *p, const void *data, size_t size, void *room, float *out);
 
 #endif

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "image/formats/picture.h"
 
-/* Bytes that stand at a place of all files of a format. */
+/* Bytes at a fixed position by which all files of a format are recognized. */
 typedef struct mark {
     size_t at, count;
     char bytes[20];
@@ -27,7 +27,7 @@ static const mark marks[] = {
     {0, 6, "#?RGBE", PICTURE_HDR, "Radiance HDR"},
     {0, 6, "GIF87a", PICTURE_GIF, "GIF"},
     {0, 6, "GIF89a", PICTURE_GIF, "GIF"},
-    /* raw pictures that are no TIFFs, of Olympus, Panasonic, Fujifilm, Canon (two kinds), Minolta and Sigma */
+    /* raw pictures that are not TIFF: Olympus, Panasonic, Fujifilm, Canon (two kinds), Minolta and Sigma */
     {0, 4, "IIRO", PICTURE_RAW, "raw"},
     {0, 4, "IIRS", PICTURE_RAW, "raw"},
     {0, 4, "MMOR", PICTURE_RAW, "raw"},
@@ -37,7 +37,7 @@ static const mark marks[] = {
     {6, 4, "HEAP", PICTURE_RAW, "raw"},
     {0, 4, "\0MRM", PICTURE_RAW, "raw"},
     {0, 4, "FOVb", PICTURE_RAW, "raw"},
-    /* not read */
+    /* recognized, but not read */
     {0, 12, "\0\0\0\x0cjP  \r\n\x87\n", PICTURE_OTHER, "JPEG 2000"},
     {0, 4, "\xff\x4f\xff\x51", PICTURE_OTHER, "JPEG 2000"},
     {0, 12, "\0\0\0\x0cJXL \r\n\x87\n", PICTURE_OTHER, "JPEG XL"},
@@ -88,7 +88,7 @@ static unsigned little16(const unsigned char *p)
     return p[0] | (unsigned)p[1] << 8;
 }
 
-/* An ISO base media file of which a still picture's brand is one; HEIC and AVIF share a decoder. */
+/* Recognizes an ISO base media file with a still picture's brand; HEIC and AVIF share a decoder. */
 static bool is_heic(const unsigned char *head, size_t size)
 {
     static const char *const brands[] = {"heic", "heix", "hevc", "heim", "heis", "hevm",
@@ -102,7 +102,7 @@ static bool is_heic(const unsigned char *head, size_t size)
     return false;
 }
 
-/* Behind "BM" and the file's sizes, a head of a length that some version has, for one plane. */
+/* Recognizes BMP: after "BM" and the file's sizes, a header of a known length, for one plane. */
 static bool is_bmp(const unsigned char *head, size_t size)
 {
     if (size < 26 || memcmp(head, "BM", 2) != 0 || head[15] || head[16] || head[17]) return false;
@@ -116,7 +116,7 @@ static bool is_space(unsigned char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/* Text may begin with a letter and a digit, too: a number or a remark follows here. */
+/* Recognizes netpbm. Text may begin with a letter and a digit, too; here a number or a comment follows. */
 static bool is_pnm(const unsigned char *head, size_t size)
 {
     if (size < 8 || head[0] != 'P') return false;
@@ -158,8 +158,8 @@ static bool has_color(unsigned bits)
     return bits == 15 || bits == 16 || bits == 24 || bits == 32;
 }
 
-/* Truevision's TGA has no mark at its beginning, and not all have one at their end: a head in which all fits, and as
- * many bytes behind it as its pixels need at least. */
+/* Recognizes Truevision's TGA. It has no signature at its beginning, and not always one at its end, so that a
+ * consistent header is required, and at least as many bytes after it as its pixels need. */
 static bool is_tga(FILE *file, const unsigned char *head, size_t size)
 {
     enum { HEAD = 18, MAPPED = 1, RUNS = 8, LONGEST_RUN = 128 };

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* What a file is by its content: its name may say anything.
+/* Recognizes a file's format by its content, whatever its name.
  *
  *     img_format f = img_format_of("holiday.jpg");
  *     if (f.is_read) img_read(...);
  *     else if (f.name) say("a %s picture, which is not read", f.name);
- *     else say("no picture at all");
+ *     else say("not a picture");
  */
 #ifndef MERLIN_IMAGE_FORMATS_IMG_FORMAT_H
 #define MERLIN_IMAGE_FORMATS_IMG_FORMAT_H
@@ -16,19 +16,19 @@
 
 typedef struct img_format {
     picture_kind kind;
-    const char *name; /* "JPEG 2000", also of formats that are not read; NULL of what is no picture */
+    const char *name; /* such as "JPEG 2000", also for formats that are not read; NULL if the file is not a picture */
     bool is_read;
 } img_format;
 
-/* Looks into a file; what cannot be opened or is no plain file is no picture. */
+/* Inspects a file; one that cannot be opened or is not a plain file counts as no picture. */
 img_format img_format_of(const char *path);
-/* Tells whether img_read reads files of this one's format. */
+/* Tells whether img_read can read the file's format. */
 bool img_is_picture(const char *path);
 
-/* Bytes of a file's beginning that are enough to know its format. */
+/* Number of bytes at a file's beginning that suffice to recognize its format. */
 enum { IMG_FORMAT_HEAD = 1024 };
-/* Returns the format by a file's first bytes, at most IMG_FORMAT_HEAD; TIFFs are not told from raw pictures of a TIFF's
- * form, and TGAs, which begin like much else, are not known. */
+/* Returns the format by a file's first bytes, at most IMG_FORMAT_HEAD. Raw pictures in the form of a TIFF are not
+ * distinguished from TIFFs, and TGAs, which have no signature, are not recognized. */
 img_format img_format_of_head(const void *head, size_t size);
 
 #endif

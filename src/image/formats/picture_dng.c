@@ -28,15 +28,15 @@ enum {
 typedef struct dng {
     tiff_head t;
     const char *path;
-    uint64_t page, size; /* of the pixels; bytes of the file */
+    uint64_t page, size; /* page: its position; size: of the file, bytes */
     float_parts parts;
-    unsigned places, sizes; /* tags of the parts */
+    unsigned places, sizes; /* tags of the parts' positions and sizes */
     int left, top, right, bottom;
     bool mosaic;
     uint8_t pattern[4];
-    float *band; /* rows of parts from band_top on */
+    float *band; /* rows of parts, from band_top on */
     int band_top, band_rows;
-    double mix[9]; /* camera to sRGB's primaries, white balance included */
+    double mix[9]; /* camera colours to sRGB's primaries, white balance included */
 } dng;
 
 static bool is_float_page(const tiff_head *t, uint64_t page)
@@ -51,7 +51,7 @@ static uint64_t larger_page(const tiff_head *t, uint64_t best, uint64_t page)
     return !best || tiff_value(t, page, TIFF_WIDTH) > tiff_value(t, best, TIFF_WIDTH) ? page : best;
 }
 
-/* Finds the largest page of raw floats; 0 if there is none. */
+/* Finds the largest page of raw floats; returns 0 if there is none. */
 static uint64_t find_page(const tiff_head *t)
 {
     uint64_t best = 0;
@@ -103,7 +103,7 @@ static void find_parts(dng *d)
     d->mosaic = tiff_value(&d->t, d->page, TIFF_PHOTOMETRIC) == MOSAIC;
 }
 
-/* Finds the pixels that see light: top, left, bottom, right. */
+/* Finds the rectangle of pixels exposed to light: top, left, bottom, right. */
 static void find_active_area(dng *d)
 {
     uint32_t at[4];
@@ -118,8 +118,8 @@ static void find_active_area(dng *d)
     d->right = (int)at[3];
 }
 
-/* Makes the matrix from sRGB's primaries to the camera's colours, each of whose rows makes 1 of white, and the factors
- * that daylight takes for that. */
+/* Computes the matrix from sRGB's primaries to camera colours, its rows scaled to map white to 1, and the factors by
+ * which daylight does so. */
 static void find_camera(const dng *d, double camera[9], double daylight[3])
 {
     static const double xyz[9] = {0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522,
@@ -142,7 +142,7 @@ static void find_camera(const dng *d, double camera[9], double daylight[3])
     }
 }
 
-/* Balances white as the camera was set, or for daylight; the weakest factor is 1. */
+/* Computes the white balance, as the camera was set or for daylight; the smallest factor is 1. */
 static void find_mix(dng *d, bool as_set)
 {
     double camera[9], by[3], least = INFINITY;
@@ -157,11 +157,12 @@ static void find_mix(dng *d, bool as_set)
         d->mix[i] *= isfinite(least) ? by[i % 3] / least : 1;
 }
 
-/* Refuses what is not read here; a mosaic is read as a whole, for a pixel's colours are its neighbours'. */
+/* Refuses variants that are not supported. A mosaic must be held as a whole, as a pixel's colours come from its
+ * neighbours. */
 static status check(dng *d)
 {
     const float_parts *p = &d->parts;
-    const double most_of_a_byte = 1032; /* that deflating makes */
+    const double most_of_a_byte = 1032; /* largest ratio of deflate */
     status s = picture_check_size(d->path, p->width, p->height);
     if (s != OK) return s;
     bool channels = d->mosaic ? p->samples == 1 : p->samples == 1 || p->samples == 3;
@@ -194,7 +195,7 @@ static status check_mosaic(dng *d)
     return OK;
 }
 
-/* Puts a part's floats in their place in the band. */
+/* Copies a part's floats to their position in the band. */
 static void place_part(dng *d, const float *floats, int x, int y)
 {
     const float_parts *p = &d->parts;
@@ -207,7 +208,7 @@ static void place_part(dng *d, const float *floats, int x, int y)
 typedef struct room {
     void *data, *bytes;
     float *floats;
-    size_t most; /* bytes of a part in the file */
+    size_t most; /* bytes of the largest part in the file */
 } room;
 
 static bool read_part(dng *d, room *r, int across, int x, int y)
@@ -229,7 +230,7 @@ static bool read_part(dng *d, room *r, int across, int x, int y)
            float_part_unpack(&p, r->data, size, r->bytes, r->floats);
 }
 
-/* Reads the parts of the band that begins at a row. */
+/* Reads the parts of the band that begins at row `top`. */
 static bool fill_band(dng *d, room *r, int top)
 {
     const float_parts *p = &d->parts;
@@ -250,7 +251,7 @@ static float level(const dng *d, unsigned tag, int place, double otherwise)
     return (float)tiff_real_at(&d->t, d->page, tag, (uint64_t)place < count ? (uint64_t)place : 0);
 }
 
-/* Brings the band's values to 0 for black and 1 for white. */
+/* Scales the band's values to 0 for black and 1 for white. */
 static void scale_band(dng *d)
 {
     const float_parts *p = &d->parts;
@@ -268,7 +269,8 @@ static void scale_band(dng *d)
         }
 }
 
-/* Makes a mosaic's colours at a place: the means of those in the 3 x 3 around it, but its own. */
+/* Computes the three colours at a pixel of a mosaic: its own sample, and the means of the others in its 3 × 3
+ * neighbourhood. */
 static void see_mosaic(const dng *d, int x, int y, float seen[3])
 {
     float sum[3] = {0}, count[3] = {0};
@@ -303,7 +305,7 @@ static void see_row(const dng *d, int y, float *line)
             double sum = 0;
             for (int k = 0; k < 3; k++)
                 sum += d->mix[3 * c + k] * (double)seen[k];
-            *line++ = sum < 0 ? 0 : (float)sum; /* what is not finite stays, to be told of */
+            *line++ = sum < 0 ? 0 : (float)sum; /* values that are not finite stay, to be reported later */
         }
     }
 }

@@ -10,7 +10,7 @@ enum { NAME_SIZE = 256 };
 
 typedef char channel_name[NAME_SIZE];
 
-/* The first layer that has .R, .G and .B. */
+/* Finds the first layer that has .R, .G and .B. */
 static int find_layer(const exr_file *f, channel_name names[3])
 {
     const char *name;
@@ -24,7 +24,7 @@ static int find_layer(const exr_file *f, channel_name names[3])
     return 0;
 }
 
-/* How many channels make the picture, and what they are called; 0 if there is none. */
+/* Chooses the channels of the picture and returns how many there are; 0 if there is none. */
 static int choose_channels(const exr_file *f, channel_name names[3])
 {
     if (exr_has_channel(f, "R") && exr_has_channel(f, "G") && exr_has_channel(f, "B")) {
@@ -44,11 +44,11 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     return 0;
 }
 
-/* Of maps and samples, whose colour is not times it. */
+/* Mask of maps and samples, whose colour is not multiplied by it. */
 static const char maps_mask[] = "mask.A";
 
-/* The channel that says where there is anything, but for that of the colour itself; false if none. A layer may have its
- * own. */
+/* Finds the alpha channel, unless it is the colour itself; returns false if there is none. A layer's own comes first.
+ */
 static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha)
 {
     channel_name own;
@@ -62,11 +62,11 @@ static bool find_alpha(const exr_file *f, const char *colour, channel_name alpha
     return false;
 }
 
-/* By OpenEXR's convention colour is what is seen over black: times alpha. Here it is the object's own, as in the other
- * kinds. */
+/* Divides colour by alpha: OpenEXR's colour is premultiplied by convention, while here it is the object's own, as for
+ * the other formats. */
 static void divide_by_alpha(const img *alpha, img *color)
 {
-    const float least = 1e-6f; /* less is nothing, and what is divided by it would be noise */
+    const float least = 1e-6f; /* below this alpha there is no object, and dividing would amplify noise */
     size_t count = img_value_count(color);
     for (size_t i = 0; i < count; i++) {
         float cover = alpha->data[i / (size_t)color->channels];
@@ -74,7 +74,7 @@ static void divide_by_alpha(const img *alpha, img *color)
     }
 }
 
-/* Brings colours of other primaries to sRGB's. */
+/* Converts colours of other primaries to sRGB's. */
 static status convert_primaries(const exr_file *f, const char *path, img *color)
 {
     float xy[8];
@@ -106,7 +106,7 @@ static status check_frame(const exr_file *f, const char *path)
     return picture_check_sides(path, d.width, d.height);
 }
 
-/* Says which channels are missing: some of R, G and B alone make neither a grey nor a coloured picture. */
+/* Fails with a message about missing channels: some of R, G and B make neither a grey nor a coloured picture. */
 static status refuse_channels(const exr_file *f, const char *path)
 {
     for (int c = 0; c < 3; c++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a Radiance picture's head says and libvips passes over: colours in CIE XYZ, and rows that run another way than
- * from the top left. */
+/* Parts of a Radiance header that libvips ignores: colours in CIE XYZ, and rows in another order than from the top
+ * left. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 enum { LINE_SIZE = 2048 };
 
-/* The next line without its end; false behind the last. */
+/* Reads the next line without its end; returns false behind the last. */
 static bool next_line(FILE *f, char line[LINE_SIZE])
 {
     if (!fgets(line, LINE_SIZE, f)) return false;
@@ -17,7 +17,7 @@ static bool next_line(FILE *f, char line[LINE_SIZE])
     return true;
 }
 
-/* A head that is damaged is left to libvips, which says so. */
+/* Checks the header; a damaged one is left to libvips, which reports it. */
 static status check_open(FILE *f, const char *path)
 {
     char line[LINE_SIZE], first, second;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures that decoders hold as a whole, however few of their pixels are kept: what a small file may make of memory.
- */
+/* Limits for pictures that decoders hold as a whole, even when few of their pixels are kept: how much memory a small
+ * file may claim. */
 #include "base/file.h"
 #include "image/formats/picture.h"
 #include "image/metadata/box_file.h"
 
-/* Bytes a pixel that libwebp, libnsgif, libheif and libjpeg hold at most, measured, with what libvips adds. */
+/* Bytes a pixel that libwebp, libnsgif, libheif and libjpeg hold at most, as measured, including libvips. */
 enum { BYTES_WEBP = 12, BYTES_GIF = 12, BYTES_HEIC = 6, BYTES_SCANS = 5 };
 
-/* A JPEG whose pixels come in several scans is held as coefficients: a progressive one, or one of its components one
- * after the other. */
+/* Tells whether a JPEG's pixels come in several scans, so that it is held as coefficients: a progressive one, or one
+ * whose components follow each other. */
 static bool comes_in_scans(FILE *file)
 {
     enum { MARKERS = 4096, SCAN = 0xffda, FRAMES = 0xffc0, LAST_FRAME = 0xffcf, TABLES = 4, ARITHMETIC = 12 };
@@ -41,7 +41,7 @@ status picture_check_held(const char *path, picture_kind kind, int width, int he
 
 status picture_check_cut(const char *path, picture_kind kind)
 {
-    enum { HEAD = 8 }; /* RIFF, and the count of the bytes behind it, the lowest first */
+    enum { HEAD = 8 }; /* "RIFF", and the number of bytes that follow, little endian */
     FILE *file = kind == PICTURE_WEBP ? file_open(path) : NULL;
     if (!file) return OK;
     uint8_t head[HEAD] = {0};

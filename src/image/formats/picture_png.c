@@ -15,17 +15,17 @@
 #include "image/metadata/exif.h"
 #include "image/metadata/exif_text.h"
 
-/* Chunks are searched wherever they are: some programs write the orientation behind the pixels (ImageMagick). */
+/* Facts from a PNG's chunks, wherever they are: some programs write the orientation after the pixels (ImageMagick). */
 typedef struct chunks {
     bool has_cicp;
     unsigned char cicp[4]; /* primaries, transfer, matrix, full range */
     int orientation;
-    int frames;      /* of an animation */
-    bool overfull;   /* one beside the pixels claims more bytes than the file has, which decoders would make room for */
-    uint64_t packed; /* bytes of all pixels */
+    int frames;      /* frames of an animation */
+    bool overfull;   /* a chunk beside the pixels claims more bytes than the file has */
+    uint64_t packed; /* bytes of all pixel chunks */
 } chunks;
 
-/* A file on its way in; libpng leaves by longjmp, so that what is to be freed is kept here. */
+/* A file being read; libpng reports errors by longjmp, so that what must be freed is kept here. */
 typedef struct reader {
     FILE *file;
     png_structp png;
@@ -33,7 +33,7 @@ typedef struct reader {
     picture_layout layout;
     chunks chunks;
     bool profile, interlaced;
-    uint8_t *codes; /* of a row, or of all of them if they are interlaced */
+    uint8_t *codes; /* codes of a row, or of all rows if they are interlaced */
     png_bytep *rows;
     picture_rows *to;
     char words[128];
@@ -69,10 +69,10 @@ static bool reader_open(reader *r, const char *path)
     return r->file && r->info;
 }
 
-/* Damage in it does no harm. */
+/* Returns the orientation in an EXIF chunk; damage in it is ignored. */
 static int orientation_in(int file, off_t at, uint32_t size)
 {
-    enum { LARGEST = 1 << 16 }; /* as JPEG has it */
+    enum { LARGEST = 1 << 16 }; /* as JPEG limits it */
     if (size > LARGEST) return 1;
     void *exif = malloc(size + 1);
     int orientation = 1;
@@ -81,7 +81,7 @@ static int orientation_in(int file, off_t at, uint32_t size)
     return orientation;
 }
 
-/* Of EXIF as text (exif_text.h); 0 of other texts. */
+/* Returns the orientation in EXIF stored as text (exif_text.h); 0 for other texts. */
 static int orientation_in_text(int file, off_t at, uint32_t size, bool packed)
 {
     char *content = size <= EXIF_TEXT_MOST ? malloc(size + 1) : NULL;
@@ -104,7 +104,7 @@ static int frames_in(int file, off_t at)
     return there ? b[1] << 16 | b[2] << 8 | b[3] : 0;
 }
 
-/* Goes over a file's chunks; what is damaged libpng says later. */
+/* Walks over a file's chunks; damage is left for libpng to report. */
 static chunks find_chunks(int file)
 {
     struct stat about;
@@ -130,8 +130,8 @@ static chunks find_chunks(int file)
     return found;
 }
 
-/* Near the gamma of screens a curve is sRGB's (as the PNG specification has it), which is no power, unless the
- * primaries are others; ImageMagick keeps linear pictures as PNGs of gamma 1. */
+/* Returns the light for a gAMA chunk. Near the gamma of screens the curve is sRGB's, which is no power (as the PNG
+ * specification has it), unless the primaries differ; ImageMagick stores linear pictures as PNGs of gamma 1. */
 static picture_light light_of_gamma(const reader *r)
 {
     picture_light light = {.said = png_get_valid(r->png, r->info, PNG_INFO_sRGB) != 0};
@@ -152,7 +152,7 @@ static picture_light light_of_gamma(const reader *r)
     return light;
 }
 
-/* The codes' meaning: by cICP, else by a profile, which is left to others, else by sRGB, gAMA and cHRM. */
+/* Finds the meaning of the codes: by cICP, else by a profile, which is left to others, else by sRGB, gAMA and cHRM. */
 static status find_light(reader *r, const char *path)
 {
     const unsigned char *cicp = r->chunks.cicp;
@@ -186,12 +186,13 @@ static bool read_head(reader *r)
     return true;
 }
 
-/* All that there is becomes grey or RGB, with alpha or without, of 8 or 16 bits. Takes a row's memory. */
+/* Converts every variant to grey or RGB, with or without alpha, of 8 or 16 bits, and allocates a row. Returns false
+ * without memory. */
 static bool begin_rows(reader *r)
 {
     if (setjmp(png_jmpbuf(r->png))) return false;
     png_set_expand(r->png);
-    png_set_swap(r->png); /* of 16 bits, the largest first in the file */
+    png_set_swap(r->png); /* 16-bit samples are big endian in the file */
     (void)png_set_interlace_handling(r->png);
     png_read_update_info(r->png, r->info);
     r->layout.bands = png_get_channels(r->png, r->info);
@@ -244,7 +245,8 @@ static status read_rows(reader *r, const char *path)
     return OK;
 }
 
-/* No compression of PNG's makes more of a byte; a claim beyond that takes memory and time for nothing. */
+/* Tells whether the file has enough bytes: PNG's compression has a maximum ratio, and a claim beyond it costs memory
+ * and time for nothing. */
 static bool is_long_enough(const reader *r)
 {
     const double most = 1032;

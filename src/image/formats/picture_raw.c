@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a camera's sensor saw, by LibRaw: linear, so that no camera's curve has to be guessed. */
+/* Sensor data through LibRaw: linear, so that no camera's tone curve has to be inverted. */
 #include <libraw/libraw.h>
 
 #include "base/library.h"
@@ -25,7 +25,7 @@ static struct {
 static const library_function wanted[] = {LIBRAW_FUNCTIONS(WANTED)};
 static library libraw = {.file = MERLIN_LIBRAW, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
-/* Version 0.21 has no callback for memory, and so no option against it. */
+/* Version 0.21 has no memory callback, and so no option to disable it. */
 #if LIBRAW_COMPILE_CHECK_VERSION_NOTLESS(0, 21)
 enum { WITHOUT_CALLBACKS = LIBRAW_OPIONS_NO_DATAERR_CALLBACK };
 #else
@@ -51,7 +51,7 @@ static status refusal(const char *path, int error)
     return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, raw.strerror(error));
 }
 
-/* A handle to close, with the file open in it. */
+/* Opens a file in a new handle, which the caller closes. */
 static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
 {
     if (picture_tiff_is_overfull(path)) return refusal(path, LIBRAW_DATA_ERROR);
@@ -69,7 +69,8 @@ static status open_raw(const char *path, bool *damaged, libraw_data_t **out)
     return s;
 }
 
-/* Nothing may depend on what the picture shows, such as its brightest value: pictures of one set share a scale. */
+/* Sets the processing. Nothing may depend on the picture's content, such as its brightest value: pictures of one set
+ * share a scale. */
 static void ask_for_light(libraw_output_params_t *p, bool white_balanced)
 {
     const int the_cameras = 0;
@@ -91,8 +92,8 @@ static status develop(libraw_data_t *file, const char *path, bool white_balanced
     return error ? refusal(path, error) : OK;
 }
 
-/* One pixel from the camera's colours to sRGB's primaries. In a measurement one saturated channel makes all saturated,
- * which mixing them would hide. */
+/* Converts a pixel from camera colours to sRGB's primaries. In a measurement one saturated channel makes all channels
+ * saturated, which mixing would hide. */
 static void mix(const float (*matrix)[4], const float *seen, int colors, bool measured, float *out, int channels)
 {
     float most = 0;

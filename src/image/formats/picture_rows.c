@@ -10,17 +10,17 @@
 
 struct picture_rows {
     picture_layout layout;
-    int channels; /* of colour: 1 or 3 */
+    int channels; /* colour channels: 1 or 3 */
     int reduction;
     bool decode;
-    float full;    /* the code that is 1 */
-    float *table;  /* of whole numbers that are decoded; else NULL */
+    float full;    /* code of the value 1 */
+    float *table;  /* linear values of integers that are decoded; else NULL */
     bool coded;    /* floats have a curve, too */
-    bool mixed;    /* by the matrix */
-    double mix[9]; /* to sRGB's primaries */
+    bool mixed;    /* converted by the matrix */
+    double mix[9]; /* matrix to sRGB's primaries */
     float *line;   /* colours of one row */
-    float *cover;  /* and alpha, 1 without */
-    float *weight; /* of reduced pictures: what each pixel of color is the sum of */
+    float *cover;  /* alpha of that row, 1 without */
+    float *weight; /* for reduced pictures: the total weight in each pixel of color */
     img *color, *alpha;
 };
 
@@ -108,7 +108,7 @@ static float code_at(const picture_rows *r, const void *samples, size_t i)
     return ((const float *)samples)[i] / r->full;
 }
 
-/* The light of a code that lies between two. */
+/* Returns the linear light of a code between two table entries. */
 static float light_of(const picture_rows *r, float code)
 {
     float last = r->layout.sample == PICTURE_UINT16 ? 65535.0f : 255.0f;
@@ -123,7 +123,7 @@ static void take_cover(picture_rows *r, const void *samples)
         r->cover[x] = there ? code_at(r, samples, x * bands + bands - 1) : 1;
 }
 
-/* Colours as they usually are, by table at once. */
+/* Converts ordinary colours through the table. */
 static void take_codes(picture_rows *r, const void *samples)
 {
     size_t bands = (size_t)r->layout.bands, channels = (size_t)r->channels, width = (size_t)r->layout.width;
@@ -135,10 +135,10 @@ static void take_codes(picture_rows *r, const void *samples)
             r->line[x * channels + c] = r->table[is_wide ? wide[x * bands + c] : narrow[x * bands + c]];
 }
 
-/* Colours that are scaled, or are the file's own times alpha. */
+/* Converts colours that are scaled, or premultiplied by alpha. */
 static void take_values(picture_rows *r, const void *samples)
 {
-    const float least = 1e-6f; /* less is nothing, and what is divided by it would be noise */
+    const float least = 1e-6f; /* below this alpha there is no object, and dividing would amplify noise */
     size_t bands = (size_t)r->layout.bands, channels = (size_t)r->channels, width = (size_t)r->layout.width;
     bool divided = r->layout.premultiplied && has_alpha(&r->layout);
     for (size_t x = 0; x < width; x++) {
@@ -163,7 +163,8 @@ static void mix_line(picture_rows *r)
     }
 }
 
-/* Tells where the file's pixel is seen, by the EXIF standard's table, in a picture of this size. */
+/* Returns the pixel of an upright picture of this size at which the file's pixel is seen, by the EXIF standard's table.
+ */
 static size_t place_of(const picture_rows *r, const img *image, int x, int y)
 {
     int o = r->layout.orientation, right = image->width - 1, below = image->height - 1, to_x = x, to_y = y;
@@ -191,7 +192,7 @@ static void place_line(picture_rows *r, int y)
             r->alpha->data[place_of(r, r->alpha, x, y)] = r->cover[x];
 }
 
-/* Pixels that show more count more, and those that show nothing hardly. */
+/* Adds a row to the reduced picture, weighted by alpha: pixels that show nothing hardly count. */
 static void add_line(picture_rows *r, int y)
 {
     const float least = 1e-4f;
@@ -221,7 +222,7 @@ void picture_rows_put(picture_rows *r, int y, const void *samples)
         place_line(r, y);
 }
 
-/* Returns how many of the file's pixels along a side lie in one of the reduced picture's. */
+/* Returns how many of the file's pixels along a side are averaged into one of the reduced picture. */
 static int share(int size, int by, int at)
 {
     return size - at * by < by ? size - at * by : by;

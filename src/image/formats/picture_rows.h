@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A picture's rows on their way from a decoder to linear float: each is decoded by its curve, parted into colour and
- * alpha, turned upright and, of a picture too large to be held, averaged with its neighbours. Whatever a file's size,
- * its codes are never held as a whole.
+/* Converts a decoder's rows to linear float: each is decoded by its curve, separated into colour and alpha, turned
+ * upright, and averaged with its neighbours if the picture is too large to be held. Whatever a file's size, its codes
+ * are never held as a whole.
  *
  *     picture_rows *rows;
  *     status s = picture_rows_new(&layout, PICTURE_LINEARIZE, &color, &alpha, &rows);
@@ -17,36 +17,36 @@
 
 typedef enum picture_sample {
     PICTURE_UINT8,
-    PICTURE_UINT16, /* of the machine's order */
+    PICTURE_UINT16, /* in the machine's byte order */
     PICTURE_FLOAT,
 } picture_sample;
 
-/* The layout of samples in a row. Bands are grey, or RGB, perhaps with alpha behind; further ones are passed over. */
+/* The layout of samples in a row. Bands are grey, or RGB, perhaps followed by alpha; further ones are ignored. */
 typedef struct picture_layout {
-    int width, height; /* in the file */
+    int width, height; /* size in the file */
     int bands;
-    bool alpha;         /* the last band is */
-    bool premultiplied; /* colours are times it, before their curve */
+    bool alpha;         /* the last band is alpha */
+    bool premultiplied; /* colours are multiplied by alpha, before their curve */
     picture_sample sample;
     int orientation;     /* by the EXIF standard; 0 is upright, as 1 */
-    float scale;         /* what whole numbers and floats are multiplied by; 0 is 1 */
-    picture_light light; /* of whole numbers; floats are linear, though their primaries may be others ... */
-    bool coded;          /* ... but these, by light's curve where it is said */
+    float scale;         /* factor for integers and floats; 0 counts as 1 */
+    picture_light light; /* meaning of integers; floats are linear, though their primaries may differ ... */
+    bool coded;          /* ... except these floats, which have light's curve if one is stated */
 } picture_layout;
 
 typedef struct picture_rows picture_rows;
 
-/* color gets 1 or 3 channels, alpha, which may be NULL, 1 if there is any. */
+/* Begins a picture. color gets 1 or 3 channels; alpha, which may be NULL, gets 1 if there is one. */
 status picture_rows_new(const picture_layout *layout, picture_colour how, img *color, img *alpha, picture_rows **out);
-/* Takes a row of the file, each once, in any order. */
+/* Takes a row of the file; each once, in any order. */
 void picture_rows_put(picture_rows *rows, int y, const void *samples);
-/* Finishes what has been put; NULL is fine. */
+/* Finishes the picture; NULL is allowed. */
 void picture_rows_free(picture_rows *rows);
 
-/* Returns how many pixels a side of a picture of this size become one, so that it has at most IMAGE_MOST_PIXELS and
- * IMAGE_MAX_SIDE a side: 1 for most. Its size is then divided by that, rounded up. */
+/* Returns how many pixels a side are averaged into one, so that the picture has at most IMAGE_MOST_PIXELS and
+ * IMAGE_MAX_SIDE a side: 1 for most. Its size is divided by that and rounded up. */
 int picture_reduction(long long width, long long height);
-/* Reduces a picture that its decoder gave as a whole; empty ones, and most, stay as they are. */
+/* Reduces a picture that its decoder returned as a whole; empty ones, and most, are left as they are. */
 status picture_reduce(img *image);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads what a TIFF says of itself and libvips keeps to itself or does not find: which page is the picture, whether it
- * is a camera's raw one, and how much memory it would take. */
+/* Reads what a TIFF states and libvips ignores or does not find: which page is the picture, whether it is a camera's
+ * raw file, and how much memory it would take. */
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "image/metadata/tiff_head.h"
 
 enum { JPEG = 7, YCBCR = 6, CMYK = 5, MOSAIC = 32803, LINEAR_RAW = 34892, ASSOCIATED = 1, REDUCED = 1, MASK = 4 };
-enum { MOST_BELOW = 8 }; /* pages below another */
+enum { MOST_BELOW = 8 }; /* most sub-pages of a page */
 
 static bool is_raw_page(const tiff_head *t, uint64_t page)
 {
@@ -19,7 +19,7 @@ static bool is_raw_page(const tiff_head *t, uint64_t page)
     return meaning == MOSAIC || meaning == LINEAR_RAW;
 }
 
-/* Behind the head, "CR" and its version, where TIFFs may have pixels. */
+/* Tells whether "CR" and a version follow the header, where ordinary TIFFs may have pixels: Canon's CR2. */
 static bool is_canon(FILE *file)
 {
     char head[11] = {0};
@@ -42,7 +42,8 @@ static uint64_t pixels_of(const tiff_head *t, uint64_t page)
     return (uint64_t)tiff_value(t, page, TIFF_WIDTH) * tiff_value(t, page, TIFF_HEIGHT);
 }
 
-/* The largest page that is no copy and no mask of another, -1 if none; others: how many are more than half as large. */
+/* Returns the largest page that is not a reduced copy or a mask, -1 if there is none; others: number of pages more than
+ * half as large. */
 static int find_page(const tiff_head *t, int *others)
 {
     int best = -1;
@@ -62,7 +63,7 @@ static unsigned big16(const unsigned char *p)
     return (unsigned)p[0] << 8 | p[1];
 }
 
-/* Samples that the JPEG at a place of a file claims in its frame's head; 0 if none is found. */
+/* Returns the number of samples that the JPEG at a position claims in its frame header; 0 if none is found. */
 static uint64_t jpeg_samples(FILE *file, uint64_t at)
 {
     unsigned char head[1024];
@@ -75,7 +76,7 @@ static uint64_t jpeg_samples(FILE *file, uint64_t at)
     return 0;
 }
 
-/* Tells whether what a raw page is made of claims to be far more than the page: a decoder would make all of it. */
+/* Tells whether the parts of a raw page claim to be far larger than the page: a decoder would allocate them. */
 static bool is_overfull(const tiff_head *t, uint64_t page)
 {
     enum { MOST_PARTS = 4096, SPARE = 4 };
@@ -84,7 +85,7 @@ static bool is_overfull(const tiff_head *t, uint64_t page)
     uint64_t parts = tiff_count(t, page, tag), sum = 0, samples = tiff_value(t, page, TIFF_SAMPLES);
     for (uint64_t i = 0; i < parts && i < MOST_PARTS; i++)
         sum += jpeg_samples(t->file, tiff_value_at(t, page, tag, i));
-    const uint64_t border = 1 << 20; /* of tiles that reach beyond the page */
+    const uint64_t border = 1 << 20; /* tiles may extend beyond the page */
     return sum > SPARE * pixels_of(t, page) * (samples ? samples : 1) + border;
 }
 
@@ -116,7 +117,7 @@ bool picture_tiff_is_raw(const char *path)
     return raw;
 }
 
-/* Returns the bytes that libvips would hold of it: a strip or a row of tiles, or all of what is in planes. */
+/* Checks the bytes that libvips would hold: a strip, a row of tiles, or everything if the samples are in planes. */
 static status check_samples(const tiff_head *t, uint64_t page, const char *path)
 {
     uint32_t samples = tiff_value(t, page, TIFF_SAMPLES), bits = tiff_value(t, page, TIFF_BITS);
@@ -135,7 +136,7 @@ static status check_samples(const tiff_head *t, uint64_t page, const char *path)
     return picture_check_whole(path, width, strip < height ? strip : height, bytes < 64 ? bytes : 64, "in more strips");
 }
 
-/* Refuses samples that libvips would take for others, or refuse in words for programmers. */
+/* Refuses samples that libvips would misinterpret, or refuse in terms for programmers. */
 static status check_meaning(const tiff_head *t, uint64_t page, const char *path)
 {
     enum { ICC_LAB = 9, ITU_LAB = 10, LOG_L = 32844, LOG_LUV = 32845, SIGNED = 2, FLOATS = 3 };
@@ -145,7 +146,7 @@ static status check_meaning(const tiff_head *t, uint64_t page, const char *path)
         return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are %s L*a*b*; save it as RGB", path,
                     meaning == ICC_LAB ? "ICC" : "ITU");
     bool whole = bits <= 2 || bits == 4 || bits == 8 || bits == 16;
-    bool logarithmic = meaning == LOG_L || meaning == LOG_LUV; /* its decoder makes floats */
+    bool logarithmic = meaning == LOG_L || meaning == LOG_LUV; /* their decoder returns floats */
     if (logarithmic || (format == FLOATS ? bits == 32 : format != SIGNED && whole)) return OK;
     return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: its samples are %s of %u bits; whole ones of 8 or 16 bits without a sign, or floats "
@@ -169,7 +170,7 @@ static status check_open(const tiff_head *t, const char *path, picture_tiff_page
                     others + 1);
     status s = check_meaning(t, page, path);
     if (s != OK) return s;
-    /* those of JPEG its decoder makes RGB */
+    /* JPEG's decoder converts those to RGB */
     if (tiff_value(t, page, TIFF_PHOTOMETRIC) == YCBCR && tiff_value(t, page, TIFF_COMPRESSION) != JPEG)
         return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are YCbCr; save it as RGB", path);
     out->premultiplied =

@@ -11,8 +11,8 @@
 #include "image/vips_library.h"
 #include "image/vips_start.h"
 
-/* Replaces *image by what an operation made of it; true on success. made is a pointer so that the operation may be
- * written as the last argument: in which order arguments are computed is the compiler's choice. */
+/* Replaces *image by the result of an operation; returns true on success. made is a pointer so that the operation's
+ * call can be the last argument: the order in which arguments are evaluated is unspecified. */
 static bool replace(VipsImage **image, VipsImage *const *made, int failed)
 {
     if (failed) return false;
@@ -23,8 +23,8 @@ static bool replace(VipsImage **image, VipsImage *const *made, int failed)
 
 typedef int loader(const char *path, VipsImage **out, ...);
 
-/* Each kind by its own: asked to find one, libvips shows what it does not know, such as a file cut short, to all that
- * it has, and CFITSIO, one of the libraries behind it, crashes now and then on what is not its own. */
+/* Returns the loader for a kind. libvips is not asked to find one: it offers an unknown file, such as a truncated one,
+ * to every library it has, and CFITSIO sometimes crashes on files that are not its own. */
 static loader *loader_of(picture_kind kind)
 {
     switch (kind) {
@@ -54,8 +54,8 @@ static loader *loader_of(picture_kind kind)
     return NULL;
 }
 
-/* libvips divides a TIFF's colours by an alpha of 0 to 255, of floats, too, whose alpha is 0 to 1 (8.14). That is
- * undone by its inverse, whatever it took for the range, and then done by the range of floats. */
+/* Divides a float TIFF's colours by alpha. libvips (8.14) assumes an alpha of 0 to 255 for floats, too, where it is 0
+ * to 1: its division is undone by its inverse and done again with the range of floats. */
 static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
 {
     VipsImage *made = NULL;
@@ -64,7 +64,8 @@ static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
            replace(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
 }
 
-/* Reads the numbers that a HEIC or AVIF states its codes by. They are codes for screens always, however many bits. */
+/* Reads the code points (ITU-T H.273) that a HEIC or AVIF states. Its codes are always encoded for screens, whatever
+ * their number of bits. */
 static status find_heif_light(const char *path, picture_light *light)
 {
     int n[3];
@@ -81,7 +82,7 @@ static status find_heif_light(const char *path, picture_light *light)
                 path, n[0], n[1]);
 }
 
-/* Finds what a file says of its codes beside a profile. */
+/* Finds what a file states about its codes, beside a profile. */
 static status find_light(const char *path, picture_kind kind, picture_tiff_page *page, picture_light *light)
 {
     exif_facts facts;
@@ -98,7 +99,7 @@ static status find_light(const char *path, picture_kind kind, picture_tiff_page 
     return OK;
 }
 
-/* light: what the file says of its codes beside a profile. */
+/* Opens a picture; light: what the file states about its codes, beside a profile. */
 static status open_picture(const char *path, picture_kind kind, VipsImage **out, picture_light *light)
 {
     VipsImage *image = NULL;
@@ -107,7 +108,7 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
     if (!load) return fail(MERLIN_BAD_INPUT, "cannot read %s: the libvips installed here does not know its kind", path);
     status s = find_light(path, kind, &page, light);
     if (s != OK) return s;
-    /* what is read in sequence is not kept for the next time, when the file may be another */
+    /* sequential pictures are not cached: next time the file may be another */
     int failed = kind == PICTURE_TIFF
                      ? load(path, &image, "fail_on", VIPS_FAIL_ON_TRUNCATED, "access", VIPS_ACCESS_SEQUENTIAL, "page",
                             page.number, NULL)
@@ -124,7 +125,7 @@ static status open_picture(const char *path, picture_kind kind, VipsImage **out,
     return s;
 }
 
-/* From the codings of Radiance files and of 8-bit CIELAB to samples. */
+/* Converts the codings of Radiance files and of 8-bit CIELAB to samples. */
 static bool unpack(VipsImage **image)
 {
     VipsImage *made = NULL;
@@ -134,7 +135,7 @@ static bool unpack(VipsImage **image)
     return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_LAB, NULL));
 }
 
-/* Whether the samples already mean sRGB, grey or linear light, so that our own tables decode them. */
+/* Tells whether the samples are already sRGB, grey or linear light, so that our own tables decode them. */
 static bool is_plain(VipsInterpretation i)
 {
     return i == VIPS_INTERPRETATION_MULTIBAND || i == VIPS_INTERPRETATION_B_W || i == VIPS_INTERPRETATION_sRGB ||
@@ -142,7 +143,7 @@ static bool is_plain(VipsInterpretation i)
            i == VIPS_INTERPRETATION_scRGB || i == VIPS_INTERPRETATION_HISTOGRAM;
 }
 
-/* The part of a picture that is asked for: its pixels, or its head alone. */
+/* What is requested of a picture: its pixels, or its header alone. */
 typedef struct request {
     const char *path;
     picture_kind kind;
@@ -150,17 +151,17 @@ typedef struct request {
     img *color, *alpha;
     picture_head *head;
     bool by_profile;
-    bool *profiled; /* becomes true where a profile was used */
+    bool *profiled; /* set to true if a profile was used */
 } request;
 
-/* Tells whether a profile says what the codes are, and is to be heeded. */
+/* Tells whether a profile defines the codes and is to be applied. */
 static bool has_profile(VipsImage *image, const request *r)
 {
     return r->by_profile && vips()->band_format_isint(vips()->image_get_format(image)) && profile_is_fit(image);
 }
 
-/* Brings other colour spaces to sRGB: by the embedded profile, at 16 bits so that dark codes keep their steps, or by
- * what the file says it is. */
+/* Converts other colour spaces to sRGB: by the embedded profile, at 16 bits to keep the steps of dark codes, or by the
+ * space the file states. */
 static bool convert_space(VipsImage **image, const request *r)
 {
     VipsImage *made = NULL;
@@ -172,7 +173,7 @@ static bool convert_space(VipsImage **image, const request *r)
     return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
 }
 
-/* Hands on what libvips has ready: whole rows, from the top. */
+/* Passes on the rows that libvips has ready: whole rows, from the top. */
 static int put_rows(VipsRegion *from, VipsRect *area, void *context)
 {
     for (int y = area->top; y < area->top + area->height; y++)
@@ -214,7 +215,7 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
     return s;
 }
 
-/* libvips does not look for it in a PNG's texts. */
+/* Returns the orientation, also from a PNG's text chunks, where libvips does not look. */
 static int orientation_of(const char *path)
 {
     exif_facts facts;
@@ -222,7 +223,7 @@ static int orientation_of(const char *path)
     return facts.orientation;
 }
 
-/* light: the codes' own, which other spaces and profiles are brought to sRGB from. */
+/* Decodes an open picture. light: of the stored codes, from which other spaces and profiles are converted to sRGB. */
 static status decode_open(VipsImage **image, const request *r, picture_light light)
 {
     bool decode = r->how == PICTURE_LINEARIZE;
@@ -252,10 +253,10 @@ static status decode(const request *r)
     picture_light light;
     status s = open_picture(r->path, r->kind, &opened, &light);
     if (s != OK) return s;
-    image = (vips()->g_object_ref)(opened); /* GLib has a macro of that name */
+    image = (vips()->g_object_ref)(opened); /* in brackets because GLib has a macro of that name */
     s = decode_open(&image, r, light);
     vips()->g_object_unref(image);
-    /* last: with it goes the colour profile of a HEIF, which no copy keeps alive */
+    /* freed last, as it holds the colour profile of a HEIF, which no copy keeps alive */
     vips()->g_object_unref(opened);
     return s;
 }
@@ -280,8 +281,8 @@ static status look(const request *r)
     return OK;
 }
 
-/* libvips keeps its words for all threads in one place. Pictures are read side by side all the same; one that is
- * refused is read again while no other is, so that the words are about it. */
+/* Runs `work` in parallel with others. libvips keeps one error message for all threads, so that a picture that is
+ * refused is read again alone, to get the message that belongs to it. */
 static status read_side_by_side(status (*work)(const request *r), const request *r)
 {
     static pthread_rwlock_t reading = PTHREAD_RWLOCK_INITIALIZER;
@@ -300,7 +301,7 @@ static status read_side_by_side(status (*work)(const request *r), const request 
     return s;
 }
 
-/* A damaged profile is ignored, as viewers do. */
+/* Ignores a damaged profile, as viewers do. */
 status picture_decode(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha)
 {
     bool profiled = false;

@@ -21,7 +21,7 @@ bool box_name_is(FILE *file, uint64_t at, const char name[4])
            memcmp(found, name, 4) == 0;
 }
 
-/* Reads the head of the box at a place. */
+/* Reads the header of the box at a position. */
 static bool read_box(FILE *file, uint64_t at, uint64_t end, box *out)
 {
     if (at + 8 > end) return false;
@@ -36,7 +36,7 @@ static bool read_box(FILE *file, uint64_t at, uint64_t end, box *out)
     return true;
 }
 
-/* The name stands behind four bytes of size, whatever follows. */
+/* Finds a box; its name follows four bytes of size in every variant. */
 bool box_find(FILE *file, box in, const char name[4], box *out)
 {
     uint64_t at = in.at;
@@ -47,7 +47,7 @@ bool box_find(FILE *file, box in, const char name[4], box *out)
     return false;
 }
 
-/* Reads the colour that the box of properties has at a place, counted from 1, if it is one by numbers. */
+/* Reads the colour property with this number, counted from 1, if it is stated by code points. */
 static bool read_property(FILE *file, box properties, uint64_t place, int numbers[3])
 {
     uint64_t at = properties.at;
@@ -64,7 +64,7 @@ static bool read_property(FILE *file, box properties, uint64_t place, int number
     return true;
 }
 
-/* Goes over the table that gives items their properties. */
+/* Searches the table that associates items with properties. */
 static bool find_colour(FILE *file, box table, box properties, uint64_t item, int numbers[3])
 {
     enum { MOST_PLACES = 512 };

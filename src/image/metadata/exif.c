@@ -21,7 +21,7 @@ enum {
 enum { FIRED = 1, NO_FLASH_THERE = 32 }; /* bits of FLASH */
 static const double DIAGONAL_35MM = 43.2666, SHORTEST = 1, LONGEST = 5000;
 
-/* The page that has an entry: the EXIF page below the first, or the first itself, as in Canon's CR3. */
+/* Returns the page that has an entry: the EXIF page below the first, or the first itself, as in Canon's CR3. */
 static uint64_t page_with(const tiff_head *t, unsigned tag)
 {
     uint64_t below = tiff_value(t, t->page[0], TIFF_EXIF);
@@ -33,7 +33,8 @@ static double number(const tiff_head *t, unsigned tag)
     return tiff_real(t, page_with(t, tag), tag);
 }
 
-/* By the standard 1 is no unit and 2 inches, which is meant where nothing is said; 4 and 5 are some cameras' own. */
+/* Returns the resolution's unit in mm. By the standard 1 is no unit and 2 is inches, also the default; 4 and 5 are
+ * extensions of some cameras. */
 static double unit_in_mm(const tiff_head *t)
 {
     switch ((int)number(t, SENSOR_UNIT)) {
@@ -48,7 +49,7 @@ static double unit_in_mm(const tiff_head *t)
     }
 }
 
-/* From the focal length and the sensor's size. */
+/* Returns the 35 mm equivalent focal length by the focal length and the sensor's size. */
 static double focal_by_sensor(const tiff_head *t)
 {
     double resolution = number(t, SENSOR_RESOLUTION), pixels = hypot(number(t, PIXELS_WIDE), number(t, PIXELS_HIGH));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds where files of the different kinds keep their EXIF. Sizes and places are believed as far as the file goes: each
- * walk moves on by a box at least, and takes so many steps at most. */
+/* Finds where each kind of file keeps its EXIF. Sizes and positions are trusted within the file's length: each step
+ * advances by at least a box or chunk header, and the number of steps is limited. */
 #include "image/metadata/exif_find.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 
 enum { MOST_STEPS = BOX_MOST_STEPS, MOST_SIZE = 1 << 20, HEAD_BYTES = 16 };
 
-/* The number in so many bytes at a place, the least significant first; 0 where the file has ended. */
+/* Reads a little-endian number of so many bytes at a position; 0 at the file's end. */
 static uint64_t little_number(FILE *file, uint64_t at, int bytes)
 {
     unsigned char b[8];
@@ -27,7 +27,7 @@ static bool is_place(uint64_t at, uint64_t size, exif_place *out)
     return out->size > 0;
 }
 
-/* Markers up to the pixels. */
+/* Walks over the markers before the pixels. */
 static bool find_in_jpeg(FILE *file, uint64_t start, exif_place *out)
 {
     enum { APP1 = 0xffe1, START_OF_SCAN = 0xffda, END = 0xffd9 };
@@ -65,9 +65,9 @@ static bool find_in_webp(FILE *file, exif_place *out)
     return false;
 }
 
-/* ---- HEIC and AVIF: boxes in boxes ---- */
+/* ---- HEIC and AVIF: nested boxes ---- */
 
-/* The number of the item that is EXIF, by the table of items; 0 if there is none. */
+/* Returns the number of the item that is EXIF, by the table of items; 0 if there is none. */
 static uint64_t exif_item(FILE *file, box table)
 {
     uint64_t version = box_number(file, table.at, 1), counter = version == 0 ? 2 : 4;
@@ -82,7 +82,7 @@ static uint64_t exif_item(FILE *file, box table)
     return 0;
 }
 
-/* An item's only extent, from the file's start. */
+/* Finds an item's only extent, from the file's start. */
 static bool find_item(FILE *file, box table, uint64_t item, exif_place *out)
 {
     uint64_t version = box_number(file, table.at, 1), sizes = box_number(file, table.at + 4, 2);
@@ -108,7 +108,7 @@ static bool find_item(FILE *file, box table, uint64_t item, exif_place *out)
     return false;
 }
 
-/* Finds the EXIF item, which begins with the distance to the TIFF's head. */
+/* Finds the EXIF item, which begins with the offset of its TIFF header. */
 static bool find_in_heif(FILE *file, exif_place *out)
 {
     box all = {0, INT64_MAX}, meta, table;
@@ -120,7 +120,7 @@ static bool find_in_heif(FILE *file, exif_place *out)
     return skip < out->size && is_place(out->at + skip, out->size - skip, out);
 }
 
-/* Canon's CR3: the EXIF page stands alone in a box of the first one's private box. */
+/* Finds the EXIF page of Canon's CR3, which is alone in a box of the first one's private box. */
 static bool find_in_cr3(FILE *file, exif_place *out)
 {
     enum { NAME_OF_PRIVATE = 16 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds the EXIF of a picture's file, of whatever kind. */
+/* Finds the EXIF of a picture's file, of any kind. */
 #ifndef MERLIN_IMAGE_METADATA_EXIF_FIND_H
 #define MERLIN_IMAGE_METADATA_EXIF_FIND_H
 
@@ -8,10 +8,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Place in a file of its EXIF. */
+/* Position of EXIF in a file. */
 typedef struct exif_place {
     uint64_t at;
-    size_t size; /* 0: all of the file is a TIFF */
+    size_t size; /* 0: the whole file is a TIFF */
 } exif_place;
 bool exif_find(FILE *file, exif_place *out);
 

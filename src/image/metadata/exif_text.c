@@ -18,7 +18,7 @@ static bool has_keyword(const char *content, size_t size, size_t *length)
     return false;
 }
 
-/* The text behind keyword and method, unpacked; malloc'ed, or NULL. */
+/* Returns the text after keyword and method, decompressed; malloc'ed, or NULL. */
 static char *unpack(const char *packed, size_t size, size_t *length)
 {
     struct libdeflate_decompressor *d = size > 0 && packed[0] == 0 ? libdeflate_alloc_decompressor() : NULL;
@@ -38,7 +38,7 @@ static int digit(char c)
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/* A line break, a name, how many bytes there are, and their digits in lines. */
+/* Parses a line break, a name, the number of bytes, and their digits in lines. */
 static bool parse(const char *text, size_t size, void **exif, size_t *exif_size)
 {
     size_t at = 0, wanted = 0, got = 0;

@@ -6,7 +6,7 @@
 
 enum { HEAD = 128, TAG = 12, MOST_TAGS = 100, SPACE_AT = 16 };
 
-/* Some bytes, the most significant first; 0 beyond the end. */
+/* A range of bytes, read as big-endian numbers; 0 beyond the end. */
 typedef struct bytes {
     const unsigned char *at;
     size_t size;
@@ -26,7 +26,7 @@ static bool is_word(bytes b, size_t at, const char *word)
     return at <= b.size && b.size - at >= 4 && memcmp(b.at + at, word, 4) == 0;
 }
 
-/* In units of 1/65536, with a sign. */
+/* Reads a signed fixed-point number in units of 1/65536. */
 static double fixed(bytes b, size_t at)
 {
     return (double)(int32_t)number(b, at, 4) / 65536;
@@ -56,10 +56,10 @@ int icc_channels(const void *profile, size_t size)
 
 /* ---- curves ---- */
 
-/* A profile's curve as it is written: of parameters, or of samples. */
+/* A profile's curve as stored: parametric or sampled. */
 typedef struct curve {
-    int function; /* of parameters; -1: samples */
-    double p[7];  /* g a b c d e f */
+    int function; /* number of the parametric function; -1: samples */
+    double p[7];  /* parameters g a b c d e f */
     bytes samples;
     uint32_t sample_count;
 } curve;
@@ -118,7 +118,7 @@ static double decode_srgb(double v)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* How far the curve is from a power, or for 0 from sRGB's. */
+/* Returns how far the curve is from a power, or for exponent 0 from sRGB's. */
 static double distance_from(const curve *c, double exponent)
 {
     double most = 0;
@@ -150,7 +150,7 @@ static bool are_same(const curve *a, const curve *b)
 
 /* ---- primaries ---- */
 
-/* The place of a colour among all of its hue and saturation; false for black. */
+/* Reads a colour of the profile as a chromaticity, and adds it to sum; returns false for black. */
 static bool read_place(bytes profile, const char *name, double sum[3], float xy[2])
 {
     bytes tag;
@@ -167,7 +167,7 @@ static bool read_place(bytes profile, const char *name, double sum[3], float xy[
     return true;
 }
 
-/* Profiles have their colours as under D50, white included, which is their sum. */
+/* Reads the primaries. Profiles store colours under D50, also white, which is their sum. */
 static bool read_primaries(bytes profile, float xy[8])
 {
     static const char *const names[3] = {"rXYZ", "gXYZ", "bXYZ"};
@@ -192,7 +192,7 @@ bool icc_light(const void *profile, size_t size, picture_light *out)
     if (!are_same(&red, &green) || !are_same(&red, &blue) || !name_curve(&red, out)) return false;
     float xy[8];
     if (!read_primaries(b, xy)) return false;
-    out->has_primaries = true; /* those of sRGB as under D50, too, are told by others' numbers */
+    out->has_primaries = true; /* sRGB's own under D50, too, have different numbers */
     memcpy(out->xy, xy, sizeof out->xy);
     return true;
 }

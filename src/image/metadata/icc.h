@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* What an ICC profile says, as far as it is needed beside libvips, which applies profiles to whole numbers alone.
+/* The parts of ICC profiles that are needed beside libvips, which applies profiles to integers only.
  *
  *     picture_light light;
  *     if (icc_channels(profile, size) == 3 && icc_light(profile, size, &light)) ... floats by light ...
  *
- * Strangers' bytes: whatever lies outside of the profile, or is not known, says nothing. */
+ * Profiles are not trusted: positions outside the profile, and unknown types, count as missing. */
 #ifndef MERLIN_IMAGE_METADATA_ICC_H
 #define MERLIN_IMAGE_METADATA_ICC_H
 
@@ -12,11 +12,11 @@
 
 #include "image/metadata/picture_light.h"
 
-/* The number of channels that a profile is for: 1 (grey), 3 or 4; 0 of what is no profile. */
+/* Returns the number of channels that a profile is for: 1 (grey), 3 or 4; 0 if it is not a profile. */
 int icc_channels(const void *profile, size_t size);
 
-/* Finds primaries and curve of a profile of three primaries and a curve that is linear, sRGB's or a power (ICC.1, 8.3.3
- * and 10.6, 10.18). False for all others, tables and cameras' profiles among them. */
+/* Reads primaries and curve of a profile with three primaries and one curve that is linear, sRGB's or a power (ICC.1,
+ * 8.3.3 and 10.6, 10.18). Returns false for all others, among them tables and cameras' profiles. */
 bool icc_light(const void *profile, size_t size, picture_light *out);
 
 #endif

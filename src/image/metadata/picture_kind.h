@@ -17,7 +17,7 @@ typedef enum picture_kind {
     PICTURE_BMP,
     PICTURE_PNM,
     PICTURE_TGA,
-    PICTURE_OTHER, /* a picture, but not read here */
+    PICTURE_OTHER, /* a picture in a format that is not read */
 } picture_kind;
 
 #endif

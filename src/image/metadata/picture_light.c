@@ -16,7 +16,7 @@ void picture_light_set_primaries(const float xy[8], picture_light *light)
     memcpy(light->xy, xy, sizeof light->xy);
 }
 
-/* ITU-T H.273, table 2, but for sRGB's own. */
+/* Returns the primaries of a number in ITU-T H.273, table 2, except sRGB's own. */
 static bool primaries_of_number(int number, float xy[8])
 {
     static const struct {
@@ -110,7 +110,8 @@ static double decode_hlg(double v)
     return (v <= 0.5 ? v * v / 3 : (exp((v - c) / a) + b) / 12) / white;
 }
 
-/* eighths: the largest code in steps of 8 bits, 255 or, of 16 bits, a little less than 256. */
+/* Decodes a code v. eighths: the largest code in units of 1/255 of the 8-bit range: 255, or for 16 bits a little less
+ * than 256. */
 static double decode(const picture_light *light, double v, double eighths)
 {
     if (light->narrow) v = fmin(fmax((eighths * v - 16) / 219, 0), 1);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/metadata/picture_size.h"
 
-/* Pixels of the largest pictures, which are read at a reduced size, and bytes of what is decoded as a whole. */
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* sanitizers make a large picture's seconds minutes */
+/* Largest pictures that are read, at a reduced size, and most bytes of one that is decoded as a whole. */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* sanitizers slow large pictures down too much */
 enum { MOST_SIDE = 1000000, MOST_PIXELS = 4000000, MOST_BYTES = 8000000 };
 #else
 enum { MOST_SIDE = 1000000, MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
@@ -11,7 +11,7 @@ enum { MOST_SIDE = 1000000, MOST_PIXELS = 512000000, MOST_BYTES = 512000000 };
 status picture_check_size(const char *path, long long width, long long height)
 {
     if (width < 1 || height < 1) return fail(MERLIN_BAD_INPUT, "cannot read %s: it has no pixels", path);
-    if (width > MOST_SIDE || height > MOST_SIDE) /* a row of which is too much to hold */
+    if (width > MOST_SIDE || height > MOST_SIDE) /* a row would be too large to hold */
         return fail(MERLIN_BAD_INPUT,
                     "cannot read %s: it is %lld x %lld pixels, more than %d a side; make it smaller first", path, width,
                     height, MOST_SIDE);

@@ -5,20 +5,20 @@
 
 #include "base/status.h"
 
-/* Larger pictures are read at a reduced size: the mean of so many of their pixels that they have no more. */
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION /* so that reading at a reduced size is tried, too, where all is slow  \
-                                                 */
+/* Largest size of an image in memory: larger pictures are averaged down to it as they are read. It is smaller for the
+ * fuzzers, so that they reach that code in reasonable time. */
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 enum { IMAGE_MAX_SIDE = 4096, IMAGE_MOST_PIXELS = 500 * 1000 };
 #else
 enum { IMAGE_MAX_SIDE = 16384, IMAGE_MOST_PIXELS = 64 * 1000 * 1000 };
 #endif
 
-/* Refuses what takes too long to read, however little of it is kept. */
+/* Refuses pictures that would take too long to read, whatever part of them is kept. */
 status picture_check_size(const char *path, long long width, long long height);
-/* Refuses, too, sides above IMAGE_MAX_SIDE, of kinds that are decoded as a whole and reduced then. */
+/* Also refuses sides above IMAGE_MAX_SIDE, for kinds that are decoded as a whole and then reduced. */
 status picture_check_sides(const char *path, long long width, long long height);
-/* Refuses what would take too much memory where a decoder has to hold all of it, so many bytes a pixel; advice:
- * how it is to be saved instead. */
+/* Refuses pictures that would take too much memory where the decoder must hold all of it, so many bytes a pixel;
+ * advice: how to save the picture instead. */
 status picture_check_whole(const char *path, long long width, long long height, int bytes, const char *advice);
 
 #endif

@@ -8,7 +8,7 @@
 #include "image/metadata/exif.h"
 #include "image/primaries.h"
 
-/* Tells how far a curve is from the table's entries at a quarter, a half and three quarters. */
+/* Returns how far a curve is from the table's entries at a quarter, a half and three quarters. */
 static double distance(const double v[3], const double y[3], double exponent)
 {
     double most = 0;
@@ -22,7 +22,7 @@ static status find_curve(const tiff_head *t, uint64_t page, const char *path, pi
     const double near = 0.01;
     uint64_t codes = 1ULL << (tiff_value(t, page, TIFF_BITS) & 31), count = tiff_count(t, page, TIFF_TRANSFER);
     double v[3], y[3];
-    if (count != codes && count != 3 * codes) return OK; /* of none that TIFF defines */
+    if (count != codes && count != 3 * codes) return OK; /* a length that TIFF does not define */
     for (uint64_t i = 0; i < 3; i++) {
         uint64_t at = codes * (i + 1) / 4;
         v[i] = (double)at / (double)(codes - 1);

@@ -3,7 +3,7 @@
 
 #include "image/metadata/icc.h"
 
-/* Colours without alpha. */
+/* Returns the number of bands without alpha. */
 static int colours_of(VipsImage *image)
 {
     int bands = vips()->image_get_bands(image);
@@ -24,7 +24,7 @@ bool profile_is_fit(VipsImage *image)
     return channels > 0 && (channels == colours || (channels == 3 && colours == 1));
 }
 
-/* Takes the place of *image; false where making it failed. */
+/* Replaces *image by the result of an operation; returns false if that failed. */
 static bool pass_on(VipsImage **image, VipsImage *const *made, int failed)
 {
     if (failed) return false;
@@ -33,7 +33,7 @@ static bool pass_on(VipsImage **image, VipsImage *const *made, int failed)
     return true;
 }
 
-/* Grey as the same amount of all three colours. */
+/* Converts grey to three equal colours. */
 static bool make_colours(VipsImage **image)
 {
     VipsImage *two = NULL, *three = NULL;
@@ -57,7 +57,7 @@ static bool transform(VipsImage *image, int colours, VipsImage **out)
     return good;
 }
 
-/* Puts the picture's alpha behind the colours, whole where its codes are the largest. */
+/* Appends the picture's alpha to the colours, scaled to 16 bits. */
 static bool add_alpha(VipsImage *image, int band, VipsImage **out)
 {
     VipsImage *alpha = NULL, *made = NULL;

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* A picture's embedded colour profile, applied by libvips to whole numbers: samples become sRGB of 16 bits.
+/* A picture's embedded colour profile, applied to integers by libvips: samples become 16-bit sRGB.
  *
  *     VipsImage *made;
- *     if (profile_is_fit(image) && profile_apply(image, &made)) ... made instead of image ...  */
+ *     if (profile_is_fit(image) && profile_apply(image, &made)) ... made instead of image ...
+ */
 #ifndef MERLIN_IMAGE_METADATA_PROFILE_H
 #define MERLIN_IMAGE_METADATA_PROFILE_H
 
 #include "image/metadata/picture_light.h"
 #include "image/vips_library.h"
 
-/* Whether the picture has a profile for as many channels as it has colours; a grey picture's may be one of colours. */
+/* Tells whether the picture has a profile for its number of colour channels; a grey picture's may be for three. */
 bool profile_is_fit(VipsImage *image);
 
-/* Colours by the profile, alpha as it is; false without memory, or where the profile is damaged. */
+/* Converts the colours by the profile and keeps alpha; returns false without memory, or if the profile is damaged. */
 bool profile_apply(VipsImage *image, VipsImage **out);
 
-/* What a profile says of floats: MERLIN_BAD_INPUT where it cannot be told (icc.h). */
+/* Finds what a profile says about floats: MERLIN_BAD_INPUT if that is not supported (icc.h). */
 status profile_light(VipsImage *image, const char *path, picture_light *out);
 
 #endif

@@ -16,7 +16,7 @@ enum {
 };
 enum { FOLDER = 13, BIG_TIFF = 43 };
 
-/* The number in so many bytes at a place of the file; 0 where there is none. */
+/* Reads a number of so many bytes at a position; 0 beyond the end. */
 static uint64_t number_at(const tiff_head *t, uint64_t at, int bytes)
 {
     unsigned char b[8];
@@ -38,7 +38,7 @@ static int offset_bytes(const tiff_head *t)
     return t->wide ? 8 : 4;
 }
 
-/* Returns a page's number of entries; damaged ones claim more than any has. */
+/* Returns a page's number of entries, limited, as damaged pages claim more than any has. */
 static uint64_t entries_of(const tiff_head *t, uint64_t page)
 {
     enum { MOST = 4096 };
@@ -46,7 +46,7 @@ static uint64_t entries_of(const tiff_head *t, uint64_t page)
     return entries < MOST ? entries : MOST;
 }
 
-/* Returns where an entry lies; 0 if the page has none such. */
+/* Returns the position of an entry; 0 if the page does not have it. */
 static uint64_t find_entry(const tiff_head *t, uint64_t page, unsigned tag)
 {
     uint64_t first = page + (t->wide ? 8 : 2), entries = page ? entries_of(t, page) : 0;
@@ -102,7 +102,7 @@ bool tiff_open(tiff_head *t, FILE *file)
     return (order == 'M' || order == 'I') && t->pages > 0;
 }
 
-/* The number that so many bytes are, as a TIFF of that type means them. */
+/* Reads the number at a position by its TIFF type. */
 static double real_of(const tiff_head *t, uint64_t at, uint64_t type)
 {
     uint64_t bits = number_at(t, at, type == DOUBLE ? 8 : 4);

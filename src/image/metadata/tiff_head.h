@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads what stands in the head of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has a TIFF's form: its pages, one
- * behind the other and each perhaps with more below it, and the numbers in them.
+/* Reads the directories of a TIFF (TIFF 6.0 and BigTIFF), or of EXIF, which has the form of a TIFF: its pages, in a
+ * chain and each perhaps with sub-pages, and the numbers in them.
  *
  *     tiff_head t;
  *     if (tiff_open(&t, file)) width = tiff_value(&t, t.page[0], TIFF_WIDTH);
@@ -47,18 +47,18 @@ enum {
 typedef struct tiff_head {
     FILE *file;
     bool big_endian, wide;
-    uint64_t page[TIFF_MOST_PAGES]; /* where each begins */
-    int pages;                      /* in the chain; at most TIFF_MOST_PAGES of them are known */
+    uint64_t page[TIFF_MOST_PAGES]; /* positions of the pages */
+    int pages;                      /* number of pages in the chain; at most TIFF_MOST_PAGES positions are stored */
 } tiff_head;
 
-/* Goes over the pages of an open file; false if it is no TIFF or has none. */
+/* Finds the pages of an open file; returns false if it is not a TIFF or has none. */
 bool tiff_open(tiff_head *t, FILE *file);
-/* The first number of an entry of a page, of 8, 16 or 32 bits, or letter; 0 where there is none. */
+/* Returns the first number of an entry of a page, of 8, 16 or 32 bits, or its first letter; 0 if there is none. */
 uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
-/* Returns how many numbers an entry has, or one of them by its place. */
+/* Return how many numbers an entry has, and one of them by index. */
 uint64_t tiff_count(const tiff_head *t, uint64_t page, unsigned tag);
 uint32_t tiff_value_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
-/* Returns the first number of an entry, or one by its place, whole, a fraction or a float; 0 where there is none. */
+/* Return the first number of an entry, or one by index, whether integer, fraction or float; 0 if there is none. */
 double tiff_real(const tiff_head *t, uint64_t page, unsigned tag);
 double tiff_real_at(const tiff_head *t, uint64_t page, unsigned tag, uint64_t index);
 

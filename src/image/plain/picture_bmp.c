@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* BMP, as Microsoft documents BITMAPFILEHEADER and the heads behind it (core, info, version 4 and 5), and OS/2's longer
- * ones, whose first 40 bytes are the same: by a palette, packed in runs or not, or by masks. */
+/* BMP, as Microsoft documents BITMAPFILEHEADER and the headers after it (core, info, version 4 and 5), and OS/2's
+ * longer ones, whose first 40 bytes are the same: with a palette, run-length coded or not, or with bit masks. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,14 +16,14 @@ typedef struct field {
 
 typedef struct bmp {
     int bits, packing;
-    bool masked;     /* by fields */
+    bool masked;     /* pixels are read by `fields` */
     field fields[4]; /* red, green, blue, alpha */
     uint8_t palette[256][3];
     unsigned colours;
     uint8_t *bytes; /* a row in the file; of runs its indices, one a byte */
     size_t row_bytes;
-    long long blank; /* rows that runs passed over */
-    int start;       /* where the row behind them begins */
+    long long blank; /* rows that runs skipped */
+    int start;       /* column at which the row after them begins */
     bool ended;
 } bmp;
 
@@ -37,14 +37,14 @@ static field field_of(uint32_t mask)
     return f;
 }
 
-/* A field's value as 16 bits, the more narrow ones spread over all of them. */
+/* Returns a field's value scaled to 16 bits. */
 static uint16_t value_of(const field *f, uint32_t pixel)
 {
     const uint64_t most = (1ULL << f->bits) - 1;
     return f->bits ? (uint16_t)(((uint64_t)((pixel & f->mask) >> f->shift) * UINT16_MAX + most / 2) / most) : 0;
 }
 
-/* The masks stand behind a head of 40 bytes and within longer ones. */
+/* Reads the bit masks, which follow a header of 40 bytes and are inside longer ones. */
 static void set_fields(bmp *b, const uint8_t *head, unsigned length)
 {
     static const uint32_t plain16[4] = {0x7c00, 0x3e0, 0x1f, 0}, plain32[4] = {0xff0000, 0xff00, 0xff, 0};
@@ -82,7 +82,7 @@ static status refuse(const plain_file *f, const bmp *b)
                 b->bits, b->packing);
 }
 
-/* Entries of 3 (core) or 4 bytes, blue first, as many as fit before the pixels. */
+/* Reads the palette: entries of 3 (core) or 4 bytes, blue first, as many as fit before the pixels. */
 static bool read_palette(plain_file *f, bmp *b, long at, long pixels, unsigned claimed, size_t entry)
 {
     unsigned most = b->bits <= 8 ? 1U << b->bits : 0;
@@ -107,10 +107,10 @@ static void set_layout(plain_file *f, const bmp *b)
     f->layout.alpha = b->masked && b->fields[3].mask;
     f->layout.bands = f->layout.alpha ? 4 : 3;
     f->layout.sample = deep ? PICTURE_UINT16 : PICTURE_UINT8;
-    f->bits = 8; /* however fine, for screens */
+    f->bits = 8; /* at most 8 bits, as the format is for screens */
 }
 
-/* Width, height, bits and packing of a head of this length. */
+/* Reads width, height, bits and compression from a header of this length. */
 static void take_size(plain_file *f, bmp *b, const uint8_t *head, unsigned length)
 {
     bool core = length == CORE;
@@ -131,7 +131,7 @@ static bool is_packed(const bmp *b)
 
 static status make_row(plain_file *f, bmp *b)
 {
-    const double most_of_a_byte = 1024; /* pixels of runs; more is a claim */
+    const double most_of_a_byte = 1024; /* largest number of pixels of a byte of run-length codes */
     size_t width = (size_t)(f->layout.width > 0 ? f->layout.width : 0);
     b->row_bytes = is_packed(b) ? width : (width * (size_t)b->bits + 31) / 32 * 4;
     double pixels = (double)width * f->layout.height;
@@ -171,20 +171,20 @@ static status bmp_open(plain_file *f, void **state)
     return b ? read_head(f, b) : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
 }
 
-/* Puts indices into the row at hand, in which some writers' runs reach beyond its end. */
+/* Stores an index in the current row; some writers' runs extend beyond its end. */
 static void put_index(const plain_file *f, bmp *b, int *x, unsigned index)
 {
     if (*x < f->layout.width) b->bytes[(*x)++] = (uint8_t)index;
 }
 
-/* A run of one or, of 4 bits, two indices in turn. */
+/* Stores a run of one index or, for 4 bits, two alternating ones. */
 static void put_run(const plain_file *f, bmp *b, int *x, int count, unsigned code)
 {
     for (int i = 0; i < count; i++)
         put_index(f, b, x, b->packing == RLE8 ? code : i % 2 ? code & 15 : code >> 4);
 }
 
-/* Indices as they are, in whole pairs of bytes. */
+/* Stores literal indices, which are padded to pairs of bytes. */
 static bool put_literal(plain_file *f, bmp *b, int *x, int count)
 {
     int bytes = b->packing == RLE8 ? count : (count + 1) / 2;
@@ -195,7 +195,7 @@ static bool put_literal(plain_file *f, bmp *b, int *x, int count)
     return true;
 }
 
-/* A step to the right and down, from where the row at hand has got to. */
+/* Moves right and down from the current position. */
 static bool step(plain_file *f, bmp *b, int *x, bool *row_ends)
 {
     uint8_t by[2];
@@ -208,7 +208,7 @@ static bool step(plain_file *f, bmp *b, int *x, bool *row_ends)
     return true;
 }
 
-/* Unpacks a row; what runs pass over has the first colour. */
+/* Decodes a row of runs; skipped pixels have the first colour. */
 static bool unpack_row(plain_file *f, bmp *b)
 {
     memset(b->bytes, 0, b->row_bytes);
@@ -251,7 +251,7 @@ static void put_fields(const plain_file *f, const bmp *b, void *samples)
     }
 }
 
-/* Colours of palettes and of 24 bits; an index beyond a palette is black, as everywhere. */
+/* Converts colours of palettes and of 24 bits; an index beyond the palette is black, as in other readers. */
 static void put_colours(const plain_file *f, const bmp *b, uint8_t *to)
 {
     static const uint8_t black[3];
@@ -262,7 +262,7 @@ static void put_colours(const plain_file *f, const bmp *b, uint8_t *to)
     }
 }
 
-/* The last row may lack what fills it up to four bytes. */
+/* Reads a row; the last one may lack its padding to four bytes. */
 static bool read_row(plain_file *f, bmp *b)
 {
     size_t needed = ((size_t)f->layout.width * (size_t)b->bits + 7) / 8;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Formats so plain that they are read here, a row at a time, as their specifications have them: netpbm's, BMP and TGA.
- * Each tells its head first and then gives its rows in the file's order; which way up they are the layout says.
+/* Simple formats that are read here by their specifications, a row at a time: netpbm's, BMP and TGA. Each reader parses
+ * the header and then returns the rows in the file's order; the layout says which way up they are.
  *
  *     status s = picture_read_plain("a.tga", PICTURE_TGA, PICTURE_LINEARIZE, &color, &alpha, &head);
  */
@@ -9,7 +9,8 @@
 
 #include "image/formats/picture.h"
 
-/* color NULL: the head alone. alpha may be NULL; one that is 0 everywhere says nothing and is left out. */
+/* Reads a picture. color NULL: the header alone. alpha may be NULL; one that is 0 everywhere is taken as unused and
+ * left out. */
 status picture_read_plain(const char *path, picture_kind kind, picture_colour how, img *color, img *alpha,
                           picture_head *head);
 

@@ -6,15 +6,15 @@
 
 #include "image/plain/plain_file.h"
 
-enum { MOST_DIGITS_AFTER = 1 << 16 }; /* space and remarks before a number */
+enum { MOST_DIGITS_AFTER = 1 << 16 }; /* spaces and comments before a number */
 
 typedef struct pnm {
-    int kind;         /* the character behind the P */
-    unsigned most;    /* the code that is 1 */
-    bool big_endian;  /* of floats */
-    float unit;       /* what floats are multiplied by */
-    uint8_t *bytes;   /* of a row in the file */
-    size_t row_bytes; /* 0 where they are digits */
+    int kind;         /* character after the P */
+    unsigned most;    /* code of the value 1 */
+    bool big_endian;  /* byte order of floats */
+    float unit;       /* factor for floats */
+    uint8_t *bytes;   /* a row in the file */
+    size_t row_bytes; /* 0 if samples are digits */
 } pnm;
 
 static bool is_space(int c)
@@ -22,7 +22,7 @@ static bool is_space(int c)
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/* The next character that is no space and in no remark; EOF behind the last. */
+/* Returns the next character outside spaces and comments; EOF behind the last. */
 static int next_solid(plain_file *f)
 {
     bool remark = false;
@@ -36,7 +36,7 @@ static int next_solid(plain_file *f)
     return EOF;
 }
 
-/* A whole number of the head or of P2 and P3; takes the character behind it, too. False for what is none. */
+/* Reads a whole number of the header or of P2 and P3, and the character after it. Returns false if there is none. */
 static bool next_number(plain_file *f, unsigned *out)
 {
     const unsigned most = 100000000;
@@ -55,7 +55,7 @@ static bool is_float(const pnm *p)
     return p->kind == 'F' || p->kind == 'f';
 }
 
-/* Samples a pixel, their type, and the size: P1 to P6. */
+/* Reads samples a pixel, their type, and the size: P1 to P6. */
 static bool read_numbers(plain_file *f, pnm *p)
 {
     unsigned width, height;
@@ -68,7 +68,7 @@ static bool read_numbers(plain_file *f, pnm *p)
     return p->most >= 1 && p->most <= UINT16_MAX;
 }
 
-/* PF and Pf: the sign of a number says the order of bytes, its size the unit; rows run from the bottom. */
+/* Reads the header of PF and Pf: a number's sign gives the byte order, its size the unit; rows run from the bottom. */
 static bool read_float_head(plain_file *f, pnm *p)
 {
     char line[64];
@@ -162,7 +162,7 @@ static status pnm_open(plain_file *f, void **state)
     return p->bytes ? OK : fail(MERLIN_NO_MEMORY, "no memory to read %s", f->path);
 }
 
-/* The digits of P1 need no space between them. */
+/* Reads the next code; the digits of P1 need no spaces between them. */
 static bool next_code(plain_file *f, const pnm *p, size_t i, unsigned *code)
 {
     switch (p->kind) {
@@ -181,7 +181,7 @@ static bool next_code(plain_file *f, const pnm *p, size_t i, unsigned *code)
     }
 }
 
-/* In PBM 1 is black. */
+/* Reads a row's codes; in PBM 1 is black. */
 static bool take_codes(plain_file *f, const pnm *p, size_t count, void *samples)
 {
     bool inverted = p->kind == '1' || p->kind == '4';

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* TGA, by Truevision's file format specification 2.0: mapped, true colour and grey, packed in runs or not. */
+/* TGA, by Truevision's file format specification 2.0: colour-mapped, true colour and grey, run-length coded or not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,23 +8,23 @@
 
 enum { HEAD = 18, MAPPED = 1, TRUE_COLOUR = 2, RUNS = 8, LONGEST_RUN = 128 };
 
-/* A pixel as the file has it; in the map an entry. */
+/* A pixel as stored, or an entry of the colour map. */
 typedef struct pixel {
     uint8_t bytes[4];
 } pixel;
 
 typedef struct tga {
-    int kind, bits;   /* of a pixel, or of a map's entry */
-    int bytes;        /* of a pixel in the file */
-    bool runs;        /* packed */
-    bool repeats;     /* the run at hand is of one pixel */
-    int left;         /* pixels of it that are to come */
-    uint8_t again[4]; /* its pixel */
-    uint8_t *map;     /* of 4 bytes an entry */
+    int kind, bits;   /* kind of picture; bits of a pixel, or of a map entry */
+    int bytes;        /* bytes of a pixel in the file */
+    bool runs;        /* run-length coded */
+    bool repeats;     /* the current run repeats one pixel */
+    int left;         /* pixels left in the run */
+    uint8_t again[4]; /* the repeated pixel */
+    uint8_t *map;     /* colour map, 4 bytes an entry */
     unsigned first, count;
 } tga;
 
-/* What the extension area says: what alpha is, 0 to 4, or -1 where there is none; the curve's exponent, or 0. */
+/* Facts from the extension area: the kind of alpha, 0 to 4, or -1 without one; the curve's exponent, or 0. */
 typedef struct extension {
     int alpha;
     double gamma;
@@ -32,7 +32,7 @@ typedef struct extension {
 
 enum { ALPHA_IS_COVER = 3, ALPHA_IS_MULTIPLIED = 4 };
 
-/* Found by the footer at the file's end. */
+/* Reads the extension area, whose position is in the footer at the file's end. */
 static extension find_extension(plain_file *f)
 {
     enum { FOOTER = 26, AREA = 495, GAMMA = 478, ALPHA = 494 };
@@ -51,7 +51,7 @@ static extension find_extension(plain_file *f)
     return found;
 }
 
-/* Near the gamma of screens a curve is sRGB's, as of PNGs. */
+/* Sets the curve: near the gamma of screens it is sRGB's, as for PNGs. */
 static void set_light(plain_file *f, double gamma)
 {
     const double screen = 2.2;
@@ -60,7 +60,7 @@ static void set_light(plain_file *f, double gamma)
     if (fabs(gamma - screen) < 0.1) f->layout.light = (picture_light){.said = true};
 }
 
-/* attributes: how many of a pixel's bits the head gives them. */
+/* Sets the layout; attributes: number of a pixel's bits that the header calls so. */
 static void set_layout(plain_file *f, const tga *t, int attributes)
 {
     extension e = find_extension(f);
@@ -132,7 +132,7 @@ static status tga_open(plain_file *f, void **state)
     return OK;
 }
 
-/* The next pixel's bytes in the file, unpacked: runs may reach over a row's end. */
+/* Reads the next pixel's bytes; runs may extend over a row's end. */
 static bool next_pixel(plain_file *f, tga *t, uint8_t *bytes)
 {
     if (!t->runs) return plain_get(f, bytes, (size_t)t->bytes);

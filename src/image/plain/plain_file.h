@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Readers of plain formats, and the parts that they share: each tells a file's head and then its rows. Internal to
+/* Readers of simple formats, and what they share: each parses a file's header and then its rows. Internal to
  * picture_plain.h. */
 #ifndef MERLIN_IMAGE_PLAIN_PLAIN_FILE_H
 #define MERLIN_IMAGE_PLAIN_PLAIN_FILE_H
@@ -14,13 +14,13 @@ typedef struct plain_file {
     FILE *file;
     const char *path; /* for messages */
     uint64_t size;
-    picture_layout layout; /* after its head */
-    int bits;              /* of a sample, as picture_head has them */
+    picture_layout layout; /* known after the header */
+    int bits;              /* bits of a sample, as in picture_head */
 } plain_file;
 
-/* A format: open reads the head up to the pixels and makes what row needs, which close frees; row gives the next row's
- * samples as the layout has them and returns false where the file is damaged or cut short. state is NULL before open
- * and whatever that left, also where it failed. */
+/* A format. open reads the header up to the pixels and allocates its state, which close frees; row reads the next row's
+ * samples by the layout, and returns false if the file is damaged or truncated. state is NULL before open, and is
+ * passed to close also after open failed. */
 typedef struct plain_format {
     status (*open)(plain_file *f, void **state);
     bool (*row)(plain_file *f, void *state, void *samples);
@@ -29,9 +29,9 @@ typedef struct plain_format {
 
 extern const plain_format plain_pnm, plain_bmp, plain_tga;
 
-/* "cannot read PATH: it is damaged or cut short". */
+/* Fails with "cannot read PATH: it is damaged or cut short". */
 status plain_damaged(const plain_file *f);
-/* Refuses sizes that cannot be read, and files shorter than the pixels need at least, so that none but large files take
+/* Refuses sizes that cannot be read, and files shorter than the pixels need at least, so that only large files take
  * much memory or time. */
 status plain_check(const plain_file *f, double least_bytes);
 

@@ -16,13 +16,13 @@ static const char *const named_as_pictures[] = {IMAGE_ENDINGS, NULL};
 static const char *const named_as_raw[] = {IMAGE_RAW_ENDINGS, NULL};
 static const char *const named_by_cameras[] = {IMAGE_CAMERA_ENDINGS, NULL};
 
-/* Pictures by their content that are no photographs: Canon's thumbnails, and copies that programs keep. */
+/* Endings of files with picture content that are no photographs: Canon's thumbnails, and backup copies. */
 static const char *const copies[] = {".thm", ".bak", ".tmp", ".part", ".crdownload", "~", NULL};
 
-/* Notes that programs keep beside a picture. */
+/* Endings of side-car files that programs keep beside a picture. */
 static const char *const notes[] = {".xmp", ".aae", ".pp3", ".dop", ".thm", ".cos", ".arp", NULL};
 
-/* Data that a capture is read from, or that comes of it, beside texts. */
+/* Endings of data, other than text, that a capture is read from, or that results from one. */
 static const char *const data[] = {".mat", ".npz", ".npy", ".ply", ".glb", NULL};
 
 static bool is_left_by_systems(const char *name)
@@ -43,7 +43,8 @@ static img_folder_file look_at(char *path)
     return f;
 }
 
-/* Names first: of many photographs that are named one by one each has this asked. */
+/* Finds a photograph's mask by name. It compares names before it opens files, as it is called for each of many
+ * photographs. */
 static const char *find_by_name(char *const *names, size_t count, const char *photo)
 {
     const char *best = NULL;
@@ -67,16 +68,16 @@ status img_folder_find_own_mask(const char *photo, char **mask)
     status s = file_list(folder, NULL, &names, &count);
     if (s == OK) {
         const char *found = find_by_name(names, count, file_name_of(photo));
-        if (found) /* spelled as the photograph is */
+        if (found) /* with the photograph's own spelling of the folder */
             *mask = strchr(photo, '/') ? file_join(folder, found) : strdup(found);
         if (found && !*mask) s = fail(MERLIN_NO_MEMORY, "no memory for file names");
         file_list_free(names, count);
     }
     free(folder);
-    return s == MERLIN_NO_MEMORY ? s : OK; /* a folder may be closed to us whose files are not */
+    return s == MERLIN_NO_MEMORY ? s : OK; /* a folder may be unreadable whose files are not */
 }
 
-/* Whether a photograph of its name lies beside it. */
+/* Tells whether the photograph of this mask's name is in the folder. */
 static bool has_photo(const img_folder *f, const img_folder_file *mask)
 {
     for (size_t i = 0; i < f->count; i++)
@@ -192,7 +193,7 @@ static bool is_text(const char *path)
     return plain;
 }
 
-/* Whether it goes with pictures, so that it is not worth a word. */
+/* Tells whether a file usually accompanies pictures, so that skipping it is not reported. */
 static bool is_beside(const img_folder_file *file, bool capture)
 {
     if (file->is_picture || file->format.name) return false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What lies in a folder of pictures, told by content: photographs, their masks, and what is neither.
+/* The files in a folder of pictures, classified by content: photographs, their masks, and everything else.
  *
  *     img_folder f;
  *     status s = img_folder_read("photos", &f);
@@ -7,8 +7,7 @@
  *         if (img_folder_is_photo(&f.at[i])) use(f.at[i].path);
  *     img_folder_free(&f);
  *
- * A file that is of no known kind but is called like a picture counts as one, so that reading it tells what is wrong.
- */
+ * A file of unknown format with a picture's name counts as a picture, so that reading it reports what is wrong. */
 #ifndef MERLIN_IMAGE_READ_FOLDER_H
 #define MERLIN_IMAGE_READ_FOLDER_H
 
@@ -21,38 +20,38 @@
 
 typedef struct img_folder_file {
     char *path;       /* joined to the folder */
-    const char *name; /* its last part */
+    const char *name; /* last part of the path */
     img_format format;
     bool is_picture;
-    bool is_mask; /* by its name (image/read/mask_names.h), and what lies beside it */
+    bool is_mask; /* by its name (image/read/mask_names.h) and by the files beside it */
     bool is_raw;
 } img_folder_file;
 
 typedef struct img_folder {
-    img_folder_file *at; /* sorted as file_list does */
+    img_folder_file *at; /* sorted as by file_list */
     size_t count;
 } img_folder;
 
-/* Reads the folder's files, but not hidden ones and what systems leave: Thumbs.db and the like. */
+/* Reads the folder's files, except hidden ones and those that systems leave, such as Thumbs.db. */
 status img_folder_read(const char *folder, img_folder *out);
 void img_folder_free(img_folder *f);
 
-/* Tells whether it is a picture and no mask. */
+/* Tells whether a file is a picture and not a mask. */
 bool img_folder_is_photo(const img_folder_file *file);
-/* Tells whether a camera made it of a raw picture beside it, and left both. */
+/* Tells whether a file is a camera's JPEG or HEIC of a raw picture beside it. */
 bool img_folder_is_beside_raw(const img_folder *f, const img_folder_file *file);
-/* Returns the picture that is the mask of a photograph by its name, the one that fits best, or NULL; apart: the folder
- * is one of masks, where the photographs need not be. */
+/* Returns the mask of a photograph by name, the best match, or NULL; apart: the folder holds masks, and the photographs
+ * may be elsewhere. */
 const img_folder_file *img_folder_mask_of(const img_folder *f, const char *photo, bool apart);
-/* Returns the mask that is no single picture's but the folder's: mask.png, else one without a picture of its name. */
+/* Returns the mask for the whole folder: mask.png, else a mask for which there is no picture of its name. */
 const img_folder_file *img_folder_whole_mask(const img_folder *f);
 
-/* Finds the mask that lies beside a photograph, of which nothing but the path is given; *mask is malloc'ed, NULL if
- * there is none or its folder cannot be read. */
+/* Finds the mask beside a photograph given by its path alone; *mask is malloc'ed, NULL if there is none or the folder
+ * cannot be read. */
 status img_folder_find_own_mask(const char *photo, char **mask);
 
-/* Adds to a list a file that was left aside, for a reason; what is no picture gets its own. Files that go with pictures
- * are not worth a word: what programs note beside them, and, in a capture, texts and other data. */
+/* Adds a skipped file to a list with the reason `why`; a file that is not a picture gets a reason of its own. Files
+ * that usually accompany pictures are not listed: side-car files and, in a capture, texts and other data. */
 status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list);
 
 #endif

@@ -5,10 +5,12 @@
 
 #include "image/read/read.h"
 
-/* Values so near to the darkest or the brightest, a share of their distance, are these; lossy files scatter so. */
+/* Distance from the darkest or brightest value, as a share of their difference, that counts as that value: lossy files
+ * scatter. */
 static const float NEAR = 0.1f;
 
-/* Others at most, a share of the rarer of the two: a photograph of an object before black or white has far more. */
+/* Most other pixels, as a share of the rarer of the two values; a photograph of an object before black or white has far
+ * more. */
 static const double MOST_BETWEEN = 0.25;
 
 bool mask_is_two_valued(const char *path)

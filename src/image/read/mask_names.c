@@ -8,11 +8,12 @@
 
 #include "base/file.h"
 
-/* The usual first. Without a photograph of their name beside them only the strong ones make a picture a mask. */
+/* Words for masks, the usual ones first. Without a photograph of their name beside them only the strong ones make a
+ * picture a mask. */
 static const char *const words[] = {"mask", "masks", "matte", "silhouette", "alpha", "segmentation", "seg", "label"};
 enum { WORDS = sizeof words / sizeof *words, STRONG = 4 };
 
-/* Ways to put a word to a name, the usual first. */
+/* Ways to combine a word with a name, the usual ones first. */
 enum { BY_DOT = 1, BY_LINE, BY_DASH, BY_SPACE, BY_NOTHING, BEFORE, NUMBERED, FORMS };
 
 /* Part of a name. */
@@ -37,7 +38,7 @@ static bool is_same(part a, part b)
     return a.length == b.length && strncasecmp(a.at, b.at, a.length) == 0;
 }
 
-/* How a separator is put behind a name; 0 for what is none. */
+/* Returns the form of a separator after a name; 0 if it is none. */
 static int form_of(char separator)
 {
     static const char separators[] = "._- ";
@@ -65,7 +66,7 @@ static int rank_of(int word, int form)
     return 1 + word * FORMS + form;
 }
 
-/* The name is the photograph's with a word behind it. */
+/* Ranks a name that is the photograph's with a word after it. */
 static int rank_behind(part name, part photo)
 {
     if (name.length <= photo.length || strncasecmp(name.at, photo.at, photo.length) != 0) return 0;
@@ -77,7 +78,7 @@ static int rank_behind(part name, part photo)
     return form && word >= 0 ? rank_of(word, NUMBERED) : 0;
 }
 
-/* The name is the photograph's with a word before it. */
+/* Ranks a name that is the photograph's with a word before it. */
 static int rank_before(part name, part photo)
 {
     if (name.length <= photo.length + 1) return 0;
@@ -87,7 +88,7 @@ static int rank_before(part name, part photo)
     return found >= 0 && form_of(name.at[word.length]) && is_same(rest, photo) ? rank_of(found, BEFORE) : 0;
 }
 
-/* Among equals, PNG before what may have been written with loss, and the same case before another. */
+/* Orders equal ranks: PNG before formats that may be lossy, and the same case before another. */
 static int refine(int rank, const char *name, const char *photo, size_t length)
 {
     bool other_case = memmem(name, strlen(name), photo, length) == NULL;
@@ -121,7 +122,7 @@ bool mask_name_is_whole(const char *name)
     return is_strong(find_word(stem_of(name)));
 }
 
-/* The last part of a stem, if it is behind a separator of a form. */
+/* Returns the last word of a stem, if a separator of this form precedes it. */
 static int last_word(part stem, int form)
 {
     for (size_t i = stem.length; i > 1; i--) {

@@ -9,36 +9,35 @@
 
 #include "base/number.h"
 
-/* Different values that are told apart, and places for them in a table of hashes. */
+/* Most values that are distinguished, the size of their hash table, and most channels of a mask. */
 enum { MOST_VALUES = 256, SLOTS = 1024, MOST_CHANNELS = 3 };
 
-/* A value is an area's rather than an edge's or noise's if so much of it, a share, has nothing else around it, and if
- * it has so many pixels, and a share of the picture's. */
+/* Least share of a value's pixels that have only their own value around them, and least share of the picture, for the
+ * value to be an area's rather than an edge's or noise. */
 static const double least_inside = 0.4, least_share = 0.002;
 enum { LEAST_AREA = 9 };
 
-/* Distance of values that lossy files make of one, and the least of two that are meant to differ. */
+/* Largest distance of values that lossy files make of one value, and smallest distance of two intended ones. */
 static const float scatter = 24 / 255.0f, least_contrast = 16 / 255.0f;
 
-/* Two groups are two values if so many of the pixels, a share, are about as far from a group's mean as noise is: a
- * share of the distance of the means. */
+/* Least share of the pixels that lie near a group's mean, as noise would, for two groups to count as two values. */
 static const double least_near = 0.85;
 static const float noise = 0.25f;
 
-/* Floats above have a unit of their own. */
+/* Floats above this have a unit of their own. */
 static const float beyond_white = 1.5f;
 
 typedef struct value {
     float sample[MOST_CHANNELS];
     float brightness;
-    size_t count, inside; /* pixels, and those of them with nothing else around them */
+    size_t count, inside; /* pixels, and those of them with no other value around them */
 } value;
 
 typedef struct tally {
     value at[MOST_VALUES];
-    uint16_t slot[SLOTS]; /* 1 + a place in at, or 0 */
+    uint16_t slot[SLOTS]; /* 1 + an index into at, or 0 */
     size_t count;
-    bool many; /* values have no room in the table: a soft mask, or a photograph */
+    bool many; /* more values than the table holds: a soft mask, or a photograph */
 } tally;
 
 static float brightness_of(const float *sample, int channels)
@@ -60,7 +59,7 @@ static size_t hash(const float *sample, int channels)
 {
     uint64_t h = 0;
     for (int c = 0; c < channels; c++) {
-        float same_zero = sample[c] + 0.0f; /* -0 equals 0, whose bits differ */
+        float same_zero = sample[c] + 0.0f; /* -0 equals 0, but has other bits */
         uint32_t bits;
         memcpy(&bits, &same_zero, sizeof bits);
         h = (h ^ bits) * 0x9e3779b97f4a7c15u;
@@ -68,7 +67,7 @@ static size_t hash(const float *sample, int channels)
     return (size_t)(h >> 40) % SLOTS;
 }
 
-/* NULL, and many, without room. */
+/* Finds or adds a value; returns NULL and sets many if the table is full. */
 static value *find_value(tally *t, const float *sample, int channels)
 {
     size_t slot = hash(sample, channels);
@@ -118,7 +117,7 @@ static bool is_area(const value *v, size_t pixels)
            (double)v->inside >= least_inside * (double)v->count;
 }
 
-/* Keeps the areas' values alone, the darkest first; of those that differ as one value does in lossy files, one. */
+/* Keeps only the values of areas, the darkest first; in lossy files those that differ little are merged. */
 static void keep_areas(tally *t, size_t pixels, bool lossy)
 {
     size_t kept = 0, joined = 0;
@@ -141,7 +140,7 @@ static bool are_codes(const tally *t, float white)
     return true;
 }
 
-/* "0, 1, 2 of 255", or colours as "#800000". */
+/* Writes the values as "0, 1, 2 of 255", or colours as "#800000". */
 static void list_values(const tally *t, int channels, char *words, size_t size)
 {
     enum { TOLD = 5 };
@@ -181,7 +180,7 @@ static status refuse_equals(const char *path, const tally *t, int channels)
 
 /* ---- coverage ---- */
 
-/* Whose values below low are 0 and above high are 1. */
+/* Maps values to coverage: 0 below low and 1 above high. */
 static status spread(const img *values, float low, float high, img *mask)
 {
     status s = img_new(mask, values->width, values->height, 1);
@@ -198,7 +197,7 @@ static status as_it_is(const img *values, img *mask)
     return spread(values, 0, 1, mask);
 }
 
-/* Half white tells them apart already. */
+/* Maps the two values to coverage; one half separates them already if they lie on either side of it. */
 static status between(const img *values, float low, float high, img *mask)
 {
     bool plain = low < 0.5f && high >= 0.5f;
@@ -209,7 +208,7 @@ enum { BINS = 256 };
 
 typedef struct groups {
     float low, high; /* means */
-    double near;     /* share of the pixels that are near to one */
+    double near;     /* share of the pixels near one of the means */
     float least, most;
 } groups;
 
@@ -219,7 +218,7 @@ static size_t bin_of(const img *values, size_t pixel)
     return (size_t)(clamp(v, 0, 1) * (BINS - 1) + 0.5f);
 }
 
-/* The two groups whose means are farthest apart for their sizes (Otsu 1979). */
+/* Splits the histogram into the two groups with the largest between-class variance (Otsu 1979). */
 static groups divide(const size_t bins[BINS])
 {
     double total = 0, sum = 0, best = -1, below = 0, below_sum = 0;
@@ -249,7 +248,7 @@ static groups divide(const size_t bins[BINS])
     return g;
 }
 
-/* Without two areas of one value each: noise about two, or a soft mask. */
+/* Computes coverage for pictures without two areas of one value each: two values with noise, or a soft mask. */
 static status from_groups(const char *path, const img *values, img *mask)
 {
     size_t bins[BINS] = {0}, pixels = (size_t)values->width * (size_t)values->height;
@@ -266,7 +265,7 @@ static status from_groups(const char *path, const img *values, img *mask)
                 path, (double)(255 * g.least), (double)(255 * g.most));
 }
 
-/* Those of the whole picture; noise about one value has no areas. */
+/* Tells whether the areas make up the whole picture; noise around one value has no areas. */
 static bool are_two(tally *t, bool lossy)
 {
     if (t->many || t->count != 2 || (lossy && !(is_area(&t->at[0], 0) && is_area(&t->at[1], 0)))) return false;

@@ -25,10 +25,10 @@ static status check_plain(const char *path)
     return S_ISREG(about.st_mode) ? OK : fail(MERLIN_BAD_INPUT, "cannot read %s: it is not a plain file", path);
 }
 
-/* Says what is wrong with a path before any decoder sees it, and which of them is to. */
+/* Checks a path before any decoder opens it, and finds the kind of picture. */
 static status look_at(const char *path, picture_kind *kind)
 {
-    status s = check_plain(path); /* before it is opened: a device may already do something then */
+    status s = check_plain(path); /* before it is opened: opening a device may have effects */
     if (s != OK) return s;
     FILE *f = file_open(path);
     if (!f) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
@@ -172,8 +172,8 @@ status img_read(const char *path, img *color, img *alpha)
     return s;
 }
 
-/* Unless something is said 16 bits are a measurement's; with a profile or a stated curve they were developed by a
- * program that makes photographs. */
+/* Decides whether samples are decoded. Without a stated curve or profile 16 bits are taken for a measurement; with one
+ * they come from a program for photographs. */
 static picture_colour colour_of_samples(picture_kind kind, const picture_head *head, bool decode)
 {
     bool coded = head->bits == 8 || head->profile || head->light.said;
@@ -200,7 +200,7 @@ status img_read_samples(const char *path, bool decode, img *color, int *bits)
     return s;
 }
 
-/* The mean of the channels. */
+/* Sets grey to the mean of the channels. */
 static status color_to_grey(const img *color, img *grey)
 {
     status s = img_new(grey, color->width, color->height, 1);
@@ -232,7 +232,7 @@ static bool is_lossy(const char *path)
     return kind == PICTURE_JPEG || kind == PICTURE_WEBP || kind == PICTURE_HEIC;
 }
 
-/* A cut-out's shape is in its alpha; a black and white drawing's is in its colour. */
+/* Reads a mask: a cut-out's shape is in its alpha, a black and white drawing's in its colour. */
 status img_read_mask(const char *path, img *mask)
 {
     *mask = (img){0};

@@ -2,7 +2,7 @@
 #include "image/read/read.h"
 
 enum { LEAST_HEIGHT = 4 };
-/* A row or column that a stitching program left over does no harm. */
+/* Accepted ratios of width to height: some stitching programs leave a row or column too many. */
 static const float LEAST_RATIO = 1.9f, MOST_RATIO = 2.1f;
 
 static status check(const char *path, const img *map)

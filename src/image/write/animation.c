@@ -34,7 +34,8 @@ status img_animation_add(img_animation *a, const img *frame)
     return OK;
 }
 
-/* A libvips image over the codes, frames one under the other; the codes must outlive it. NULL if that fails. */
+/* Wraps the codes in a libvips image, frames one below the other; the codes must outlive it. Returns NULL if that
+ * fails. */
 static VipsImage *wrap(const img_animation *a)
 {
     size_t size = frame_bytes(a) * (size_t)a->count;
@@ -57,7 +58,7 @@ static status check(const img_animation *a, const char *path)
     return OK;
 }
 
-/* With the page height and the delays that libvips's writers look for. */
+/* Saves the image with the page height and delays that libvips' writers expect. */
 static int save(const img_animation *a, const char *path, int milliseconds, void **data, size_t *size)
 {
     int *delays = calloc((size_t)a->count, sizeof *delays);

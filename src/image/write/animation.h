@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Animated WebP and GIF, from frames that are handed over one by one.
+/* Animated WebP and GIF, from frames that are added one by one.
  *
  *     img_animation a;
  *     status s = img_animation_new(512, 512, 24, &a);
@@ -17,14 +17,14 @@
 
 typedef struct img_animation {
     int width, height, count, most;
-    uint8_t *codes; /* most × height × width × 3, 8-bit sRGB: a quarter of what the frames take as floats */
+    uint8_t *codes; /* most × height × width × 3, 8-bit sRGB: a quarter of the frames' size as floats */
 } img_animation;
 
-/* Room for `most` frames. */
+/* Allocates room for `most` frames. */
 status img_animation_new(int width, int height, int most, img_animation *a);
-/* A copy of 3 linear channels of this size, clamped to [0, 1]. */
+/* Adds a copy of 3 linear channels of this size, clamped to [0, 1]. */
 status img_animation_add(img_animation *a, const img *frame);
-/* By the path's ending, looping for ever. */
+/* Writes the animation in the format of the path's extension, looping forever. */
 status img_animation_write(const img_animation *a, const char *path, int milliseconds);
 void img_animation_free(img_animation *a);
 

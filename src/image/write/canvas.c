@@ -38,7 +38,7 @@ void canvas_paste(canvas *c, const img *image, int x, int y)
         uint8_t *to = c->rgb + 3 * ((size_t)(y + row) * (size_t)c->width + (size_t)x);
         const size_t width = (size_t)image->width, values = width * (size_t)image->channels;
         srgb_codes8(img_at(image, 0, row), values, to);
-        for (size_t i = width; values == width && i-- > 0;) /* grey, from behind: in its place */
+        for (size_t i = width; values == width && i-- > 0;) /* in place, so that grey pixels are spread from the end */
             to[3 * i] = to[3 * i + 1] = to[3 * i + 2] = to[i];
     }
 }
@@ -66,7 +66,7 @@ void canvas_print_escaped(canvas_drawing *d, const char *words)
     vips()->g_free(valid);
 }
 
-/* rgba: the drawing's pixels, alpha not multiplied in. */
+/* Blends a drawing's pixels, rgba with straight alpha, over the canvas. */
 static void lay_over(canvas *c, const uint8_t *rgba)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height;

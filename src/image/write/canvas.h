@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A canvas of 8-bit sRGB pixels that takes pictures, words and SVG drawings (text, lines) and ends as a PNG; what
- * figures are made of. */
+/* A canvas of 8-bit sRGB pixels on which figures are drawn: images, words and SVG drawings, written as a PNG. */
 #ifndef MERLIN_IMAGE_WRITE_CANVAS_H
 #define MERLIN_IMAGE_WRITE_CANVAS_H
 
@@ -10,7 +9,7 @@
 
 #include "image/image.h"
 
-#define CANVAS_GROUND 0x20, 0x21, 0x24 /* dark and neutral, so that colours are judged rightly */
+#define CANVAS_GROUND 0x20, 0x21, 0x24 /* dark and neutral, for judging colours */
 #define CANVAS_INK 0xe8, 0xea, 0xed
 #define CANVAS_INK_CSS "#e8eaed"
 #define CANVAS_FONT "DejaVu Sans, sans-serif"
@@ -20,24 +19,25 @@ typedef struct canvas {
     uint8_t *rgb;
 } canvas;
 
-/* Filled with the ground colour. */
+/* Makes a canvas filled with the background colour. */
 status canvas_new(canvas *out, int width, int height);
 void canvas_free(canvas *c);
 
-/* A linear image of 1 or 3 channels, shown as sRGB, wholly inside the canvas with its top left pixel at (x, y). */
+/* Pastes a linear image of 1 or 3 channels, shown as sRGB, that lies wholly inside the canvas with its top left pixel
+ * at (x, y). */
 void canvas_paste(canvas *c, const img *image, int x, int y);
 
-/* In ink, UTF-8, the middle of their baseline at (x, y). */
+/* A text in UTF-8, with the middle of its baseline at (x, y). */
 typedef struct canvas_words {
     const char *text;
     int x, y;
 } canvas_words;
 
-/* Words in letters of so many pixels, all of them or, if the font is not where the build found it or has not all of
- * their letters, none and false: an SVG finds others. */
+/* Writes texts with a font of so many pixels. Returns false and writes none if the font is not where the build found it
+ * or lacks one of their characters: an SVG finds other fonts. */
 bool canvas_write_words(canvas *c, const canvas_words *words, int count, int size);
 
-/* An SVG drawing is begun and printed to; canvas_draw_end lays it over the canvas. */
+/* An SVG drawing, to whose stream elements are printed; canvas_draw_end renders it over the canvas. */
 typedef struct canvas_drawing {
     FILE *out;
     char *text;
@@ -46,7 +46,7 @@ typedef struct canvas_drawing {
 
 status canvas_draw_begin(const canvas *c, canvas_drawing *d);
 status canvas_draw_end(canvas *c, canvas_drawing *d);
-/* Words as an SVG needs them: valid, escaped. */
+/* Prints words as an SVG needs them: valid UTF-8, escaped. */
 void canvas_print_escaped(canvas_drawing *d, const char *words);
 
 status canvas_write(const canvas *c, const char *path);

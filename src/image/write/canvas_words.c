@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Words by FreeType alone: what an SVG needs for them, fonts found by name and scripts laid out, takes as long as the
- * network. */
+/* Text by FreeType directly: an SVG's font lookup and text layout take as long as the network. */
 #include <ft2build.h>
 
 #include FT_FREETYPE_H
@@ -10,18 +9,18 @@
 
 #include "image/write/canvas.h"
 
-/* FreeType counts in 64ths of a pixel. */
+/* FreeType's units a pixel. */
 enum { PIXEL = 64 };
 
 typedef struct pen {
     FT_Face face;
     canvas *on;
-    FT_Pos x; /* where the next letter begins */
+    FT_Pos x; /* where the next character begins */
     int baseline;
-    FT_UInt before; /* the last letter's glyph; 0: none */
+    FT_UInt before; /* glyph of the previous character; 0: none */
 } pen;
 
-/* The next letter of UTF-8; 0 at the end and for what is none. */
+/* Returns the next character of UTF-8; 0 at the end and for invalid bytes. */
 static unsigned long next_letter(const char **words)
 {
     const unsigned char *at = (const unsigned char *)*words;
@@ -36,7 +35,7 @@ static unsigned long next_letter(const char **words)
     return letter;
 }
 
-/* Moves on to where this letter begins; its glyph is loaded, and the rest of the letter's way is returned. */
+/* Loads the glyph of a character and moves the pen to where it begins; returns the rest of its advance. */
 static FT_Pos load(pen *p, unsigned long letter)
 {
     FT_UInt glyph = FT_Get_Char_Index(p->face, letter);
@@ -108,6 +107,6 @@ bool canvas_write_words(canvas *c, const canvas_words *words, int count, int siz
     FT_Face face;
     if (FT_Init_FreeType(&library)) return false;
     bool written = !FT_New_Face(library, MERLIN_FONT, 0, &face) && write_all(c, face, words, count, size);
-    FT_Done_FreeType(library); /* and its faces */
+    FT_Done_FreeType(library); /* frees its faces, too */
     return written;
 }

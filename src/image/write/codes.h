@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* PNG from codes that are made row by row. */
+/* PNG files from pixel codes that are computed row by row. */
 #ifndef MERLIN_IMAGE_WRITE_CODES_H
 #define MERLIN_IMAGE_WRITE_CODES_H
 
@@ -9,8 +9,8 @@
 
 #include "base/status.h"
 
-/* A picture whose rows are asked for one by one, in any order and by several threads: what 8 or 16 bits (wide) a code
- * of row y are, and whether they are sRGB's, which the file then says. */
+/* A picture whose rows are requested one by one, in any order and by several threads. wide: codes of 16 instead of 8
+ * bits; srgb: they are sRGB's, which the file then states; row: computes the codes of row y. */
 typedef struct code_rows {
     int width, height, channels;
     bool wide, srgb;
@@ -19,7 +19,7 @@ typedef struct code_rows {
 } code_rows;
 
 status codes_write_png(const char *path, const code_rows *p);
-/* The same into memory, malloc'ed; messages call it by name. */
+/* Encodes the file in memory, malloc'ed; `name` is used in messages. */
 status codes_encode_png(const char *name, const code_rows *p, uint8_t **data, size_t *size);
 
 #endif

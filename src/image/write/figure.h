@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures for people: labelled contact sheets and line charts.
+/* Figures: labelled contact sheets and line charts.
  *
  *     figure_tile tiles[] = {{"input", &photo}, {"albedo", &albedo}, ...};
  *     status s = figure_sheet("overview.png", tiles, 8, 4, 256);
@@ -16,7 +16,7 @@ typedef struct figure_tile {
     const img *image; /* 1 or 3 channels, linear, shown as sRGB; resized to fit the tile */
 } figure_tile;
 
-/* columns tiles a row, each tile tile_size pixels square, dark neutral background, labels under the tiles. */
+/* Draws `columns` tiles a row, each tile_size pixels square, on a dark neutral background with labels below. */
 status figure_sheet(const char *path, const figure_tile *tiles, int count, int columns, int tile_size);
 
 typedef struct figure_curve {
@@ -24,13 +24,13 @@ typedef struct figure_curve {
     const float *x, *y;
     int count;
 } figure_curve;
-/* Line chart with axes, ticks and a legend beside it, as PNG of 960 × 600 pixels and the legend's width; logarithmic y
- * if asked. NaN points are left out. */
+/* Draws a line chart with axes, ticks and a legend beside it, as PNG of 960 × 600 pixels and the legend's width; with a
+ * logarithmic y axis if log_y. NaN points are left out. */
 status figure_chart(const char *path, const char *title, const char *x_label, const char *y_label, bool log_y,
                     const figure_curve *curves, int count);
 
-/* Unit normals to displayable colours that img_write_png/figure_sheet show as (n + 1)/2 (pre-decoded from sRGB), black
- * outside the mask; depth to a readable grey or colour map between the mask's own extremes. */
+/* Convert maps to displayable colours for img_write_png and figure_sheet: unit normals as (n + 1)/2 (decoded from sRGB,
+ * as they will be encoded), black outside the mask; depth as grey between its extremes inside the mask. */
 status figure_normals(const img *normal, const img *mask, img *out);
 status figure_depth(const img *depth, const img *mask, img *out);
 

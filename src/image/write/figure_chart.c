@@ -7,7 +7,7 @@
 #include "image/write/figure.h"
 
 enum { PLOT_WIDTH = 844, CHART_HEIGHT = 600, LEFT = 88, RIGHT = 28, TOP = 56, BOTTOM = 72, MAX_TICKS = 32 };
-/* Between plot and legend, and a letter's width of the legend's font in the mean. */
+/* Gap between plot and legend, and mean width of a character of the legend, pixels. */
 enum { LEGEND_GAP = 20, LETTER = 8 };
 
 static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663", "#c58af9",
@@ -15,7 +15,7 @@ static const char *const palette[] = {"#8ab4f8", "#f28b82", "#81c995", "#fdd663"
                                       "#bcaaa4", "#ffffff", "#a1662f", "#5c7cfa", "#9aa0a6"};
 enum { PALETTE_SIZE = sizeof palette / sizeof *palette };
 
-/* One axis: values low..high lie on pixels first..last; a logarithmic one keeps logarithms here. */
+/* One axis: values low..high at pixels first..last; for a logarithmic axis their logarithms. */
 typedef struct axis {
     double low, high, first, last;
     bool logarithmic;
@@ -39,7 +39,7 @@ static void add_tick(axis *a, double value)
     if (a->tick_count < MAX_TICKS) a->ticks[a->tick_count++] = value;
 }
 
-/* Steps of 1, 2 or 5 times a power of ten, the range widened to whole steps if asked. */
+/* Chooses ticks at 1, 2 or 5 times a power of ten; with `widen` the range grows to whole steps. */
 static void linear_ticks(axis *a, int about, bool widen)
 {
     double rough = (a->high - a->low) / about, power = pow(10, floor(log10(rough))), ratio = rough / power;
@@ -53,7 +53,7 @@ static void linear_ticks(axis *a, int about, bool widen)
         add_tick(a, k == 0 ? 0 : k * step);
 }
 
-/* Powers of ten, thinned when there are many; 2 and 5 between them when there are few. */
+/* Chooses ticks at powers of ten, thinned if there are many, with 2 and 5 between them if there are few. */
 static void logarithmic_ticks(axis *a)
 {
     static const double between[] = {1, 2, 5};
@@ -66,7 +66,7 @@ static void logarithmic_ticks(axis *a)
         }
 }
 
-/* The range of all shown points, x or y by choice. */
+/* Finds the range of all shown points, in y or in x. */
 static void find_range(axis *a, const figure_curve *curves, int count, bool of_y)
 {
     a->low = INFINITY;
@@ -124,7 +124,7 @@ static void draw_axes(canvas_drawing *d, const axis *x, const axis *y)
     }
 }
 
-/* A line through the shown points, a dot where one stands alone; a gap where points are left out. */
+/* Draws a line through the shown points and a dot for a single one; there is a gap where points are left out. */
 static void draw_curve(canvas_drawing *d, const axis *x, const axis *y, const figure_curve *curve, const char *color)
 {
     double last_x = NAN, last_y = NAN;
@@ -140,7 +140,7 @@ static void draw_curve(canvas_drawing *d, const axis *x, const axis *y, const fi
         }
         double at_x = place(x, curve->x[i]), at_y = place(y, curve->y[i]);
         if (down && fabs(at_x - last_x) < 0.1 && fabs(at_y - last_y) < 0.1) continue;
-        /* a move is also a line of no length, which a round cap shows as a dot */
+        /* the move is followed by a line of zero length, which a round cap shows as a dot */
         fprintf(d->out, down ? "L%.1f %.1f" : "M%.1f %.1fh0", at_x, at_y);
         last_x = at_x;
         last_y = at_y;
@@ -149,7 +149,7 @@ static void draw_curve(canvas_drawing *d, const axis *x, const axis *y, const fi
     fputs("\"/>\n", d->out);
 }
 
-/* Pixels from the top to where a curve ends; a curve that shows nothing ends at the bottom. */
+/* Returns the distance from the top at which a curve ends; a curve that shows nothing ends at the bottom. */
 static double end_of(const axis *x, const axis *y, const figure_curve *curve)
 {
     for (int i = curve->count - 1; i >= 0; i--)
@@ -157,7 +157,7 @@ static double end_of(const axis *x, const axis *y, const figure_curve *curve)
     return y->first;
 }
 
-/* Names beside the plot, in the order in which the curves end there. */
+/* Draws the names beside the plot, in the order in which the curves end there. */
 static void draw_legend(canvas_drawing *d, const axis *x, const axis *y, const figure_curve *curves, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -173,7 +173,7 @@ static void draw_legend(canvas_drawing *d, const axis *x, const axis *y, const f
     }
 }
 
-/* What the names need beside the plot. */
+/* Returns the width that the legend needs beside the plot. */
 static int legend_width(const figure_curve *curves, int count)
 {
     size_t longest = 0;

@@ -35,7 +35,7 @@ static int tile_y(const layout *l, int index)
     return l->margin + index / l->columns * (l->tile + l->label);
 }
 
-/* The largest size of the image's proportions inside the tile, centred. */
+/* Pastes an image into a tile, at the largest size of its aspect ratio that fits, centred. */
 static status paste_tile(canvas *c, const layout *l, int index, const img *image)
 {
     if (!image || !image->data || (image->channels != 1 && image->channels != 3))
@@ -52,7 +52,7 @@ static status paste_tile(canvas *c, const layout *l, int index, const img *image
     return OK;
 }
 
-/* By an SVG, which takes a while, only where it must be. */
+/* Draws texts, by FreeType if it can, else by an SVG, which takes longer. */
 static status draw_words(canvas *c, const canvas_words *words, int count, int size)
 {
     if (canvas_write_words(c, words, count, size)) return OK;
@@ -122,7 +122,7 @@ status figure_normals(const img *normal, const img *mask, img *out)
     return OK;
 }
 
-/* Near is bright; the far end stays above black so that the shape stands out from what is outside the mask. */
+/* Shows near points bright; the far end stays above black, to differ from what is outside the mask. */
 status figure_depth(const img *depth, const img *mask, img *out)
 {
     *out = (img){0};

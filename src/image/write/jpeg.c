@@ -2,16 +2,16 @@
 #include "image/write/jpeg.h"
 
 #include <setjmp.h>
-#include <stdio.h> /* before jpeglib.h, which needs FILE and does not say so */
+#include <stdio.h> /* before jpeglib.h, which needs FILE without including it */
 #include <stdlib.h>
 
 #include <jpeglib.h>
 
 #include "image/color.h"
 
-/* The library leaves by longjmp instead of ending the process. */
+/* Error handler that leaves by longjmp, where the library would end the process. */
 typedef struct failure {
-    struct jpeg_error_mgr manager; /* first: the library knows no more of it */
+    struct jpeg_error_mgr manager; /* first: the library only knows this member */
     jmp_buf out;
 } failure;
 

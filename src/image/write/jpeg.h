@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* JPEG: what it does to a picture, without a file, and a file's bytes.
+/* JPEG: the loss of compression applied to pixels, and encoding to a file's bytes.
  *
  *     status s = img_jpeg_round_trip(pixels, 128, 128, &(img_jpeg){.quality = 75, .halved = true});
  */
@@ -14,14 +14,14 @@
 
 typedef struct img_jpeg {
     int quality; /* 1 to 100 */
-    bool halved; /* colour at half of the resolution, as cameras and web sites keep it */
+    bool halved; /* chroma at half the resolution, as in cameras and on web sites */
 } img_jpeg;
 
-/* Compresses rgb (width × height × 3, sRGB) and puts what is left of it back in its place. */
+/* Compresses rgb (width × height × 3, sRGB) and decompresses it in place. */
 status img_jpeg_round_trip(uint8_t *rgb, int width, int height, const img_jpeg *how);
 
-/* The bytes of a file, malloc'ed: image is linear, of 3 channels, and becomes sRGB, which a JPEG without a profile is
- * in, of quality 95 and with colour at full resolution. Messages call it by name. */
+/* Encodes an image to a file's bytes, malloc'ed: image is linear, of 3 channels, and is written as sRGB, the default
+ * without a profile, with quality 95 and chroma at full resolution. `name` is used in messages. */
 status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *size);
 
 #endif

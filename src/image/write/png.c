@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* PNG, written here for speed: every row is filtered by the one above it, and libdeflate compresses all rows at once.
- * Several times faster than the usual zlib for files of the same size. Of the filters this one is as fast as any, and
- * makes maps of large photographs 7 to 25 % smaller than the left neighbour does; a choice for each row gains nothing
- * on it. */
+/* PNG encoding for speed: every row is filtered by the one above it, and libdeflate compresses all rows at once. That
+ * is several times faster than zlib for files of the same size. The "up" filter is as fast as any, and makes maps of
+ * large photographs 7 to 25 % smaller than the left neighbour does; choosing a filter for each row gains nothing over
+ * it. */
 #include <libdeflate.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "image/write/codes.h"
 
-/* Bytes of a chunk without content, before its content, and of signature, header and colour space. */
+/* Bytes of a chunk without content, of its part before the content, and of signature, header and colour space. */
 enum { CHUNK = 12, CHUNK_CONTENT = 8, HEAD = 8 + CHUNK + 13 + CHUNK + 1 };
 enum { UP = 2, LEVEL = 3 };
 
@@ -23,7 +23,7 @@ static uint8_t *put_number(uint8_t *to, uint32_t number)
     return to;
 }
 
-/* Length, name, content and checksum; content NULL: it is in place already. */
+/* Writes a chunk: length, name, content and checksum; content NULL: it is in place already. */
 static uint8_t *put_chunk(uint8_t *to, const char *name, const uint8_t *content, size_t size)
 {
     to = put_number(to, (uint32_t)size);
@@ -46,7 +46,7 @@ static uint8_t *put_head(uint8_t *to, const code_rows *p)
     return p->srgb ? put_chunk(to, "sRGB", &perceptual, 1) : to;
 }
 
-/* Puts a row as big-endian bytes, each less the one above it. */
+/* Writes a row as big-endian bytes, each minus the one above it. */
 static void filter_row(const code_rows *p, const void *above, const void *row, uint8_t *to)
 {
     size_t codes = (size_t)p->width * (size_t)p->channels;
@@ -64,13 +64,13 @@ static void filter_row(const code_rows *p, const void *above, const void *row, u
     }
 }
 
-/* A thread's two rows, which change places from row to row. */
+/* A thread's two rows, which are swapped from row to row. */
 typedef struct row_pair {
     void *above, *row;
-    int last; /* whose codes are in row */
+    int last; /* number of the row whose codes are in `row` */
 } row_pair;
 
-/* Makes a row's codes, and those of the one above it, zeros above the first, where they are not there yet. */
+/* Computes a row's codes, and those of the row above unless they are there already; zeros above the first. */
 static void take_row(const code_rows *p, size_t size, int y, row_pair *pair)
 {
     void *above = pair->row;
@@ -84,7 +84,7 @@ static void take_row(const code_rows *p, size_t size, int y, row_pair *pair)
     pair->last = y;
 }
 
-/* All rows filtered, malloc'ed; NULL if memory ran out. */
+/* Returns all rows filtered, malloc'ed; NULL if memory ran out. */
 static uint8_t *filter(const code_rows *p, size_t *size)
 {
     size_t codes = (size_t)p->width * (size_t)p->channels * (p->wide ? 2 : 1), line = 1 + codes;
@@ -113,7 +113,7 @@ static uint8_t *filter(const code_rows *p, size_t *size)
     return NULL;
 }
 
-/* Head, the rows compressed, end. */
+/* Encodes header, compressed rows and end. */
 status codes_encode_png(const char *name, const code_rows *p, uint8_t **data, size_t *size)
 {
     size_t filtered;

@@ -28,7 +28,7 @@ static void encode(const float *values, size_t count, img_encoding encoding, voi
     }
 }
 
-/* An image on its way to codes. */
+/* An image being encoded. */
 typedef struct encoding_job {
     const img *image;
     img_encoding encoding;

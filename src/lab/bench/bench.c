@@ -36,7 +36,7 @@ static status measure_network(const bench_options *o, const char *weights, const
 static status measure_type(const bench_options *o, nn_type type, bench_report *out)
 {
     status s = nn_measure_peak(type, &out->peak[type]);
-    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does without */
+    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does not compute in it */
     if (s != OK) return s;
     out->measured[type] = true;
     nn_options infer = {
@@ -61,7 +61,7 @@ static status measure_bfloat16(const bench_options *o, bench_report *out)
     return measure_type(o, NN_BFLOAT16, out);
 }
 
-/* A few samples tell how many fill the time. */
+/* Measures rendering; a few samples first tell how many fill the time. */
 static status measure_rendering(const bench_options *o, bench_report *out)
 {
     render_options options = render_options_default();
@@ -118,7 +118,7 @@ status bench_run(const bench_options *options, bench_report *out)
             s = fail(MERLIN_STOPPED, "stopped before measuring %s", stages[i].what);
         else
             s = stages[i].measure(options, out);
-        /* Ctrl-C goes to the programs that a stage starts, too, and they fail */
+        /* Ctrl-C also reaches the programs that were started, which then fail */
         if (s != OK && options->stopped && options->stopped())
             s = fail(MERLIN_STOPPED, "stopped while measuring %s", stages[i].what);
     }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What the model, the estimate and the renderer cost on this machine, as shares of what it can do.
+/* Measures the cost of model, estimate and renderer on this machine, as shares of its peak.
  *
  *     bench_options options = {.weights = "weights.safetensors", .program = "/usr/bin/merlin"};
  *     bench_report report;
  *     status s = bench_run(&options, &report);
  *     if (s == OK) bench_print_table(&report, stdout);
  *
- * Times are medians. Rates count the convolutions and fully connected layers alone, 2 operations a multiply-add, so
- * that a share says how much of the time they deserve. */
+ * Times are medians. Rates count only convolutions and fully connected layers, 2 operations a multiply-add, so that a
+ * share of the peak is the share of the time that they would need at best. */
 #ifndef MERLIN_LAB_BENCH_BENCH_H
 #define MERLIN_LAB_BENCH_BENCH_H
 
@@ -26,7 +26,7 @@ typedef struct bench_network {
     double flops;          /* of one run */
     double share;          /* flops / seconds over the machine's peak */
     size_t bytes;          /* planned: parameters, activations, workspace */
-    size_t resident_bytes; /* the most that this process held while it ran; 0 if the system does not tell */
+    size_t resident_bytes; /* peak memory of this process while it ran; 0 if the system does not tell */
 } bench_network;
 
 typedef struct bench_report {
@@ -35,18 +35,18 @@ typedef struct bench_report {
     double copy_rate;                     /* bytes read and written a second by memcpy on all threads */
     bool measured[BENCH_TYPES];           /* false: the processor does not compute in this type */
     nn_peak peak[BENCH_TYPES];            /* by nn_type */
-    bench_network inference[BENCH_TYPES]; /* one picture of 256×256 */
-    bench_network training[BENCH_TYPES];  /* forward, backward and Adam, `batch` pictures of 128×128 */
-    bench_estimation estimate;            /* a picture of 256×256 */
-    bench_relighting relight;             /* of that */
-    size_t samples;                       /* rendered, 128×128 */
+    bench_network inference[BENCH_TYPES]; /* for a picture of 256×256 */
+    bench_network training[BENCH_TYPES];  /* forward, backward and Adam for `batch` pictures of 128×128 */
+    bench_estimation estimate;            /* for a picture of 256×256 */
+    bench_relighting relight;             /* of that picture */
+    size_t samples;                       /* samples rendered, 128×128 */
     double render_seconds;
     uint64_t rays;
 } bench_report;
 
 typedef struct bench_options {
     const char *weights;
-    const char *program; /* merlin itself, to be run as `estimate` */
+    const char *program; /* path of merlin itself, to be run as `estimate` */
     int batch;           /* of training; 0: 16 */
     bool quick;          /* fewer runs */
     bool quiet;
@@ -56,7 +56,7 @@ typedef struct bench_options {
 status bench_run(const bench_options *options, bench_report *out);
 
 void bench_print_table(const bench_report *report, FILE *stream);
-/* malloc'ed; NULL if memory ran out. */
+/* Returns malloc'ed JSON; NULL if memory ran out. */
 char *bench_report_json(const bench_report *report);
 
 #endif

@@ -8,7 +8,7 @@
 
 enum { PICTURE = 256 };
 
-/* The maps of a ball of radius 0.4 about (0, 0, -1.2), with rings of two colours. */
+/* Draws the maps of a ball of radius 0.4 about (0, 0, -1.2), with rings of two colours. */
 static void draw_ball(surface *maps)
 {
     camera view = {.width = PICTURE, .height = PICTURE, .fov = CAMERA_FOV};

@@ -29,7 +29,7 @@ enum { MAX_RUNS = 32 };
 void bench_reset_resident(void)
 {
 #ifdef __GLIBC__
-    malloc_trim(0); /* what was freed before is not held by what is measured next */
+    malloc_trim(0); /* return freed memory, so that it does not count in what is measured next */
 #endif
     FILE *f = fopen("/proc/self/clear_refs", "w");
     if (!f) return;
@@ -66,7 +66,7 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
     return remove(path);
 }
 
-/* What the program said when it failed, in one line; code: as wait4 gives it. */
+/* Reports what the program printed when it failed, in one line; code: as from wait4. */
 static status explain(const char *errors, int code)
 {
     char *text = NULL;
@@ -87,7 +87,7 @@ static status explain(const char *errors, int code)
 static const char *const part_names[BENCH_PARTS] = {"start",  "model",   "compile",  "read",  "mask", "prepare",
                                                     "choose", "network", "upsample", "write", "end"};
 
-/* From the program's report, which is one line; what its parts leave of the whole is its end. */
+/* Reads the times from the program's report, which is one line; what its parts leave of the whole is its end. */
 static status read_parts(const char *report, bench_estimation *run)
 {
     char *text = NULL;
@@ -109,12 +109,12 @@ static status read_parts(const char *report, bench_estimation *run)
     return s;
 }
 
-/* The files of one measurement, all in the temporary folder. */
+/* Files of one measurement, all in a temporary folder. */
 typedef struct bench_files {
     char *picture, *output, *report, *errors;
 } bench_files;
 
-/* Runs the program, its report and its errors kept in files. */
+/* Runs the program with its report and errors redirected to files. */
 static status run_once(char *const *arguments, const bench_files *files, bench_estimation *run)
 {
     posix_spawn_file_actions_t actions;

@@ -16,7 +16,7 @@
 static status keep(void *context, const nn_layer *layer)
 {
     bench_layer_run *run = context;
-    /* inference makes its parameters' copies but once, before the first picture */
+    /* inference converts its parameters only once, before the first picture */
     if (run->options.purpose == NN_INFER && strcmp(layer->pass, "refresh") == 0) return OK;
     bench_layer *more = realloc(run->layer, (run->count + 1) * sizeof *more);
     if (!more) return fail(MERLIN_NO_MEMORY, "no memory for the times of %zu layers", run->count + 1);
@@ -47,7 +47,7 @@ static status measure_once(const bench_layers_options *o, bench_layer_run *run, 
     return s;
 }
 
-/* Measures the same layers computed in the other ways. */
+/* Measures the same layers computed by the other algorithms. */
 static status measure_ways(const bench_layers_options *o, bench_layer_run *run)
 {
     for (int all = 0; all <= 1; all++) {
@@ -76,7 +76,7 @@ static status measure_type(const bench_layers_options *o, nn_type type, progress
 {
     nn_peak peak;
     status s = nn_measure_peak(type, &peak);
-    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does without */
+    if (s == MERLIN_DEVICE_FAILED && type != NN_FLOAT32) return OK; /* this processor does not compute in it */
     const nn_options kinds[] = {
         {.batch = 1, .height = BENCH_INFERENCE_SIZE, .width = BENCH_INFERENCE_SIZE, .type = type, .purpose = NN_INFER},
         {.batch = o->batch ? o->batch : 16,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where the network's time goes, layer by layer, slowest first: of one picture's inference and of a training step, in
- * every precision that the processor computes in.
+/* Measures the network layer by layer, slowest first: inference of one picture and a training step, in every precision
+ * that the processor computes in.
  *
  *     bench_layers layers;
  *     status s = bench_layers_measure(&(bench_layers_options){.weights = "weights.safetensors"}, &layers);
@@ -20,14 +20,14 @@ enum { BENCH_LAYER_RUNS = 4 };
 
 typedef struct bench_layer {
     char pass[16], operation[32], name[64];
-    int n, h, w, c; /* of the result */
-    double seconds; /* the best run */
+    int n, h, w, c; /* shape of the result */
+    double seconds; /* of the best run */
     double flops;
-    double filtered, summed; /* seconds where Winograd's filtering is taken wherever it can be, and where it never is */
+    double filtered, summed; /* seconds with Winograd's filtering wherever it is possible, and without it */
 } bench_layer;
 
 typedef struct bench_layer_run {
-    nn_options options; /* what ran: purpose, precision and size */
+    nn_options options; /* what was run: purpose, precision and size */
     double peak;        /* FLOP/s, bench_peak_for */
     double seconds;     /* of all layers */
     bench_layer *layer; /* slowest first */
@@ -45,15 +45,15 @@ typedef struct bench_layers_options {
     const char *weights;
     int batch; /* of training; 0: 16 */
     bool quick, quiet;
-    int (*stopped)(void); /* asked between measurements; NULL: never */
+    int (*stopped)(void); /* polled between measurements; NULL: never */
 } bench_layers_options;
 
-/* *out is to be freed whatever is returned. */
+/* Measures the layers. *out must be freed in any case. */
 status bench_layers_measure(const bench_layers_options *options, bench_layers *out);
 void bench_layers_free(bench_layers *layers);
 
 void bench_layers_print(const bench_layers *layers, FILE *stream);
-/* malloc'ed; NULL if memory ran out. */
+/* Returns malloc'ed JSON; NULL if memory ran out. */
 char *bench_layers_json(const bench_layers *layers);
 
 #endif

@@ -10,11 +10,11 @@ status bench_program_run(void *work)
     status s = nn_forward(w->program);
     if (s != OK || !w->adam) return s;
     s = nn_backward(w->program);
-    /* a rate of zero: the same work, and the parameters stay what they are from run to run */
+    /* a rate of zero: the same work, and the parameters stay the same from run to run */
     return s == OK ? nn_adam_step(w->adam, 0) : s;
 }
 
-/* Something that looks like data: noise in the pictures, and everything inside the mask. */
+/* Fills the inputs with data of realistic statistics: noise in the pictures, and everything inside the mask. */
 static void fill_inputs(nn_program *p, size_t pixels)
 {
     static const struct {

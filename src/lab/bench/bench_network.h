@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The network at work as `merlin-lab bench` measures it: one picture's inference, or a training step with Adam. */
+/* The network in the settings that `merlin-lab bench` measures: inference of one picture, or a training step with Adam.
+ */
 #ifndef MERLIN_LAB_BENCH_BENCH_NETWORK_H
 #define MERLIN_LAB_BENCH_BENCH_NETWORK_H
 
@@ -12,16 +13,16 @@ typedef struct bench_program {
     nn_adam *adam; /* NULL: inference */
 } bench_program;
 
-/* Makes the network of these weights ready as options->purpose says, with something that looks like data in its
- * inputs. *out is to be freed whatever is returned: what the weights or compiling them is refused for. */
+/* Compiles the network of these weights for options->purpose, with noise in its inputs. *out must be freed in any case.
+ * Fails if the weights or the options are refused. */
 status bench_program_new(const char *weights, const nn_options *options, bench_program *out);
 /* Runs a bench_program once: forward, and for training backward and Adam at a rate of zero. */
 status bench_program_run(void *work);
 void bench_program_free(bench_program *work);
 
-/* "float32". */
+/* Returns the type's name, such as "float32". */
 const char *bench_type_name(nn_type type);
-/* FLOP/s against which a run is held: forward's peak or, for training, the harmonic mean of the three directions. */
+/* Returns the peak for a purpose in FLOP/s: forward's or, for training, the harmonic mean of the three directions. */
 double bench_peak_for(const nn_peak *peak, nn_purpose purpose);
 
 #endif

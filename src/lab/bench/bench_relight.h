@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What one more light costs. For bench.c. */
+/* Measures the cost of each additional light. For bench.c. */
 #ifndef MERLIN_LAB_BENCH_BENCH_RELIGHT_H
 #define MERLIN_LAB_BENCH_BENCH_RELIGHT_H
 
@@ -8,7 +8,7 @@
 enum { BENCH_WAYS = 3 };
 
 typedef struct bench_relighting {
-    double stage_seconds[BENCH_WAYS]; /* to make a stage of 256×256, by merlin_relighting */
+    double stage_seconds[BENCH_WAYS]; /* to make a merlin_stage of 256×256, by merlin_relighting */
     double light_seconds[BENCH_WAYS]; /* for each light on it */
 } bench_relighting;
 

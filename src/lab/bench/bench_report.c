@@ -10,7 +10,7 @@
 static const double least_inference_share = 0.55, least_training_share = 0.55, most_estimate_seconds = 0.25;
 static const double most_estimate_megabytes = 150;
 
-/* By merlin_relighting. */
+/* Names, by merlin_relighting. */
 static const char *const way_names[BENCH_WAYS] = {"brdf", "network", "brdf without shadows"};
 static const char *const way_keys[BENCH_WAYS] = {"brdf", "network", "brdf_unshadowed"};
 

@@ -19,11 +19,11 @@ static const bench_stereo_run cases[BENCH_STEREO_RUNS] = {
 typedef struct fill_work {
     uint16_t *codes;
     uint32_t seed;
-    size_t row, shadow; /* values; where a shadow of a sixth of a row begins in the first one */
+    size_t row, shadow; /* row: values a row; shadow: where a shadow of a sixth of a row begins in the first one */
     bool shadows;
 } fill_work;
 
-/* Between 6000 and 60000, neither dark nor saturated; shadows slant. */
+/* Fills in values between 6000 and 60000, neither dark nor saturated, with slanted shadows. */
 static void fill_block(void *context, size_t begin, size_t end)
 {
     const fill_work *w = context;
@@ -59,7 +59,7 @@ static status make_capture(const bench_stereo_report *report, const bench_stereo
                           .lighting = MERLIN_DISTANT_LIGHTS,
                           .intensities_known = true};
     status s = pst_capture_reserve(c, (size_t)run->pictures);
-    c->count = 0; /* until they are added */
+    c->count = 0; /* until the pictures are added */
     if (s == OK) s = img_new(&c->mask, c->width, c->height, 1);
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; s == OK && i < n; i++)
         c->mask.data[i] = 1;
@@ -108,7 +108,7 @@ status bench_stereo(const bench_stereo_options *options, bench_stereo_report *ou
     return s;
 }
 
-/* Bytes of pictures a second. */
+/* Returns bytes of pictures a second. */
 static double rate(const bench_stereo_run *run)
 {
     return (double)run->input_bytes / run->seconds;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What photometric stereo by least squares costs: how fast it takes its pictures from memory, beside the rate at which
- * this machine copies, and how much memory it needs beyond them.
+/* Measures photometric stereo by least squares: its rate of reading pictures from memory, beside the machine's rate of
+ * copying, and the memory that it needs beyond the pictures.
  *
  *     bench_stereo_report report;
  *     status s = bench_stereo(&(bench_stereo_options){.quick = true}, &report);
@@ -19,10 +19,10 @@ enum { BENCH_STEREO_RUNS = 3 };
 
 typedef struct bench_stereo_run {
     int pictures;
-    bool shadows; /* a sixth of every picture is in shadow, each another; else every value counts */
+    bool shadows; /* a sixth of every picture is in shadow, a different part in each; else every value counts */
     double seconds;
-    size_t input_bytes;   /* the pictures */
-    size_t working_bytes; /* the most that was held beyond them, results included; 0 if the system does not tell */
+    size_t input_bytes;   /* size of the pictures */
+    size_t working_bytes; /* peak memory beyond them, results included; 0 if the system does not tell */
 } bench_stereo_run;
 
 typedef struct bench_stereo_report {
@@ -34,13 +34,13 @@ typedef struct bench_stereo_report {
 typedef struct bench_stereo_options {
     bool quick; /* 1 megapixel instead of 12, fewer runs */
     bool quiet;
-    int (*stopped)(void); /* asked between measurements; NULL: never */
+    int (*stopped)(void); /* polled between measurements; NULL: never */
 } bench_stereo_options;
 
 status bench_stereo(const bench_stereo_options *options, bench_stereo_report *out);
 
 void bench_stereo_print(const bench_stereo_report *report, FILE *stream);
-/* malloc'ed; NULL if memory ran out. */
+/* Returns malloc'ed JSON; NULL if memory ran out. */
 char *bench_stereo_json(const bench_stereo_report *report);
 
 #endif

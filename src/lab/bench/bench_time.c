@@ -54,7 +54,7 @@ status bench_copy_rate(bench_budget p, double *rate)
     double seconds = 0;
     status s;
     if (c.from && c.to) {
-        memset(c.from, 1, COPY_BYTES); /* untouched pages are all one page of zeros */
+        memset(c.from, 1, COPY_BYTES); /* untouched pages are all the same page of zeros */
         s = bench_time(copy_all, &c, p, &seconds);
     } else {
         s = fail(MERLIN_NO_MEMORY, "no memory to measure the rate of copying");

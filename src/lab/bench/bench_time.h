@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How the bench measures time, and the rate of copying that it holds others against.
+/* Time measurement, and the machine's rate of copying memory for comparison.
  *
  *     double seconds;
  *     status s = bench_time(run_it, &work, bench_budget_of(quick), &seconds);      the median of several runs
@@ -11,7 +11,7 @@
 
 #include "base/status.h"
 
-/* How long to measure: at least `least` runs, then on until `seconds` have passed. */
+/* Duration of a measurement: at least `least` runs, and more until `seconds` have passed. */
 typedef struct bench_budget {
     int least;
     double seconds;
@@ -21,10 +21,10 @@ bench_budget bench_budget_of(bool quick);
 
 typedef status (*bench_work)(void *context);
 
-/* Median seconds of one call, after one that is not counted. */
+/* Measures the median seconds of a call, after one that is not counted. */
 status bench_time(bench_work work, void *context, bench_budget p, double *seconds);
 
-/* Bytes read and written a second by memcpy on all threads. */
+/* Measures the bytes read and written a second by memcpy on all threads. */
 status bench_copy_rate(bench_budget p, double *rate);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab bench: what the model, the estimate and the renderer cost on this machine. */
+/* merlin-lab bench: the cost of model, estimate and renderer on this machine. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -66,7 +66,7 @@ static status parse(int argc, char **argv, request *r)
     return OK;
 }
 
-/* Cost does not depend on what the weights are. */
+/* Writes random weights, as the cost does not depend on their values. */
 static status write_random_weights(const char *config_path, const char *path)
 {
     model_config config;
@@ -155,7 +155,7 @@ int cmd_bench(int argc, char **argv)
 {
     char folder[PATH_MAX], merlin[PATH_MAX + 8];
     bool known = file_program_folder(folder);
-    snprintf(merlin, sizeof merlin, "%s/merlin", known ? folder : "."); /* lies beside merlin-lab */
+    snprintf(merlin, sizeof merlin, "%s/merlin", known ? folder : "."); /* beside merlin-lab */
     request r = {.options = {.program = merlin, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("bench", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;

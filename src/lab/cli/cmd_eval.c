@@ -89,7 +89,8 @@ static status take_given(const char *text, void *into)
     return map ? OK : fail(MERLIN_WRONG_USE, "--given wants albedo, normal, roughness or depth, not \"%s\"", text);
 }
 
-/* Every EXR of a folder of samples is taken for one, and must be: means among them would end training. */
+/* Refuses to write means into the folder of samples: every EXR there is taken for a sample, so that training would
+ * fail. */
 static status check_means_apart(const request *r)
 {
     char *folder = file_folder_of(r->output);
@@ -110,7 +111,7 @@ static status check_raw(const eval_options *o)
     return OK;
 }
 
-/* Nobody should wait for an evaluation to find that its report went elsewhere. */
+/* Checks that the report can be written before the evaluation begins. */
 static status check(const request *r)
 {
     const eval_options *o = &r->options;

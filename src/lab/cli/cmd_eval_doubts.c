@@ -39,7 +39,7 @@ typedef struct request {
     bool json, quiet, help;
 } request;
 
-/* The work on its way. */
+/* State of the evaluation. */
 typedef struct run {
     const request *request;
     merlin_model *model;
@@ -103,7 +103,7 @@ static status add_samples(run *r, char *const *paths, size_t count)
     return s;
 }
 
-/* Pictures to be judged: photographs of both kinds and samples. */
+/* Pictures to be evaluated: photographs of both kinds, and samples. */
 typedef struct pictures {
     photo_list right, wrong;
     char **samples;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval lights: what an estimate is worth by the kind of light. */
+/* merlin-lab eval lights: the accuracy of estimates by kind of light. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval masks: how well the object of a photograph without a mask is found, and how well it is known how
- * well. */
+/* merlin-lab eval masks: how well objects are found in photographs without a mask, and how well the result's quality is
+ * predicted. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ typedef struct request {
     bool json, quiet, help;
 } request;
 
-/* The work on its way. */
+/* State of the evaluation. */
 typedef struct run {
     const request *request;
     photo_list photos;

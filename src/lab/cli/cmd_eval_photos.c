@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval photos: photographs taken apart by several weights, side by side in one picture. */
+/* merlin-lab eval photos: estimates of photographs by several weights, side by side in one picture. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,15 +64,15 @@ static status parse(int *argc, char ***argv, request *r)
 
 /* ---- the picture ---- */
 
-/* A row a photograph: the photograph, then each of the other tiles by every weights. */
+/* The picture: a row for each photograph, with the photograph and then each other tile by every weights file. */
 typedef struct comparison {
     const request *request;
     const photo_list *photos;
     int columns;
     img *images;                /* photographs × columns, of the tiles' size */
-    char (*labels)[LABEL_SIZE]; /* of as many */
-    bool *failed;               /* of photographs: left out of the picture */
-    size_t failures;            /* how many they are */
+    char (*labels)[LABEL_SIZE]; /* a label for each */
+    bool *failed;               /* per photograph: left out of the picture */
+    size_t failures;            /* number of those left out */
     progress progress;
 } comparison;
 
@@ -132,7 +132,7 @@ static status take_apart(comparison *c, merlin_model *m, size_t photo, int model
     return s;
 }
 
-/* The others' rows are worth having. */
+/* Leaves a photograph that failed out, as the rows of the others are still useful. */
 static void leave_out_bad(comparison *c, size_t photo, status s)
 {
     if (s == OK) return;
@@ -179,14 +179,14 @@ static status write_sheet(const comparison *c)
 static status show(const comparison *c)
 {
     size_t shown = c->photos->count - c->failures;
-    if (shown == 0) return OK; /* each has said why */
+    if (shown == 0) return OK; /* each failure has been reported */
     status s = write_sheet(c);
     if (s == OK && !c->request->quiet)
         printf("%s: %zu photographs by %d weights\n", c->request->output, shown, c->request->model_count);
     return s;
 }
 
-/* *failures: photographs that are not in the picture. */
+/* Compares the weights. *failures: number of photographs that are not in the picture. */
 static status compare(const request *r, const photo_list *photos, size_t *failures)
 {
     comparison c;
@@ -215,7 +215,7 @@ static status check_apart(const request *r, const photo_list *photos)
     return OK;
 }
 
-/* The last of them comes into use when the photographs have been taken apart by all others. */
+/* Checks all weights before any work: the last of them would be opened only after all others have been used. */
 static status check_models(const request *r)
 {
     status s = OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval solvers: photometric stereo where the truth is known. */
+/* merlin-lab eval solvers: photometric stereo on data with known ground truth. */
 #include <stdbool.h>
 #include <stdio.h>
 

@@ -60,7 +60,7 @@ static status take_strata(const char *text, void *to)
     return OK;
 }
 
-/* One angle, or two with a hyphen between. */
+/* Parses one angle, or two with a hyphen between. */
 static status take_fov(const char *text, void *to)
 {
     render_options *o = to;
@@ -87,7 +87,7 @@ static status take_share(const char *text, void *to)
     return s;
 }
 
-/* Degrees with commas between. */
+/* Parses degrees separated by commas. */
 static status take_angles(const char *text, void *to)
 {
     image_settings *image = &((render_options *)to)->image;
@@ -190,7 +190,7 @@ static status report(const request *r, const render_stats *stats)
     return OK;
 }
 
-/* Before the environments of a folder are read, which takes seconds. */
+/* Checks the inputs before a folder's environments are read, which takes seconds. */
 static status check_inputs(const render_options *o)
 {
     status s = check_named("mesh", o->mesh);

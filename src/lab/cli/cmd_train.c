@@ -78,7 +78,8 @@ static status parse(int argc, char **argv, request *r)
     return OK;
 }
 
-/* Weights are named as everywhere else: a file, or those that ship. *path is malloc'ed and takes the name's place. */
+/* Finds weights by name as other commands do: a file, or weights that ship with merlin. *path is malloc'ed and replaces
+ * the name. */
 static status find_weights(const char **name, char **path)
 {
     status s = photo_find_model(*name, path);
@@ -101,7 +102,7 @@ static status train(request *r)
     return s;
 }
 
-/* One of the ranks says what all know. */
+/* Ends all ranks; one of them reports an error that all have. */
 static int end(ranks *together, status s)
 {
     bool all_know = s == OK || s == MERLIN_STOPPED || s == STATUS_ELSEWHERE;

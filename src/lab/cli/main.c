@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab: how the models of merlin are made and measured. */
+/* merlin-lab: makes and measures the models of merlin. */
 #include "command/program.h"
 #include "lab/cli/lab_commands.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_mpi.so: ranks that speak MPI (base/ranks/ranks.h). Loaded by those alone who ask for it. */
+/* merlin_mpi.so: ranks that communicate by MPI (base/ranks/ranks.h), loaded only on request. */
 #include <limits.h>
 #include <mpi.h>
 
@@ -17,7 +17,7 @@ static void all_to_all(const void *to, void *from, size_t bytes)
     MPI_Alltoall(to, (int)bytes, MPI_BYTE, from, (int)bytes, MPI_BYTE, MPI_COMM_WORLD);
 }
 
-/* MPI counts by int. */
+/* Copies in parts, as MPI counts in int. */
 static void broadcast(void *what, size_t bytes)
 {
     for (char *p = what; bytes > 0;) {
@@ -38,7 +38,8 @@ static void abort_all(void)
     MPI_Abort(MPI_COMM_WORLD, 1);
 }
 
-/* Errors are fatal by MPI's own default: a rank that has lost another one has nothing to go on with. */
+/* Starts MPI and returns the transport. Errors are fatal by MPI's default: a rank that has lost another one cannot
+ * continue. */
 ranks *merlin_ranks_begin(void)
 {
     static ranks all = {.all_gather = all_gather,

@@ -8,8 +8,8 @@
 
 #include "base/file.h"
 
-/* Fowler, Noll and Vo's FNV-1a, by words of 64 bits; the shift brings high bits down, which multiplying alone does not.
- */
+/* Constants of Fowler, Noll and Vo's FNV-1a, here over words of 64 bits; a shift mixes high bits into low ones, which
+ * multiplication alone does not. */
 static const uint64_t FNV_BASIS = 0xcbf29ce484222325u, FNV_PRIME = 0x100000001b3u;
 
 static uint64_t mix(uint64_t sum, uint64_t word)
@@ -32,7 +32,7 @@ static uint64_t sum_of(const void *data, size_t size, uint64_t sum)
     return sum;
 }
 
-/* name: as it counts. */
+/* Adds a file's content under a name. */
 static status add_file(const char *path, const char *name, uint64_t *sum)
 {
     file_view view;
@@ -43,7 +43,7 @@ static status add_file(const char *path, const char *name, uint64_t *sum)
     return OK;
 }
 
-/* Sums do not depend on the order. */
+/* Adds files; the sum does not depend on their order. */
 static status add_files(char *const *paths, size_t count, const char *folder, uint64_t *sum)
 {
     status s = OK;
@@ -80,7 +80,7 @@ static status describe(const source *from, FILE *out)
 
 status contents_describe(const render_options *o, char **lines)
 {
-    /* with the buffers of .gltf; samples may be written among meshes */
+    /* with the buffers of .gltf; the samples themselves may be written among meshes */
     static const char *const meshes[] = {".ply", ".obj", ".gltf", ".glb", ".bin", NULL};
     const source sources[] = {{"mesh", o->mesh, false, false, NULL},
                               {"environments", o->environment_folder, true, false, NULL},

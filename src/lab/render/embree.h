@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Embree 3 or 4, whichever there is, by one set of words: the versions name their headers and a query's settings
- * differently. Internal to src/lab/render.
+/* One interface to Embree 3 and 4, which name their headers and a query's settings differently. Internal to
+ * src/lab/render.
  *
  *     embree_intersect16(valid, scene, &packet, EMBREE_COHERENT);
  */

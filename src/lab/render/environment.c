@@ -12,7 +12,7 @@
 #include "optics/latlong.h"
 #include "optics/sh.h"
 
-/* The place of a unit direction in the map, in texels. */
+/* Converts a unit direction to map coordinates in texels. */
 static void place_of(const environment *env, vec3 d, float *x, float *y)
 {
     float u, v;
@@ -21,7 +21,7 @@ static void place_of(const environment *env, vec3 d, float *x, float *y)
     *y = v * (float)env->map.height;
 }
 
-/* Solid angle of a texel of row y: latlong_solid_angle, from the stored cosines. */
+/* Returns the solid angle of a texel of row y, as latlong_solid_angle does, from the stored cosines. */
 static float texel_solid_angle(const environment *env, int y)
 {
     return (env->cosines[y] - env->cosines[y + 1]) * 2 * PI / (float)env->map.width;
@@ -40,7 +40,7 @@ static float mean_luminance(const environment *env)
     return (float)(sum / (4 * M_PI));
 }
 
-/* Divides a cumulative sum by its last value; the last entry becomes 1 exactly. */
+/* Divides a cumulative sum by its last value; the last entry becomes exactly 1. */
 static void normalize_cumulative(float *c, int count)
 {
     float total = c[count];
@@ -49,7 +49,8 @@ static void normalize_cumulative(float *c, int count)
     c[count] = 1;
 }
 
-/* A texel's share: its light, plus a little so that what interpolation spreads into dark texels is found too. */
+/* Computes the sampling distribution: a texel's light, plus a little so that light interpolated into dark texels is
+ * sampled, too. */
 static void fill_distribution(environment *env, float floor_luminance)
 {
     int w = env->map.width, h = env->map.height;
@@ -79,7 +80,7 @@ static void project_sh(environment *env)
     }
 }
 
-/* Exposes the map so that its mean luminance is `exposure`, then derives everything else from it. */
+/* Scales the map so that its mean luminance is `exposure`, then derives everything else from it. */
 static status finish(environment *env, float exposure)
 {
     size_t w = (size_t)env->map.width, h = (size_t)env->map.height;
@@ -100,7 +101,7 @@ static status finish(environment *env, float exposure)
     return OK;
 }
 
-/* Mean radiance of the surroundings: a grey object in them comes out between dim and well lit. */
+/* Returns a random mean radiance, with which a grey object looks between dim and well lit. */
 static float random_exposure(rng *r)
 {
     return 0.35f * powf(3.2f, rng_uniform(r));
@@ -137,10 +138,10 @@ void environment_free(environment *env)
     *env = (environment){0};
 }
 
-/* The four texels around a place in texels, and their shares in it. */
+/* The four texels around a position, and their weights. */
 typedef struct neighbours {
     int x[2], y[2];
-    float share[2][2]; /* of row and column */
+    float share[2][2]; /* weights of rows and columns */
 } neighbours;
 
 static neighbours around(const environment *env, float x, float y)
@@ -178,13 +179,13 @@ static float texel_probability(const environment *env, int x, int y)
     return (env->rows[y + 1] - env->rows[y]) * (row[x + 1] - row[x]);
 }
 
-/* Per solid angle; directions within a texel are spread evenly over its u and cosθ. */
+/* Returns the density per solid angle; directions within a texel are uniform in u and cosθ. */
 static float texel_pdf(const environment *env, int x, int y)
 {
     return texel_probability(env, x, y) / texel_solid_angle(env, y);
 }
 
-/* Interpolated as radiance is, per solid angle at height y: what drawing within tents leads to. */
+/* Returns the density per solid angle at height y of sampling with tents: interpolated as radiance is. */
 static float tents_pdf(const environment *env, const neighbours *n, float y)
 {
     float w = (float)env->map.width, h = (float)env->map.height, probability = 0;
@@ -194,7 +195,7 @@ static float tents_pdf(const environment *env, const neighbours *n, float y)
     return probability * w * h / (2 * PI * PI * fmaxf(1e-6f, sinf(PI * y / h)));
 }
 
-/* Where texels are drawn within their borders. */
+/* Returns the density where directions are sampled uniformly inside texels. */
 static float even_pdf(const environment *env, float x, float y)
 {
     int i = (int)x, j = (int)y;
@@ -212,14 +213,14 @@ vec3 environment_look(const environment *env, vec3 d, real *pdf)
     return radiance_of(env, &n);
 }
 
-/* Where numbers fall in cumulative sums: in which interval, and how far into it. */
+/* Positions of numbers in cumulative sums: the interval, and the offset within it. */
 typedef struct falls {
     int interval[LANES];
     float within[LANES];
 } falls;
 
-/* Lane i's sum of so many intervals begins at cumulative[first[i]]. Halving without branches, which nobody could
- * predict. */
+/* Finds the intervals; lane i's sum of `count` intervals begins at cumulative[first[i]]. Bisection without branches, as
+ * they would be unpredictable. */
 static void find_intervals(const float *cumulative, const int first[LANES], int count, const float u[LANES], falls *out)
 {
     int low[LANES];
@@ -241,13 +242,13 @@ static void find_intervals(const float *cumulative, const int first[LANES], int 
     }
 }
 
-/* [0, 1) to (-1, 1), most often near 0. */
+/* Maps [0, 1) to (-1, 1) with a triangular density. */
 static float tent(float u)
 {
     return u < 0.5f ? sqrtf(2 * u) - 1 : 1 - sqrtf(2 - 2 * u);
 }
 
-/* In the texels that were drawn and around them. A tent that reaches beyond a pole is folded back. */
+/* Places directions in and around the chosen texels. A tent that extends beyond a pole is folded back. */
 static void place_in_tents(const environment *env, const falls *across, const falls *down, int count,
                            environment_rays *out)
 {

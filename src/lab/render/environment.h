@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Light from all around: a latitude-longitude map of linear radiance, procedural or from a file.
+/* Environment light: a latitude-longitude map of linear radiance, procedural or from a file, with importance sampling.
  *
  *     environment env;
  *     status s = environment_procedural(&generator, &env);
@@ -15,37 +15,38 @@
 #include "base/skipped.h"
 #include "image/image.h"
 
-/* Size of procedural maps, and of those from files once shrunk. */
+/* Size of procedural maps, and of maps from files after shrinking. */
 enum { ENVIRONMENT_WIDTH = 256, ENVIRONMENT_HEIGHT = 128 };
 
 typedef struct environment {
     img map;        /* 3 channels */
     float *rows;    /* height + 1: cumulative probability of rows */
-    float *cosines; /* height + 1: of the polar angle at the rows' borders */
+    float *cosines; /* height + 1: cosine of the polar angle at the rows' borders */
     float *columns; /* height × (width + 1): cumulative probability within a row */
     float sh[9][3]; /* radiance coefficients */
-    bool tents;     /* a texel is drawn as wide as interpolation spreads it; else evenly within its borders */
+    bool tents; /* texels are sampled over the width of their interpolation kernel; else uniformly inside their borders
+                 */
 } environment;
 
-/* A sky, a room or a studio at random, its mean radiance that of ordinary exposures. */
+/* Generates a random sky, room or studio, with the mean radiance of usual exposures. */
 status environment_procedural(rng *r, environment *out);
-/* A map read elsewhere, turned about the vertical and exposed at random. */
+/* Takes a map that was read, rotated about the vertical and exposed at random. */
 status environment_from_map(const img *map, rng *r, environment *out);
 void environment_free(environment *env);
 
-/* Radiance from the unit direction d, interpolated, and the density of environment_sample there, 1/sr. */
+/* Returns the interpolated radiance from the unit direction d, and the density of environment_sample there, 1/sr. */
 vec3 environment_look(const environment *env, vec3 d, real *pdf);
-/* Directions and what comes from there, one a lane. */
+/* Directions, and the radiance from there, one a lane. */
 typedef struct environment_rays {
     lanes direction, radiance;
     float pdf[LANES];
 } environment_rays;
 
-/* Draws `count` directions about as often as the map is bright there. */
+/* Samples `count` directions with a density about proportional to the map's brightness. */
 void environment_sample(const environment *env, const float u1[LANES], const float u2[LANES], int count,
                         environment_rays *out);
 
-/* Every picture of a folder, told by content, shrunk to what lighting needs. */
+/* All pictures of a folder, recognized by content, shrunk to the size that lighting needs. */
 typedef struct environment_folder {
     img *maps;
     size_t count;

@@ -6,8 +6,8 @@
 #include "image/resize.h"
 #include "lab/render/environment.h"
 
-/* Reads one map and resizes it. Negative values of odd files count as black, before they take light from those beside
- * them or give it; enlarging, too, makes some. */
+/* Reads one map and resizes it. Negative values are set to black first, so that they do not spread to their neighbours;
+ * enlarging creates new ones, which are set to black, too. */
 static status read_map(const char *path, img *out)
 {
     img full = {0};

@@ -17,21 +17,21 @@
 #include "lab/scene/object/model_folder.h"
 #include "optics/camera.h"
 
-/* What all threads of a run share. `failed` and everything below it change only inside the critical section. */
+/* State shared by all threads of a run. `failed` and everything below it change only inside the critical section. */
 typedef struct run {
     const render_options *options;
     trace_device *device;
     environment_folder maps;
     scene_textures textures;
-    scene_model *model;  /* NULL: procedural objects, or */
-    scene_models models; /* these for a share of them */
+    scene_model *model;  /* NULL: procedural objects, or `models` */
+    scene_models models; /* for a share of the objects */
     render_stats *stats;
     progress bar;
     status failed;
     char message[512];
 } run;
 
-/* Returns what the command takes without options; docs/notes/paths.md has what eight paths cost. */
+/* Returns the command's defaults; docs/notes/paths.md measures eight paths. */
 render_options render_options_default(void)
 {
     return (render_options){.image = {.size = 128, .fov = CAMERA_FOV, .strata = 4, .paths = 8}, .environment = true};
@@ -47,10 +47,11 @@ static status make_environment(const run *r, uint64_t index, environment *out)
     return environment_from_map(&r->maps.maps[chosen], &generator, out);
 }
 
-/* Half of what a whole photograph shows, corner to corner, of the lens that sees most: no cut reaches beyond. */
+/* Half of the field of view of a whole photograph, corner to corner, for the widest lens, in degrees: crops stay
+ * inside. */
 static const float HALF_FRAME = 40;
 
-/* The settings with the lens of one sample. */
+/* Returns the settings with the lens of one sample. */
 static image_settings lens_of(const render_options *o, uint64_t index)
 {
     image_settings image = o->image;
@@ -77,7 +78,7 @@ static status make_object(const run *r, uint64_t index, float fov, scene_object 
     return s;
 }
 
-/* About half of the pixels see the object. */
+/* Returns the expected number of rays: about half of the pixels see the object. */
 static double expected_rays(const render_options *o)
 {
     const image_settings *m = &o->image;
@@ -85,7 +86,7 @@ static double expected_rays(const render_options *o)
     return (double)m->size * m->size * (m->strata + 0.5 * m->paths * layers);
 }
 
-/* env: empty, or what lights its environment image. */
+/* Renders a sample; env: empty, or the environment of its environment image. */
 static status make_sample_under(const run *r, uint64_t index, const environment *env, sample *out, uint64_t *rays)
 {
     const render_options *o = r->options;
@@ -111,7 +112,7 @@ static status make_sample(const run *r, uint64_t index, sample *out, uint64_t *r
     return s;
 }
 
-/* Renders one sample and writes it, unless it is there already. */
+/* Renders one sample and writes it, unless it exists already. */
 static status produce(const run *r, uint64_t index, bool *kept, uint64_t *rays)
 {
     sample s = {0};
@@ -142,7 +143,7 @@ static void note_result(run *r, status st, bool kept, uint64_t rays)
     r->stats->rendered += !kept;
     r->stats->kept += kept;
     r->stats->rays += rays;
-    if (kept) r->bar.first++; /* costs nothing, so it must not count as speed */
+    if (kept) r->bar.first++; /* took no time, so that it must not count as speed */
     progress_update(&r->bar, r->stats->rendered + r->stats->kept, NULL);
 }
 
@@ -163,9 +164,10 @@ static void body(void *context, size_t i)
     note_result(r, st, kept, rays);
 }
 
-/* ---- the folder and what made it ------------------------------------------------------------------------------- */
+/* ---- the output folder and its description --------------------------------------------------------------------------
+ */
 
-/* Options that are told only where they are given: folders made before there were any go on. */
+/* Describes options that are written only if they are set, so that folders of earlier versions can be continued. */
 static void describe_more(const render_options *o, char *out, size_t size)
 {
     int length = 0;
@@ -195,7 +197,7 @@ static void describe(const render_options *o, char *out, size_t size)
     describe_more(o, out + strlen(out), size - strlen(out));
 }
 
-/* The folder above, in place; false if there is none. */
+/* Shortens a path to its parent folder; returns false if there is none. */
 static bool go_up(char *path)
 {
     char *slash = strrchr(path, '/');
@@ -207,7 +209,7 @@ static bool go_up(char *path)
     return true;
 }
 
-/* Whether a folder, which need not exist yet, is `outer` or lies in it. */
+/* Tells whether a folder, which need not exist yet, is `outer` or inside it. */
 static bool lies_in(const char *folder, const char *outer)
 {
     char named[PATH_MAX], path[PATH_MAX];
@@ -220,7 +222,7 @@ static bool lies_in(const char *folder, const char *outer)
     return true;
 }
 
-/* Samples among what is read would be read themselves by the run that continues this one. */
+/* Refuses to write samples into a folder that is read: the run that continues this one would read them as input. */
 static status check_apart(const render_options *o)
 {
     const char *materials = o->material_folder, *maps = o->environment_folder, *read = NULL;
@@ -231,7 +233,7 @@ static status check_apart(const render_options *o)
                 read);
 }
 
-/* Folders of older versions do not tell the contents, and go on. */
+/* Compares the stored description; folders of older versions do not contain checksums, and can be continued. */
 static status compare_claims(const render_options *o, const char *path, const char *options, const char *contents)
 {
     char *found = NULL;
@@ -319,7 +321,7 @@ static status open_run(const render_options *o, run *r)
     return s;
 }
 
-/* Tries the mesh before the folder is claimed for it: a wrong name shall not stand in the way of the right one. */
+/* Reads the mesh before the folder is claimed for it, so that a wrong path does not block the right one. */
 static status check_mesh(const run *r)
 {
     scene_object object;

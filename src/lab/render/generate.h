@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A data set: samples (seed, first), (seed, first + 1), ... rendered into a folder, one thread a sample.
+/* Generates a data set: samples (seed, first), (seed, first + 1), ... rendered into a folder, one thread a sample.
  *
  *     render_options o = render_options_default();
  *     o.folder = "data";
@@ -8,9 +8,8 @@
  *     status s = render_samples(&o, &stats);
  *
  * A sample depends on the options and (seed, index) alone, never on the number of threads. Samples already in the
- * folder are kept, so an interrupted run is continued by repeating it; render.txt in the folder says what made them,
- * options and what the files hold that they name (contents.h), and a run with others is refused rather than mixed in.
- */
+ * folder are kept, so that an interrupted run is continued by repeating it; render.txt in the folder records the
+ * options and checksums of the files they name (contents.h), and a run with others is refused. */
 #ifndef MERLIN_LAB_RENDER_GENERATE_H
 #define MERLIN_LAB_RENDER_GENERATE_H
 
@@ -20,25 +19,25 @@
 #include "lab/render/render_options.h"
 
 typedef struct render_stats {
-    size_t rendered, kept; /* kept: were there already */
+    size_t rendered, kept; /* kept: existed already */
     uint64_t rays;
     double seconds;
-    skipped_files skipped_maps, skipped_materials, skipped_meshes; /* of their folders; for render_stats_free */
+    skipped_files skipped_maps, skipped_materials, skipped_meshes; /* freed by render_stats_free */
 } render_stats;
 void render_stats_free(render_stats *stats);
 
-/* 128 pixels, 60 degrees, 4 × 4 strata, 8 paths, environment on; no folder, count 0. */
+/* Returns the defaults: 128 pixels, 60 degrees, 4 × 4 strata, 8 paths, with environment; no folder, count 0. */
 render_options render_options_default(void);
 
-/* Stops at the first failure, or with MERLIN_STOPPED when interrupted; finished samples stay. stats is filled either
- * way. */
-/* After a failure, too, *stats is for render_stats_free. */
+/* Renders the samples. Stops at the first failure, or with MERLIN_STOPPED when interrupted; finished samples stay.
+ * *stats is filled in any case, also after a failure, and must be freed by render_stats_free. */
 status render_samples(const render_options *options, render_stats *stats);
 
-/* One sample of such a set, in memory. */
+/* Renders one sample of such a set in memory. */
 status render_sample(const render_options *options, uint64_t index, sample *out);
 
-/* The same in the environment of sample number `place`, which is given as well; options must ask for environments. */
+/* Renders one sample in the environment of sample number `place`, which is returned as well; the options must include
+ * environments. */
 status render_sample_elsewhere(const render_options *options, uint64_t index, uint64_t place, sample *out,
                                environment *env);
 

@@ -6,15 +6,15 @@
 #include "base/lanes.h"
 #include "optics/camera.h"
 
-/* What a perfectly black surface still reflects: keeps the division by the albedo bounded. */
+/* Reflectance of a perfectly black surface by its specular lobe, which keeps the division by albedo bounded. */
 static const float lobe_reflectance = 0.05f;
 
-/* What the filter reads, plane by plane, with a border of zeros as wide as it reaches, so that sixteen pixels of a row
- * are filtered at once without a thought for the picture's edges. */
+/* Planes of the filter's inputs, with a border of zeros as wide as its radius, so that sixteen pixels of a row are
+ * filtered at once without tests for the picture's edges. */
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, DEPTH, MASK, RED, GREEN, BLUE, PLANES };
 
 typedef struct guides {
-    float *plane[PLANES]; /* light, without albedo and coverage, in the last three */
+    float *plane[PLANES]; /* the last three: light, divided by albedo and coverage */
     size_t stride;
     float depth_scale;
     int radius;
@@ -27,7 +27,7 @@ static status guides_new(const sample *s, const img *layer, int radius, guides *
     g->stride = (width + LANES - 1) / LANES * LANES + 2 * border;
     size_t size = g->stride * ((size_t)layer->height + 2 * border);
     camera eye = {.width = layer->width, .height = layer->height, .fov = s->fov, .slant = s->slant};
-    /* a slope of two pixels' depth a pixel still counts half */
+    /* a slope of two pixels' depth a pixel still has weight one half */
     g->depth_scale = 0.5f / camera_pixel_size(&eye);
     float *all = calloc(PLANES * size, sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "out of memory for smoothing a picture of %d pixels' width", layer->width);
@@ -36,7 +36,7 @@ static status guides_new(const sample *s, const img *layer, int radius, guides *
     return OK;
 }
 
-/* Of the pixel in the planes. */
+/* Returns the index of a pixel in the planes. */
 static size_t place_of(const guides *g, int x, int y)
 {
     return (size_t)(y + g->radius) * g->stride + (size_t)(x + g->radius);
@@ -65,8 +65,8 @@ typedef struct sums {
     float total[LANES];
 } sums;
 
-/* Adds what the pixels at `to` tell about those at `from`: their coverage, if they lie on the same smooth piece of
- * surface. */
+/* Adds the pixels at `to` to the sums of those at `from`, weighted by coverage and by how well they match the same
+ * smooth surface. */
 static void add_neighbours(const guides *g, size_t from, size_t to, float distance2, sums *out)
 {
     const float *nx = g->plane[NORMAL_X], *ny = g->plane[NORMAL_Y], *nz = g->plane[NORMAL_Z];
@@ -88,7 +88,7 @@ static void add_neighbours(const guides *g, size_t from, size_t to, float distan
     }
 }
 
-/* Pixels x .. x + LANES - 1 of a row. */
+/* Filters pixels x .. x + LANES - 1 of a row. */
 static void filter_lanes(const guides *g, const sample *s, int x, int y, img *layer)
 {
     sums sum = {.total = {0}};

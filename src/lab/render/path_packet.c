@@ -4,11 +4,10 @@
 #include "base/number.h"
 #include "optics/brdf.h"
 
-/* A loop with a choice in it does not become vectors either: those below are made twice, once for each value of
+/* A loop with a condition in it does not vectorize either: the loops below are compiled twice, once for each value of
  * diffuse_only. */
 
-/* All lanes are filled, so that loops over them have no tail; those beyond count repeat the first and are never
- * traced. */
+/* Fills all lanes, so that loops need no remainder; lanes beyond count repeat the first, and are never traced. */
 void path_packet_begin(path_packet *b, const path_points *pixels, int count, int paths, int first)
 {
     int left = count * paths - first;
@@ -32,7 +31,7 @@ void path_packet_begin(path_packet *b, const path_points *pixels, int count, int
     }
 }
 
-/* f and the density of the BRDF's own directions. */
+/* Returns the BRDF and sets the density of its own directions. */
 ALWAYS_INLINE vec3 evaluate(const path_packet *b, int i, vec3 l, bool diffuse_only, real *pdf)
 {
     vec3 albedo = lanes_at(&b->albedo, i), n = lanes_at(&b->normal, i);
@@ -41,8 +40,9 @@ ALWAYS_INLINE vec3 evaluate(const path_packet *b, int i, vec3 l, bool diffuse_on
     return vec3_scale(albedo, 1 / PI);
 }
 
-/* Which paths go on: both normals must face l, the shading normal for the BRDF, the true one lest light pass through
- * the surface. A loop of its own, because comparisons scattered among the other's defeat the compiler. */
+/* Decides which paths continue: both normals must face l, the shading normal for the BRDF, the geometric one so that no
+ * light passes through the surface. It is a loop of its own, as comparisons inside the other keep it from vectorizing.
+ */
 static void decide(path_packet *b)
 {
     int count = b->count;

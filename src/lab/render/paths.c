@@ -8,7 +8,7 @@
 
 static const vec3 black = {0, 0, 0};
 
-/* f and the density of scatter at l. */
+/* Returns the BRDF and the density of scatter at l. */
 static vec3 reflect_density(const trace_scene *scene, const scene_surface *at, vec3 l, vec3 view, real *pdf)
 {
     if (!scene->diffuse_only) return brdf_eval_pdf(at->albedo, at->roughness, at->normal, l, view, pdf);
@@ -16,13 +16,14 @@ static vec3 reflect_density(const trace_scene *scene, const scene_surface *at, v
     return vec3_scale(at->albedo, 1 / PI);
 }
 
-/* Both normals must face l: the shading normal for the BRDF, the true one lest light pass through the surface. */
+/* Tells whether both normals face l: the shading normal for the BRDF, the geometric one so that no light passes through
+ * the surface. */
 static bool faces(const scene_surface *at, vec3 l)
 {
     return vec3_dot(at->normal, l) > 0 && vec3_dot(at->geometric_normal, l) > 0;
 }
 
-/* Draws the next direction and multiplies throughput by f cosθ / pdf; false if the path ends. */
+/* Samples the next direction and multiplies throughput by f cosθ / pdf; returns false if the path ends. */
 static bool scatter(const trace_scene *scene, const scene_surface *at, vec3 view, path_start start, real choice,
                     vec3 *l, real *pdf, vec3 *throughput)
 {
@@ -49,15 +50,17 @@ static path_start random_start(rng *r)
     return (path_start){a, b};
 }
 
-/* ---- straight from a point light ------------------------------------------------------------------------------- */
+/* ---- direct light of a point light
+ * ----------------------------------------------------------------------------------- */
 
-/* What shading takes, one point a lane; lanes beyond count repeat the first. */
+/* Inputs of shading, one point a lane; lanes beyond count repeat the first. */
 typedef struct shaded {
     lanes position, normal, albedo, view, light;
     float roughness[LANES];
 } shaded;
 
-/* Parts of a disc that a point of a surface looks for: one a quarter, so that a half hidden lamp gives about half. */
+/* Points of a disc that are tested for shadows: one a quarter, so that a half hidden lamp gives about half its light.
+ */
 enum { PARTS = 4 };
 
 static int parts_of(const point_light *light)
@@ -65,8 +68,8 @@ static int parts_of(const point_light *light)
     return vec3_length(light->across[0]) > 0 ? PARTS : 1;
 }
 
-/* Returns 32 bits that look random, of a place alone: neighbours look at other places of a lamp, and a place always at
- * the same. */
+/* Returns 32 pseudo-random bits of a position: neighbours test other points of a lamp, and a position always the same
+ * ones. */
 static uint32_t scramble(vec3 place)
 {
     uint32_t bits[3], h = 0x9e3779b9u;
@@ -80,7 +83,7 @@ static uint32_t scramble(vec3 place)
     return h;
 }
 
-/* Returns where a surface looks for a part of a lamp: evenly over a quarter of the disc. */
+/* Returns the point of a part of a lamp that is tested: uniform over a quarter of the disc. */
 static vec3 place_of_part(const point_light *light, int part, vec3 seen_from)
 {
     if (parts_of(light) == 1) return light->position;
@@ -123,7 +126,7 @@ ALWAYS_INLINE void shade_lanes(const shaded *s, real power, bool diffuse_only, l
     }
 }
 
-/* What up to LANES points get of one part of a lamp, nothing being in the way. */
+/* Computes the light of one part of a lamp on up to LANES points, without shadows. */
 static void shade_part(const trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                        const point_light *light, int part, shaded *s, lanes *lit)
 {
@@ -135,7 +138,7 @@ static void shade_part(const trace_scene *scene, const scene_surface *at, const 
         shade_lanes(s, power, false, lit);
 }
 
-/* Puts out what up to LANES points get from behind something. */
+/* Sets the light to zero for points in shadow. */
 static void cast_shadows(trace_scene *scene, const scene_surface *at, int count, const shaded *s, lanes *lit)
 {
     ray_packet rays;
@@ -159,14 +162,14 @@ static void cast_shadows(trace_scene *scene, const scene_surface *at, int count,
         if (!rays.valid[i]) lanes_put(lit, i, black);
 }
 
-/* Adds the lanes to sum, and sets it at the first part. */
+/* Adds the lanes to sum; the first part sets it. */
 static void add_part(const lanes *lit, int count, int part, vec3 *sum)
 {
     for (int i = 0; i < count; i++)
         sum[i] = part == 0 ? lanes_at(lit, i) : vec3_add(sum[i], lanes_at(lit, i));
 }
 
-/* Either of radiance and unshadowed may be NULL. */
+/* Computes direct light with and without shadows; either of radiance and unshadowed may be NULL. */
 static void light_points(trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                          const point_light *light, vec3 *radiance, vec3 *unshadowed)
 {
@@ -202,19 +205,20 @@ void point_light_both(trace_scene *scene, const scene_surface *at, const vec3 *v
     light_points(scene, at, view, count, light, radiance, unshadowed);
 }
 
-/* ---- paths that meet another surface --------------------------------------------------------------------------- */
+/* ---- paths that hit another surface
+ * ---------------------------------------------------------------------------------- */
 
-/* How many paths are begun before those of them that arrived somewhere go on together. */
+/* Number of paths begun before those that hit a surface are continued together. */
 enum { WAVE = 16 * TRACE_PACKET };
 
 typedef struct arrivals {
     int count;
     int pixel[WAVE];
-    uint32_t index[WAVE]; /* of the path in its sequence */
+    uint32_t index[WAVE]; /* number of the path in its sequence */
     vec3 throughput[WAVE], view[WAVE];
     trace_hit hit[WAVE];
     scene_surface at[WAVE];
-    vec3 direct[WAVE]; /* a point light's */
+    vec3 direct[WAVE]; /* a point light's light */
 } arrivals;
 
 static void arrive(arrivals *a, const path_packet *b, int lane, const trace_hit *hit)
@@ -227,7 +231,7 @@ static void arrive(arrivals *a, const path_packet *b, int lane, const trace_hit 
     a->hit[k] = *hit;
 }
 
-/* Bounce 2 of arrival k, and bounce 3. */
+/* Adds bounces 2 and 3 of arrival k. */
 static void follow_point_light(trace_scene *scene, const arrivals *a, int k, const point_light *light,
                                const path_source *source, vec3 bounce[2])
 {
@@ -271,7 +275,7 @@ void point_light_paths(trace_scene *scene, const path_points *pixels, int count,
 
 /* ---- the environment ------------------------------------------------------------------------------------------- */
 
-/* The environment's light at one surface, by a direction drawn from the map. */
+/* Returns the environment's light on one surface, by a direction sampled from the map. */
 static vec3 environment_direct(trace_scene *scene, const scene_surface *at, vec3 view, const environment *env,
                                path_start u)
 {
@@ -288,7 +292,7 @@ static vec3 environment_direct(trace_scene *scene, const scene_surface *at, vec3
     return trace_occluded(scene, trace_leave(at), l, 1e4f) ? black : result;
 }
 
-/* The map's light along a direction that was drawn from the BRDF with this density. */
+/* Returns the map's light along a direction that was sampled from the BRDF with this density. */
 static vec3 environment_seen(const environment *env, vec3 l, real pdf)
 {
     real light_pdf;
@@ -296,7 +300,7 @@ static vec3 environment_seen(const environment *env, vec3 l, real pdf)
     return vec3_scale(radiance, pdf / (pdf + light_pdf));
 }
 
-/* The light that arrival k brings: from the map at up to two more surfaces. */
+/* Returns the light along arrival k: from the map, at up to two more surfaces. */
 static vec3 follow_environment(trace_scene *scene, const arrivals *a, int k, const environment *env, rng *r)
 {
     enum { MORE_SURFACES = 2 };
@@ -324,7 +328,7 @@ static void add(vec3 *radiance, const path_packet *b, int lane, vec3 light)
     *sum = vec3_add(*sum, vec3_mul(lanes_at(&b->throughput, lane), light));
 }
 
-/* The map's light at the first surfaces, by directions drawn from the map. */
+/* Adds the map's light at the first surfaces, by directions sampled from the map. */
 static void first_environment_direct(trace_scene *scene, path_packet *b, const environment *env, const sequence *q,
                                      vec3 *radiance)
 {
@@ -346,7 +350,7 @@ static void first_environment_direct(trace_scene *scene, path_packet *b, const e
         if (b->rays.valid[i]) add(radiance, b, i, lanes_at(&drawn.radiance, i));
 }
 
-/* What the first surfaces get from the map; paths that meet another surface arrive there. */
+/* Adds the map's light along BRDF samples at the first surfaces; paths that hit another surface become arrivals. */
 static void begin_environment_paths(trace_scene *scene, path_packet *b, const environment *env, const sequence *q,
                                     vec3 *radiance, arrivals *a)
 {

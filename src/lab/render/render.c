@@ -12,13 +12,13 @@
 #include "lab/render/visibility.h"
 #include "optics/light.h"
 
-/* What a layer's paths are drawn from. */
+/* The numbers from which a layer's paths are sampled. */
 typedef struct layer_source {
     sequence sequence;
     rng random;
 } layer_source;
 
-/* The shaded points of one pixel and the share of the pixel that the object covers. */
+/* The shaded points of one pixel, and its coverage by the object. */
 typedef struct pixel {
     int x, y, count;
     float coverage;
@@ -26,7 +26,7 @@ typedef struct pixel {
     const vec3 *view;
 } pixel;
 
-/* Pixels beside one another that see the object. Together they fill the vectors, which one by one they would not. */
+/* Adjacent pixels that see the object; together they fill the vectors, which single pixels would not. */
 enum { STRIP = 16 };
 typedef struct strip {
     int count, points;
@@ -34,7 +34,7 @@ typedef struct strip {
     trace_hit hit[STRIP * VISIBILITY_MAX_POINTS];
     vec3 view[STRIP * VISIBILITY_MAX_POINTS];
     scene_surface at[STRIP * VISIBILITY_MAX_POINTS];
-    /* by one point light, and if nothing were in its way */
+    /* by one point light, with and without shadows */
     vec3 radiance[STRIP * VISIBILITY_MAX_POINTS], unshadowed[STRIP * VISIBILITY_MAX_POINTS];
 } strip;
 
@@ -100,7 +100,7 @@ static void store_maps(renderer *r, const pixel *p)
     *img_at(&r->out->mask, p->x, p->y) = p->coverage;
 }
 
-/* What arrived at the strip's points, as its pixels show it. */
+/* Averages the radiance of the strip's points into its pixels. */
 static void store_radiance(const strip *s, const img *image)
 {
     const vec3 *radiance = s->radiance;
@@ -142,7 +142,7 @@ static void store_visibility(const strip *s, const img *image)
     }
 }
 
-/* Where the paths of the strip's pixels start. */
+/* Sets where the paths of the strip's pixels start. */
 static void make_starts(const strip *s, int paths, path_points starts[STRIP])
 {
     for (int i = 0; i < s->count; i++) {
@@ -151,7 +151,7 @@ static void make_starts(const strip *s, int paths, path_points starts[STRIP])
     }
 }
 
-/* bounces: images of bounce 2 and of bounce 3, or NULL. */
+/* Stores indirect light; bounces: images of bounce 2 and of bounce 3, or NULL. */
 static void store_indirect(renderer *r, const point_light *light, layer_source *layer, const img *both,
                            const img *const bounces[2])
 {
@@ -177,7 +177,7 @@ static void store_lamp(renderer *r, int i)
     point_light_both(r->scene, s->at, s->view, s->points, &r->lamps[i], s->radiance, s->unshadowed);
     store_radiance(s, &under->direct);
     store_visibility(s, &under->visibility);
-    point_light point = r->lamps[i]; /* where its light went elsewhere first, nobody sees that it is a disc */
+    point_light point = r->lamps[i]; /* for indirect light a disc differs little from a point */
     point.across[0] = point.across[1] = vec3_make(0, 0, 0);
     store_indirect(r, &point, &r->lamp, &under->indirect, NULL);
 }
@@ -261,7 +261,7 @@ static status make_layers(const image_settings *set, bool env, sample *out)
     return s;
 }
 
-/* The environment casts shadows and is filtered less than what other surfaces send. */
+/* Filters the layers; the environment casts shadows, and is filtered less than indirect light. */
 static status filter_layers(sample *out)
 {
     enum { INDIRECT_RADIUS = 3, ENVIRONMENT_RADIUS = 1 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A rendered training sample, in memory and as one multi-layer OpenEXR file (half float, ZIP).
+/* A rendered training sample, in memory and as a multi-layer OpenEXR file (half float, ZIP).
  *
  * Space, light and ranges as in docs/conventions.md: camera at the origin looking along -z, depth is -z, normals unit
  * with n_z > 0, albedo and roughness in [0, 1], radiance linear. Everything outside the mask is zero. At silhouettes
- * the maps are averages over the object's own visible part of the pixel (normals renormalized), and mask is coverage;
+ * the maps are averages over the visible part of the object in the pixel (normals renormalized), and mask is coverage;
  * images are multiplied by coverage. */
 #ifndef MERLIN_LAB_RENDER_SAMPLE_H
 #define MERLIN_LAB_RENDER_SAMPLE_H
@@ -17,22 +17,22 @@
 
 enum { SAMPLE_GENERATOR_VERSION = 3, SAMPLE_MAX_TARGETS = 64, SAMPLE_MAX_LAMPS = 16 };
 
-/* An image under one more point light, with cast shadows. */
+/* An image under another point light, with cast shadows. */
 typedef struct sample_target {
     vec3 light;   /* position in camera space */
     img direct;   /* 3 channels, bounce 1, cast shadows included */
     img indirect; /* 3 channels, bounces 2 and 3 */
 } sample_target;
 
-/* An image under one more lamp, as bright in the object's middle, (0, 0, -1), as the flash is there. */
+/* An image under another lamp, as bright at the object's middle, (0, 0, -1), as the flash is there. */
 typedef struct sample_lamp {
-    vec3 at; /* its place; of a distant one, whose light is parallel, the unit direction toward it */
+    vec3 at; /* position; for a distant lamp, whose light is parallel, the unit direction toward it */
     bool distant;
-    float radius; /* 0: a point; else of a disc that faces the middle; of a distant one as seen from there (tangent) */
-    img direct;   /* 3 channels, bounce 1, cast shadows included */
-    img indirect; /* 3 channels, bounces 2 and 3 */
-    img visibility; /* 1: the share of bounce 1 that other parts of the object let through; 0 where there would be none
-                     */
+    float radius;   /* 0: a point; else of a disc that faces the middle; for a distant lamp the tangent of its angular
+                       radius */
+    img direct;     /* 3 channels, bounce 1, cast shadows included */
+    img indirect;   /* 3 channels, bounces 2 and 3 */
+    img visibility; /* 1: share of bounce 1 that other parts of the object let through; 0 where there would be none */
 } sample_lamp;
 
 typedef struct sample {
@@ -43,8 +43,8 @@ typedef struct sample {
     img mask;             /* 1, coverage in [0, 1] */
     img direct;           /* 3, point light at the camera, bounce 1 */
     img indirect;         /* 3, bounces 2 + 3 */
-    img bounce2, bounce3; /* 3 each; empty (data NULL) unless asked for */
-    img env;              /* 3, lit by the environment (direct and bounces), no point light */
+    img bounce2, bounce3; /* 3 each; empty (data NULL) unless requested */
+    img env;              /* 3, lit by the environment (direct and bounces) without a point light */
     float sh[9][3];       /* radiance SH of that environment, order L00, L1-1, L10, L11, L2-2, L2-1, L20, L21, L22 */
     sample_target *targets;
     int target_count;
@@ -53,38 +53,39 @@ typedef struct sample {
     vec3 light;         /* of direct and indirect: the origin */
     float light_power;  /* Φ */
     float fov;          /* horizontal, degrees */
-    camera_slant slant; /* of a picture cut out of a larger one (optics/camera.h) */
+    camera_slant slant; /* of a crop (optics/camera.h) */
     uint64_t seed, index;
     int generator_version;
     char shape[32]; /* class of object: "union", "blend", "revolution", "superquadric", "relief", "mesh" */
 } sample;
 
-/* A unit normal as samples hold it: it faces the camera plane too; off the axis, facing the eye does not imply that. */
+/* Returns a unit normal as samples store it, which also faces the image plane; off the axis, facing the eye does not
+ * imply that. */
 static inline vec3 sample_normal(vec3 n)
 {
     return n.z < 0.01f ? vec3_normalize(vec3_make(n.x, n.y, 0.01f)) : n;
 }
 
 void sample_free(sample *s);
-/* Channels albedo.R/.G/.B, normal.X/.Y/.Z, roughness.Y, depth.Z, mask.A, direct.*, indirect.*, bounce2.*, bounce3.*,
- * env.*, target00.direct.* …, lamp00.direct.*, lamp00.indirect.*, lamp00.visibility.Y …; the rest as attributes.
- * Written to a temporary name, then renamed. */
+/* Writes a sample: channels albedo.R/.G/.B, normal.X/.Y/.Z, roughness.Y, depth.Z, mask.A, direct.*, indirect.*,
+ * bounce2.*, bounce3.*, env.*, target00.direct.* …, lamp00.direct.*, lamp00.indirect.*, lamp00.visibility.Y …; the rest
+ * as attributes. Written to a temporary name, then renamed. */
 status sample_write(const char *path, const sample *s);
-/* Reads all layers there are. Refuses files that lack one that every sample has, or hold NaN or infinity. */
+/* Reads all layers in the file. Refuses files that lack a layer that every sample has, or contain NaN or infinity. */
 status sample_read(const char *path, sample *out);
 /* Reads everything but env, bounces and targets: what training needs, faster. */
 status sample_read_training(const char *path, sample *out);
-/* The same and env. Refuses files rendered without. */
+/* Reads what training needs, and env. Refuses files rendered without it. */
 status sample_read_training_environment(const char *path, sample *out);
-/* Only the environment's coefficients, from the file's header. Refuses files rendered without. */
+/* Reads only the environment's coefficients, from the file's header. Refuses files rendered without them. */
 status sample_read_sh(const char *path, float sh[9][3]);
-/* Only generator_version, from the file's header. */
+/* Reads only generator_version, from the file's header. */
 status sample_read_version(const char *path, int *version);
 
-/* The paths of a folder's samples, at least one, sorted; free with file_list_free. */
+/* Lists the paths of a folder's samples, at least one, sorted; freed by file_list_free. */
 status sample_list(const char *folder, char ***paths, size_t *count);
 
-/* "folder/000123.exr", malloc'ed. */
+/* Returns "folder/000123.exr", malloc'ed. */
 char *sample_path(const char *folder, uint64_t index);
 
 #endif

@@ -16,14 +16,14 @@ enum {
     NAME_SIZE = 32
 };
 
-/* A layer's channels: one image and the endings of its channels' names. */
+/* A layer's channels: one image and the suffixes of its channels' names. */
 typedef struct layer {
     const char *name, *endings;
     size_t offset; /* of the img within the sample */
     enum {
         ALWAYS,
-        LIT,  /* by sample_read_training_environment, and by sample_read where the file has it */
-        FULL, /* only by sample_read, and only where the file has it */
+        LIT,  /* read by sample_read_training_environment, and by sample_read if the file has it */
+        FULL, /* read only by sample_read, and only if the file has it */
     } when;
 } layer;
 
@@ -41,7 +41,7 @@ static img *layer_image(const sample *s, const layer *l)
     return (img *)((char *)(uintptr_t)s + l->offset);
 }
 
-/* Channels under construction; their names live as long as the list. */
+/* Channels being collected; their names live as long as the list. */
 typedef struct channel_list {
     char names[MAX_CHANNELS][NAME_SIZE];
     const img *image[MAX_CHANNELS];
@@ -116,7 +116,7 @@ static void add_numbers(attribute_list *list, const char *name, const float *val
     memcpy(a->values, values, (size_t)count * sizeof *values);
 }
 
-/* Left out where there are none, so that samples without lamps are the files they were. */
+/* Describes lamps; without any nothing is written, so that files without lamps stay as before. */
 static void describe_lamps(attribute_list *list, const sample *s)
 {
     if (s->lamp_count) list->items[list->count++] = exr_number("lamps", (float)s->lamp_count);
@@ -195,7 +195,7 @@ static void read_identity(const exr_file *f, sample *s)
     if (version >= 0 && version < 1e6f) s->generator_version = (int)version;
 }
 
-/* The attributes without which the images mean nothing. */
+/* Reads the attributes that give the images their meaning. */
 static status read_optics(const exr_file *f, const char *path, sample *s)
 {
     float light[3];
@@ -315,7 +315,8 @@ static status no_environment(const char *path)
     return fail(MERLIN_BAD_INPUT, "%s was rendered without environment: render samples without --no-env", path);
 }
 
-/* False, and sh as it was, without an environment: an image and its coefficients. */
+/* Reads the environment's coefficients; returns false and leaves sh alone if there is no environment image or no
+ * coefficients. */
 static bool read_environment(const exr_file *f, float sh[9][3])
 {
     return exr_has_channel(f, "env.R") && exr_get_numbers(f, "sphericalHarmonics", &sh[0][0], 27);

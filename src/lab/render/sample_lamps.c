@@ -5,10 +5,10 @@
 
 static const vec3 middle = {0, 0, -1};
 
-/* Distances of lamps, in the camera's; how far a lamp stands that counts as infinitely far: parallax and falloff over
- * an object are then below what anybody sees, and floats hold its direction. */
+/* Distances of lamps, in units of the camera's, and the distance that stands for infinity: parallax and falloff over an
+ * object are then invisible, and floats still hold its direction. */
 static const float NEAREST = 0.4f, FARTHEST = 3, INFINITE = 300;
-/* Cosine of 110 degrees; a lamp stands outside of the object by this factor. */
+/* Cosine of 110 degrees; factor by which a lamp stays outside the object. */
 static const float BEHIND = -0.34202014f, CLEAR = 1.25f;
 static const float SMALLEST_DISC = 0.02f, LARGEST_DISC = 0.2f; /* radius as a share of the distance */
 
@@ -22,8 +22,8 @@ static float radius_of(const scene_object *object)
     return most;
 }
 
-/* From the object's middle: one half evenly over all there are, the other over what people use, which is nearer to the
- * camera. */
+/* Returns a direction from the object's middle: half of the time uniform over all that are allowed, else with the usual
+ * preference for directions near the camera. */
 static vec3 draw_direction(rng *r)
 {
     bool usual = rng_uniform(r) < 0.5f;

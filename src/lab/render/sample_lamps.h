@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Lamps as people have them: anywhere in front of an object and beside it, near or far, points or small discs.
+/* Random lamps: anywhere in front of an object and beside it, near or far, points or small discs.
  *
  *     rng r = rng_at(seed, index, STREAM_LAMPS);
  *     sample_lamp lamp = {0};
@@ -14,15 +14,15 @@
 #include "lab/render/sample.h"
 #include "lab/scene/scene.h"
 
-/* Places a lamp, seen from the object's middle (0, 0, -1): up to 110 degrees from the line to the camera; from 0.4 to 3
- * times as far as the camera and outside of the object, or, one in four, infinitely far; one in two a disc of up to 11
+/* Places a lamp, relative to the object's middle (0, 0, -1): up to 110 degrees from the line to the camera; from 0.4 to
+ * 3 times as far as the camera and outside the object, or, one in four, infinitely far; one in two a disc of up to 11
  * degrees' radius. */
 void sample_lamp_draw(rng *r, const scene_object *object, sample_lamp *out);
 
 /* Places a point as far from the object's middle as the camera, at this angle (degrees) from the line to it. */
 void sample_lamp_draw_at(rng *r, float angle, sample_lamp *out);
 
-/* What lights the object: as bright in its middle as the flash is. */
+/* Returns the lamp as a light source, as bright at the object's middle as the flash is. */
 point_light sample_lamp_light(const sample_lamp *of);
 
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Well-spread numbers for the paths of a picture: Sobol' points with Owen's scrambling (Burley 2020), dealt to the
+/* Low-discrepancy numbers for the paths of a picture: Sobol' points with Owen scrambling (Burley 2020), assigned to
  * pixels in Z-order (Ahmed & Wonka 2020), so that a pixel's paths, and those of every square block of pixels, cover the
- * square of directions evenly. What a filter then averages over a few pixels has far less noise than random numbers
- * leave.
+ * square of directions evenly. After filtering over a few pixels this leaves far less noise than random numbers.
  *
  *     sequence q = sequence_of(seed);
  *     path_start s = sequence_at(&q, SEQUENCE_DIRECTION, sequence_index(x, y) * paths + i);
@@ -15,19 +14,19 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
-/* A place in the unit square; each coordinate in [0, 1). */
+/* A point in the unit square; each coordinate in [0, 1). */
 typedef struct path_start {
     real u1, u2;
 } path_start;
 
-/* What a path needs pairs of numbers for. */
+/* Purposes for which a path needs pairs of numbers. */
 enum { SEQUENCE_DIRECTION, SEQUENCE_CHOICE, SEQUENCE_LIGHT, SEQUENCE_SECOND, SEQUENCE_PAIRS };
 
 typedef struct sequence {
-    uint32_t order[SEQUENCE_PAIRS], first[SEQUENCE_PAIRS], second[SEQUENCE_PAIRS]; /* scrambles */
+    uint32_t order[SEQUENCE_PAIRS], first[SEQUENCE_PAIRS], second[SEQUENCE_PAIRS]; /* seeds of the scrambling */
 } sequence;
 
-/* One for each layer of a sample: draws from r. */
+/* Returns the sequence of one layer of a sample, seeded from r. */
 static inline sequence sequence_of(rng *r)
 {
     sequence q;
@@ -47,7 +46,7 @@ static inline uint32_t sequence_spread(uint32_t x)
     return (x | (x << 1)) & 0x55555555u;
 }
 
-/* The place of a pixel in Z-order; x and y below 65536. */
+/* Returns the index of a pixel in Z-order; x and y below 65536. */
 static inline uint32_t sequence_index(int x, int y)
 {
     return sequence_spread((uint32_t)x) | (sequence_spread((uint32_t)y) << 1);
@@ -61,7 +60,8 @@ static inline uint32_t sequence_reverse(uint32_t x)
     return __builtin_bswap32(x);
 }
 
-/* Owen's scrambling of a number whose lowest bit weighs most (Laine & Karras 2011, constants of Burley 2020). */
+/* Returns the Owen scrambling of a number whose lowest bit weighs most (Laine & Karras 2011, constants of Burley 2020).
+ */
 static inline uint32_t sequence_scramble(uint32_t x, uint32_t seed)
 {
     x += seed;
@@ -71,7 +71,8 @@ static inline uint32_t sequence_scramble(uint32_t x, uint32_t seed)
     return x ^ (x * 0x8d22f6e6u);
 }
 
-/* The second coordinate of Sobol' point i, lowest bit first: Pascal's triangle modulo 2 applied to the bits of i. */
+/* Returns the second coordinate of Sobol' point i, lowest bit first: Pascal's triangle modulo 2 applied to the bits of
+ * i. */
 static inline uint32_t sequence_sobol2(uint32_t i)
 {
     i ^= (i >> 1) & 0x55555555u;
@@ -81,16 +82,16 @@ static inline uint32_t sequence_sobol2(uint32_t i)
     return i ^ (i >> 16);
 }
 
-/* Lowest bit first to [0, 1). */
+/* Converts a number with the lowest bit first to [0, 1). */
 static inline real sequence_fraction(uint32_t bits)
 {
     return (real)(sequence_reverse(bits) >> 8) * (real)0x1p-24;
 }
 
-/* Pair k of path i. */
+/* Returns pair k of path i. */
 static inline path_start sequence_at(const sequence *q, int k, uint32_t i)
 {
-    /* the same scrambling of the order keeps blocks of 2^n paths together and lets each pair meet the others anew */
+    /* scrambling the order keeps blocks of 2^n paths together, and combines each pair differently with the others */
     uint32_t place = sequence_reverse(sequence_scramble(sequence_reverse(i), q->order[k]));
     return (path_start){sequence_fraction(sequence_scramble(place, q->first[k])),
                         sequence_fraction(sequence_scramble(sequence_sobol2(place), q->second[k]))};

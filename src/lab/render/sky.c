@@ -13,7 +13,7 @@ static vec3 grey(float value)
     return vec3_make(value, value, value);
 }
 
-/* A colour of this brightness, tinted between warm (-1) and cool (1). */
+/* Returns a colour of this brightness, tinted between warm (-1) and cool (1). */
 static vec3 tinted(float value, float coolness)
 {
     return vec3_make(value * (1 - 0.35f * coolness), value, value * (1 + 0.45f * coolness));
@@ -44,7 +44,7 @@ static outdoors random_outdoors(rng *r)
     o.ground = vec3_scale(vec3_make(red, green, blue), rng_range(r, 0.1f, 0.5f));
     o.cloud = grey(rng_range(r, 0.9f, 1.8f));
     o.sun_direction = random_direction(r, 0.08f, 0.95f);
-    /* between 3 and 6 degrees wide, far wider than the sun, so that 256 texels around can hold it */
+    /* between 3 and 6 degrees wide, far wider than the sun, so that a map of 256 texels can hold it */
     o.sun_core = cosf(rng_range(r, 0.025f, 0.05f));
     o.sun_edge = cosf(0.07f);
     o.sun = overcast ? grey(0) : tinted(rng_range(r, 60, 500), -0.8f * (1 - height));
@@ -137,7 +137,7 @@ static vec3 room_at(const room *o, vec3 d)
         const sky_lamp *l = &o->lamps[i];
         if (l->wall == wall && fabsf(x - l->x) < l->width && fabsf(y - l->y) < l->height) return l->radiance;
     }
-    /* corners are darker, and things stand against the walls */
+    /* corners are darker, as are the places of furniture */
     float shade = (1 - 0.35f * x * x) * (1 - 0.35f * y * y);
     vec3 p = {3 * x, 3 * y, (float)wall};
     if (axis != 1 && y < 0.1f + 0.5f * noise_gradient(p, o->seed))

@@ -12,7 +12,7 @@ struct trace_device {
     RTCDevice device;
 };
 
-/* RTCScene is a pointer to an opaque struct; this names it without Embree's header in ours. */
+/* Returns the scene as Embree's type, a pointer to an opaque struct that trace.h names without Embree's header. */
 static RTCScene bvh_of(const trace_scene *scene)
 {
     return (RTCScene)(void *)scene->bvh;
@@ -32,11 +32,11 @@ static status device_fail(RTCDevice device, const char *what)
 status trace_device_new(trace_device **out)
 {
     *out = NULL;
-    /* TBB behind it ends the program where it gets none */
+    /* TBB, which Embree uses, ends the program if it gets none */
     if (!threads_are_left(1)) return fail(MERLIN_NO_MEMORY, "no thread for the ray tracer");
     *out = calloc(1, sizeof **out);
     if (!*out) return fail(MERLIN_NO_MEMORY, "out of memory for the ray tracer");
-    /* samples are parallel, so each hierarchy is built by the thread that wants it */
+    /* samples are rendered in parallel, so that each hierarchy is built by the thread that needs it */
     (*out)->device = rtcNewDevice("threads=1,user_threads=1");
     if ((*out)->device) return OK;
     free(*out);
@@ -76,7 +76,8 @@ static status attach_triangles(RTCDevice device, RTCScene bvh, const scene_objec
     return OK;
 }
 
-/* Per triangle. Measured: the quick build saves 0.18 µs a triangle and costs some 15 ns a ray. */
+/* Rays per triangle below which the quick build pays. Measured: it saves 0.18 µs a triangle and costs some 15 ns a ray.
+ */
 static const double few_rays = 12;
 
 status trace_scene_new(trace_device *device, const scene_object *object, trace_surface_function *surface, double rays,
@@ -134,7 +135,7 @@ void trace_camera_rays(trace_scene *scene, const vec3 *directions, int count, tr
     }
 }
 
-/* Counts them, and fills what Embree wants aligned. */
+/* Counts the rays, and copies them to Embree's aligned structure. */
 static void fill_rays(trace_scene *scene, const ray_packet *from, struct RTCRay16 *to, int valid[TRACE_PACKET])
 {
     int count = 0;
@@ -180,7 +181,7 @@ void trace_packet_free(trace_scene *scene, ray_packet *rays, const float *far)
         if (packet.tfar[i] < 0) rays->valid[i] = 0;
 }
 
-/* n moved toward the unit d until n·d is at least `least`. */
+/* Moves n toward the unit vector d until n·d is at least `least`. */
 static vec3 bend_toward(vec3 n, vec3 d, real least)
 {
     real c = vec3_dot(n, d);

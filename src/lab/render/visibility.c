@@ -7,9 +7,9 @@
 #include "base/number.h"
 #include "base/rng.h"
 
-enum { ROWS = 3 }; /* of probes kept: a pixel's own and those around it */
+enum { ROWS = 3 }; /* rows of probes that are kept: a pixel's own and its neighbours' */
 
-/* What a pixel's first rays tell. */
+/* Results of a pixel's first rays. */
 typedef struct probe {
     int met;
     float nearest, farthest;
@@ -19,7 +19,7 @@ typedef struct probe {
 struct visibility {
     trace_scene *scene;
     camera eye;
-    int strata, rows; /* rows: probed so far */
+    int strata, rows; /* rows: number probed so far */
     uint64_t key;
     float pixel_size; /* at depth 1; a tangent */
     probe *probes;    /* ROWS × width, row y at y % ROWS */
@@ -49,13 +49,13 @@ void visibility_free(visibility *v)
     free(v);
 }
 
-/* The cell that is probed in a row of the strata: one in every column, for an even number of them. */
+/* Returns the cell that is probed in a row of the strata: one in every column, for an even number of them. */
 static int probed_column(int row, int strata)
 {
     return strata == 1 ? 0 : (2 * row + 1) % (strata + 1);
 }
 
-/* Somewhere in a cell of a pixel. */
+/* Returns a direction inside a cell of a pixel. */
 static vec3 cell_direction(const visibility *v, int x, int y, int column, int row)
 {
     int cell = row * v->strata + column;
@@ -84,7 +84,7 @@ static void take_probe(probe *p, const trace_hit *hits, int count)
     }
 }
 
-/* Whole pixels a packet, so that its rays are close together. */
+/* Probes a row of pixels; a packet takes whole pixels, so that its rays are close together. */
 static void probe_row(visibility *v, int y)
 {
     vec3 direction[TRACE_PACKET];
@@ -100,7 +100,7 @@ static void probe_row(visibility *v, int y)
     }
 }
 
-/* A surface may lean this much over so many pixels and still be one. */
+/* Tells whether depths are consistent with one surface over so many pixels, up to a maximal slope. */
 static bool is_smooth(const visibility *v, float nearest, float farthest, int pixels)
 {
     return farthest - nearest < 6 * (float)pixels * v->pixel_size * nearest;
@@ -139,7 +139,7 @@ static void keep_probes(const visibility *v, int x, int y, pixel_hits *out)
     out->coverage = 1;
 }
 
-/* All cells; those of the probes once more, which costs less than sorting them out. */
+/* Traces all cells; repeating those of the probes costs less than excluding them. */
 static void keep_all(visibility *v, int x, int y, pixel_hits *out)
 {
     vec3 direction[VISIBILITY_MAX_POINTS];

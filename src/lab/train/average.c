@@ -7,13 +7,13 @@
 
 #include "base/parallel.h"
 
-/* Passing over the memory of all weights at every step would cost some per cent of training. */
+/* steps between updates: reading the memory of all weights at every step would cost some per cent of training */
 enum { STRIDE = 8 };
 
 struct train_average {
     nn_params *params;
     double decay;
-    float *values; /* the mean of each of the parameters' */
+    float *values; /* mean of each parameter's values */
 };
 
 status train_average_new(nn_params *params, double decay, train_average **out)
@@ -44,7 +44,7 @@ void train_average_free(train_average *a)
 
 typedef struct blend {
     train_average *average;
-    float rate; /* of the new values */
+    float rate; /* weight of the new values */
 } blend;
 
 static void blend_param(void *context, size_t i)

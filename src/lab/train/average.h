@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The mean of the weights over the last steps, which is better than any one of them (Polyak & Juditsky 1992): an
- * exponential moving average. It is what a run with "average_decay" validates and exports.
+/* An exponential moving average of the weights over the last steps, which is better than any single step's (Polyak &
+ * Juditsky 1992). A run with "average_decay" validates and exports it.
  *
  *     train_average *a;
- *     train_average_new(params, 0.9995, &a);    begins at the values params has
+ *     train_average_new(params, 0.9995, &a);    begins at the values of params
  *     train_average_add(a, step, last);         after every step
  *     train_average_swap(a); ... use params ...; train_average_swap(a);
  */
@@ -14,16 +14,16 @@
 
 typedef struct train_average train_average;
 
-/* decay: the share of the old mean that a step keeps, from 0 to below 1. params must outlive it. */
+/* Begins an average. decay: weight of the old mean at a step, from 0 to below 1. params must outlive it. */
 status train_average_new(nn_params *params, double decay, train_average **out);
 void train_average_free(train_average *a);
-/* After step number `step` (from 1). The mean over a run's start is shorter, so that it forgets untrained weights: the
- * share kept is at most (1 + step) / (10 + step). Most steps are passed over and made up for by the next that is not;
- * the run's last is not. */
+/* Updates the mean after step number `step` (from 1). At a run's start the decay is at most (1 + step) / (10 + step),
+ * so that untrained weights are forgotten. Only some steps, and always the last, update the mean, with the weight of
+ * those that were skipped. */
 void train_average_add(train_average *a, int64_t step, bool last);
-/* Exchanges the mean with the values of params, batch norm's statistics too: called twice it changes nothing. */
+/* Exchanges the mean with the values of params, batch norm's statistics too: calling it twice changes nothing. */
 void train_average_swap(train_average *a);
-/* The mean of parameter i, to be kept in a checkpoint. */
+/* Returns the mean of parameter i, for checkpoints. */
 float *train_average_values(train_average *a, size_t i);
 
 #endif

@@ -14,7 +14,7 @@
 enum { NAME = 128, PARTS = 4 };
 static const char *const part_names[PARTS] = {"", "adam.moment1.", "adam.moment2.", "average."};
 
-/* A parameter's value (which 0), one of its moments or its mean; NULL where there is none. */
+/* Returns a parameter's value (which 0), one of its moments or its mean; NULL if it has none. */
 static float *part_of(const train_learner *l, size_t i, int which)
 {
     nn_param *p = nn_params_at(l->params, i);
@@ -43,7 +43,7 @@ static status collect(const train_learner *learner, safetensors_tensor *tensors,
     return OK;
 }
 
-/* Hexadecimal floats lose nothing. */
+/* Prints the losses as hexadecimal floats, which are exact. */
 static void print_losses(const train_losses *l, char *out, size_t size)
 {
     int n = snprintf(out, size, "%" PRId64 " %a", l->count, l->total);
@@ -51,7 +51,7 @@ static void print_losses(const train_losses *l, char *out, size_t size)
         n += snprintf(out + n, size - (size_t)n, " %a", l->each[i]);
 }
 
-/* No run has more steps than presentations, which a configuration holds to an int. */
+/* Tells whether n can be a number of steps: there are no more than presentations, which are an int. */
 static bool is_count(int64_t n)
 {
     return n >= 0 && n <= INT_MAX;
@@ -63,7 +63,7 @@ static bool scan_losses(const char *text, train_losses *l)
     l->count = strtoll(text, &end, 10);
     if (!is_count(l->count)) return false;
     l->total = strtod(end, &end);
-    /* a checkpoint of an earlier version may lack the last losses: its model has none of them */
+    /* a checkpoint of an earlier version may lack the newest losses, which its model does not have */
     for (int i = 0; i < MODEL_LOSSES; i++)
         l->each[i] = *end ? strtod(end, &end) : (double)NAN;
     return *end == 0 && end != text;
@@ -106,13 +106,13 @@ static status must_equal(const char *path, const char *what, const char *found, 
     return fail(MERLIN_BAD_INPUT, "%s was made with another %s; start afresh in another folder", path, what);
 }
 
-/* Settings that say how a run is held, and nothing of what comes of it. */
+/* Tells whether a setting affects only how a run is executed, not its result. */
 static bool is_of_no_matter(const char *key)
 {
     return strcmp(key, "memory_gib") == 0 || strcmp(key, "checkpoint_minutes") == 0;
 }
 
-/* The first key that b lacks or has another value for; NULL if there is none. */
+/* Returns the first key that b lacks or has another value for; NULL if there is none. */
 static const char *first_difference(const cJSON *a, const cJSON *b)
 {
     const cJSON *item;
@@ -136,7 +136,7 @@ static status must_match(const char *path, const char *found, const char *wanted
     return s;
 }
 
-/* Checkpoints of one process alone may be older than ranks. */
+/* Compares the numbers of ranks; checkpoints of a single process may not state theirs. */
 static status must_have_ranks(const char *path, const char *found, int wanted)
 {
     long before = found ? strtol(found, NULL, 10) : 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A training run on disk: parameters, Adam's moments, the weights' mean, counters and the open row of the curves, in
- * one safetensors file written at once or not at all. */
+/* A training run on disk: parameters, Adam's moments, the weights' mean, counters and the unfinished row of the curves,
+ * in one safetensors file that is written atomically. */
 #ifndef MERLIN_LAB_TRAIN_CHECKPOINT_H
 #define MERLIN_LAB_TRAIN_CHECKPOINT_H
 
@@ -14,14 +14,15 @@ typedef struct train_state {
     train_losses open;
 } train_state;
 
-/* What must be the same for a run to go on: texts of the configuration, and the data set's size. */
+/* What must be the same for a run to be resumed: the configuration as text, the data set's size, the number of ranks.
+ */
 typedef struct train_identity {
     const char *model, *training;
     size_t samples;
-    int ranks; /* processes: other numbers add up otherwise */
+    int ranks; /* number of processes, which affects the order of sums */
 } train_identity;
 
-/* What a step changes. */
+/* Everything that a training step changes. */
 typedef struct train_learner {
     nn_params *params;
     nn_adam *adam;
@@ -30,24 +31,24 @@ typedef struct train_learner {
 
 status train_checkpoint_write(const char *path, const train_learner *learner, const train_state *state,
                               const train_identity *identity);
-/* Gives every rank what rank 0 has. */
+/* Copies rank 0's state to every rank. */
 void train_checkpoint_share(const ranks *together, const train_learner *learner, train_state *state);
-/* Refuses a checkpoint of another data set, number of ranks or configuration, but for memory_gib and
+/* Reads a checkpoint. Refuses one of another data set, number of ranks or configuration, except for memory_gib and
  * checkpoint_minutes. */
 status train_checkpoint_read(const char *path, const train_learner *learner, train_state *state,
                              const train_identity *identity);
 
 typedef struct train_provenance {
-    const char *config; /* the model's, JSON */
+    const char *config; /* the model's configuration, JSON */
     const char *training;
     const char *note; /* such as the commit; may be NULL */
     int64_t presentations, samples;
     int size, generator_version;
-    double validation_loss; /* infinite: there was no validation, and the weights say nothing of it */
+    double validation_loss; /* infinite: there was no validation, and the weights do not mention it */
 } train_provenance;
 
-/* Weights for everybody (model_load): half floats, batch norm's statistics float32, with the model's configuration and
- * where they come from in the metadata. */
+/* Writes weights for distribution (model_load): half floats, batch norm's statistics float32, with the model's
+ * configuration and the weights' origin in the metadata. */
 status train_export(const char *path, nn_params *params, const train_provenance *from);
 
 #endif

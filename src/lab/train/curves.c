@@ -80,7 +80,7 @@ status train_curve_truncate(const char *path, int64_t step)
     return s;
 }
 
-/* Columns of a CSV, rows one behind the other; empty fields are NaN. */
+/* Columns of a CSV, stored row by row; empty fields are NaN. */
 typedef struct table {
     float *value[COLUMNS];
     int rows;

@@ -15,7 +15,7 @@
 
 enum { VALUES = 15, VALUES_WITH_ENVIRONMENT = 18 };
 
-/* Inside pixels only, in reading order. */
+/* A sample's pixels inside the outline, in reading order. */
 typedef struct packed {
     uint32_t count;
     int lamp_count;
@@ -23,12 +23,12 @@ typedef struct packed {
     float fov;
     camera_slant slant;
     float sh[9][3];
-    uint16_t data[]; /* count places (two 16-bit words each: low, high), then count × values halves */
+    uint16_t data[]; /* `count` positions (two 16-bit words each: low, high), then count × values halves */
 } packed;
 
 struct train_dataset {
     train_dataset_options options;
-    size_t values; /* a pixel, beside the lamps' */
+    size_t values; /* values of a pixel, without the lamps' */
     size_t count, memory_limit;
     char **paths;
     _Atomic(packed *) *kept;
@@ -91,7 +91,7 @@ static size_t packed_bytes(const train_dataset *d, size_t count, int lamps)
     return sizeof(packed) + count * (d->values + 2 + (size_t)lamps * TRAIN_LAMP_VALUES) * sizeof(uint16_t);
 }
 
-/* All its light, and how much of the direct part is let through. */
+/* Stores a lamp's light of all bounces, and its visibility. */
 static uint16_t *put_lamp(uint16_t *to, const sample_lamp *from, size_t i)
 {
     float sum[3];
@@ -141,7 +141,8 @@ static packed *pack(const train_dataset *d, const sample *s)
     return p;
 }
 
-/* The rendering layer knows one camera and one flash: to it, the shading of others is wrong everywhere. */
+/* Refuses samples of another camera or flash: the rendering layer assumes one of each, so that the shading of others
+ * would be wrong everywhere. */
 static status check_optics(const char *path, const sample *s, bool any_lens)
 {
     if (!any_lens && fabsf(s->fov - CAMERA_FOV) > 0.01f)
@@ -196,7 +197,7 @@ static bool keep(train_dataset *d, size_t i, packed *p)
     }
     packed *nobody = NULL;
     if (atomic_compare_exchange_strong(&d->kept[i], &nobody, p)) return true;
-    atomic_fetch_sub(&d->memory_used, bytes); /* another thread was first */
+    atomic_fetch_sub(&d->memory_used, bytes); /* another thread kept the sample first */
     return false;
 }
 
@@ -236,7 +237,7 @@ static void turn_vector(int orientation, vec3 *v)
     *v = vec3_of(values);
 }
 
-/* What a sample with lamps has beside pictures. */
+/* Fills in what samples with lamps have besides pictures. */
 static void unpack_lights(const packed *p, int orientation, train_view *v)
 {
     vec3 slant = {p->slant.right, p->slant.up, 0};

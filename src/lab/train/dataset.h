@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* A folder of rendered samples as training sees it: read once, kept packed in memory, unpacked into a batch in any of
- * the eight orientations.
+/* A folder of rendered samples for training: read once, kept packed in memory, unpacked into a batch in any of the
+ * eight orientations.
  *
  *     train_dataset *d;
  *     status s = train_dataset_open("data/train", &(train_dataset_options){.size = 128, .memory_gib = 11}, &d);
- *     train_view v = ...;                                    where in the batch it goes
+ *     train_view v = ...;                                    positions in the batch
  *     if (s == OK) s = train_dataset_get(d, 17, 0, &v);
  *     train_dataset_close(d);
  *
- * Samples are files in order of their names. Only what lies inside the object's outline is kept, as the half floats of
- * the file, so that a sample from memory equals one from disk bit for bit. */
+ * Samples are files in the order of their names. Only pixels inside the object's outline are kept, as the half floats
+ * of the file, so that a sample from memory equals one from disk bit for bit. */
 #ifndef MERLIN_LAB_TRAIN_DATASET_H
 #define MERLIN_LAB_TRAIN_DATASET_H
 
@@ -21,15 +21,15 @@
 
 typedef struct train_dataset train_dataset;
 
-/* What a lamp of a sample is like. */
+/* Properties of a sample's lamp. */
 typedef struct train_lamp {
-    vec3 at; /* as of sample_lamp */
+    vec3 at; /* as in sample_lamp */
     bool distant;
 } train_lamp;
 
 enum { TRAIN_LAMPS = 4, TRAIN_LAMP_VALUES = 4 };
 
-/* One sample's places in the batch, each size × size × channels floats, channels last. */
+/* Positions of one sample in the batch, each size × size × channels floats, channels last. */
 typedef struct train_view {
     int size;
     float *albedo;    /* 3, [0, 1] until train_prepare turns it to [-1, 1] */
@@ -48,7 +48,7 @@ typedef struct train_view {
     train_lamp lamp[TRAIN_LAMPS];
     int lamp_count;
     camera lens; /* size × size */
-    /* filled by train_prepare */
+    /* filled in by train_prepare: */
     float *image, *reconstruction, *relit; /* 3 */
     float *loss_mask;                      /* 1 */
     float *light;                          /* 3 values */
@@ -61,22 +61,23 @@ typedef struct train_view {
 } train_view;
 
 typedef struct train_dataset_options {
-    int size;          /* what every sample's width and height must be */
-    double memory_gib; /* samples read are kept until they fill this */
-    bool environment;  /* with the images under environments; samples without are refused */
-    bool lamps;        /* with these and those under lamps, through any lens; samples without are refused */
+    int size;          /* required width and height of every sample */
+    double memory_gib; /* samples are kept in memory until they fill this */
+    bool environment;  /* also read images under environments; samples without are refused */
+    bool lamps;        /* also read those and images under lamps, through any lens; samples without are refused */
 } train_dataset_options;
 
-/* Refuses an empty folder. */
+/* Opens a folder of samples. Refuses an empty one. */
 status train_dataset_open(const char *folder, const train_dataset_options *options, train_dataset **out);
 void train_dataset_close(train_dataset *d);
 size_t train_dataset_count(const train_dataset *d);
-/* In an orientation of optics/orientation.h. Everything outside the outline becomes zero. Refuses a sample of another
- * size, and of another camera (but for lamps) or flash than the model's. Safe to call from several threads. */
+/* Unpacks a sample in an orientation of optics/orientation.h. Everything outside the outline becomes zero. Refuses a
+ * sample of another size, or of another flash or camera (unless it is read with lamps) than the model's. Thread-safe.
+ */
 status train_dataset_get(train_dataset *d, size_t i, int orientation, train_view *out);
-/* The environment's coefficients of a sample alone, turned. Safe to call from several threads. */
+/* Reads only the coefficients of a sample's environment, turned. Thread-safe. */
 status train_dataset_sh(train_dataset *d, size_t i, int orientation, float sh[9][3]);
-/* Of the folder's first sample. */
+/* Returns the generator's version of the folder's first sample. */
 int train_dataset_generator_version(const train_dataset *d);
 
 #endif

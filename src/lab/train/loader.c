@@ -12,7 +12,7 @@
 
 enum { POINT_BUFFERS = 12, BOTH_BUFFERS = 15, BUFFERS = 24 };
 
-/* What one thread does for one place of the batch. */
+/* The sample for one position of the batch, prepared by one thread. */
 typedef struct item {
     train_view view;
     size_t sample;
@@ -25,15 +25,15 @@ struct train_loader {
     size_t batch;
     item *items;
     float *light_code;     /* the program's input "light", or NULL */
-    float *spare[BUFFERS]; /* for targets the model has no input for */
+    float *spare[BUFFERS]; /* for targets that are no inputs of the model */
 };
 
-/* Where the program wants each of the view's fields; a vector's pixels count as one. */
+/* The program's input for a field of the view; a vector counts as one pixel. */
 typedef struct field {
     const char *input; /* NULL: none */
     int channels;
     bool vector;
-    size_t offset; /* of the pointer in train_view */
+    size_t offset; /* offset of the pointer in train_view */
 } field;
 
 static const field fields[BUFFERS] = {
@@ -65,7 +65,7 @@ static const field fields[BUFFERS] = {
     {"visibility_weight", 1, false, offsetof(train_view, visibility_weight)},
 };
 
-/* How many of them a kind of training has. */
+/* Returns how many of them this kind of training has. */
 static int buffer_count(const train_source *source)
 {
     if (source->any) return BUFFERS;
@@ -117,14 +117,15 @@ void train_loader_free(train_loader *l)
     free(l);
 }
 
-/* Validation's draws do not depend on the configuration, so that its losses compare between runs. */
+/* Returns the seed; validation's does not depend on the configuration, so that its losses are comparable between runs.
+ */
 static uint64_t seed_of(const train_loader *l)
 {
     return l->validation ? 0 : (uint64_t)l->source.config->seed;
 }
 
-/* The target's environment is another sample's, turned and exposed at random. Draws are of a stream of their own, so
- * that the point setting's stay what they are. */
+/* Chooses the target's environment: another sample's, turned and exposed at random. It has a random stream of its own,
+ * so that the numbers of the point setting stay the same. */
 static status draw_environments(const train_loader *l, const item *it, train_lighting *out)
 {
     const train_source *from = &l->source;
@@ -141,7 +142,7 @@ static status draw_environments(const train_loader *l, const item *it, train_lig
     return s;
 }
 
-/* What configurations may ask for beside: draws of streams of their own, so that the others stay what they are. */
+/* Adds optional faults. They have random streams of their own, so that all other numbers stay the same. */
 static status add_faults(const train_loader *l, const item *it, train_camera *lens)
 {
     const train_config *c = l->source.config;
@@ -152,7 +153,8 @@ static status add_faults(const train_loader *l, const item *it, train_camera *le
     return train_motion_moves(&motion) ? train_move(&it->view, &motion) : OK;
 }
 
-/* Under any light. Validation has the mixtures of every kind, too, by a perfect camera that exposes and balances. */
+/* Prepares a sample under any light. Validation uses all kinds of mixtures, too, by a perfect camera with exposure and
+ * white balance. */
 static status fill_any(train_loader *l, item *it)
 {
     const train_config *c = l->source.config;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Fills a training program's inputs with one batch, samples in parallel. */
+/* Data loader: fills a training program's inputs with one batch, preparing samples in parallel. */
 #ifndef MERLIN_LAB_TRAIN_LOADER_H
 #define MERLIN_LAB_TRAIN_LOADER_H
 
@@ -9,7 +9,7 @@
 
 typedef struct train_loader train_loader;
 
-/* The samples of the data set before `training_count` are for training, the others are held back. */
+/* The source of the samples. Those before `training_count` are for training, the others for validation. */
 typedef struct train_source {
     train_dataset *data;
     const train_config *config;
@@ -23,9 +23,9 @@ typedef struct train_source {
 status train_loader_new(nn_program *program, const train_source *source, train_loader **out);
 void train_loader_free(train_loader *l);
 
-/* Presentations first .. first + batch - 1, turned and photographed at random from (seed, presentation). */
+/* Loads presentations first .. first + batch - 1, turned and photographed at random from (seed, presentation). */
 status train_loader_training(train_loader *l, train_order *order, uint64_t first);
-/* Held-back samples first .. first + batch - 1 as they are, each under a target light of its own. */
+/* Loads validation samples first .. first + batch - 1 unchanged, each under a target light of its own. */
 status train_loader_validation(train_loader *l, size_t first);
 
 #endif

@@ -10,11 +10,11 @@
 #include "optics/light.h"
 #include "optics/sh.h"
 
-/* The share of the light from which on a lamp is wholly there. */
+/* Share of the light from which on a lamp counts as fully present. */
 static const float LAMP_SHARE = 1.0f / 6;
-static const float COLDEST = 10000, WARMEST = 2500; /* lamps, kelvin */
-/* What automatic exposure makes of the object's bright parts (their 95th percentile), in shares of the sensor's white,
- * logarithms; a camera exposes for the whole frame, of which nothing is known. */
+static const float COLDEST = 10000, WARMEST = 2500; /* colour temperatures of lamps, kelvin */
+/* Range of automatic exposure: logarithm of the 95th percentile of the object's radiance over the sensor's white; a
+ * camera exposes for the whole frame, whose content is unknown. */
 static const float DARKEST = -1.5f, BRIGHTEST = 0.15f;
 
 static vec3 scaled(vec3 color, float by)
@@ -59,13 +59,13 @@ static vec3 draw_color(rng *r)
     return vec3_scale(color, 1 / (0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z));
 }
 
-/* Evenly in the logarithm, from hardly visible to all there is. */
+/* Returns a log-uniform weight, from hardly visible to full strength. */
 static float draw_weight(rng *r)
 {
     return expf(rng_range(r, -2.7f, 0));
 }
 
-/* What is lit, of all that could be: at least something. */
+/* Chooses the lights that are on, at least one of them, and their weights. */
 static void draw_shares(const train_view *v, rng *r, float *flash, float *room, float shares[TRAIN_LAMPS])
 {
     float how_many = rng_uniform(r), with_flash = rng_uniform(r), with_room = rng_uniform(r);
@@ -80,7 +80,7 @@ static void draw_mixed(const train_view *v, const means *m, rng *r, train_mixtur
 {
     float flash = 0, room = 0, shares[TRAIN_LAMPS] = {0};
     draw_shares(v, r, &flash, &room, shares);
-    /* a lamp that hardly reaches what the camera sees is not made to by more power than the others have together */
+    /* a lamp that hardly reaches the visible side is not amplified beyond what all other lights give */
     const float least = 0.1f * m->flash + 1e-6f;
     out->flash = scaled(vec3_make(1, 1, 1), flash / fmaxf(m->flash, least));
     out->room = scaled(vec3_make(1, 1, 1), room / fmaxf(m->room, least));
@@ -93,7 +93,7 @@ static float luminance_of(vec3 v)
     return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
 }
 
-/* The luminance of all light together, by what it does to the picture. */
+/* Returns the mean luminance of all light together in the picture. */
 static float amount_of(const train_view *v, const means *m, const train_mixture *of)
 {
     float all = luminance_of(of->flash) * m->flash + luminance_of(of->room) * m->room;
@@ -102,14 +102,14 @@ static float amount_of(const train_view *v, const means *m, const train_mixture 
     return all;
 }
 
-/* Of lamps behind an object alone the camera sees nothing: nobody keeps such a photograph. */
+/* Ensures that the picture is lit: with only lamps behind the object it would be black. */
 static void ensure_light(const train_view *v, const means *m, train_mixture *out)
 {
     if (amount_of(v, m, out) < 1e-3f * m->flash + 1e-6f)
         *out = (train_mixture){.kind = TRAIN_FLASH, .flash = {1, 1, 1}};
 }
 
-/* Which lamp gives most light, and how sure anybody can be that it is there. */
+/* Finds the lamp that gives most light, and how certainly it is present. */
 static void find_strongest(const train_view *v, const means *m, train_mixture *out)
 {
     const float all = amount_of(v, m, out);
@@ -137,8 +137,8 @@ static vec3 mixed_at(const train_view *v, const train_mixture *m, size_t i)
 
 /* ---- the camera's choices -------------------------------------------------------------------------------------- */
 
-/* Radiance below which 95 of 100 of the object's pixels are, or the mean of all light where that is more: a lamp that
- * reaches a rim alone leaves 95 of 100 black, and black is nothing to expose by. */
+/* Returns the 95th percentile of the object's radiance, or the mean of all light if that is more: with a lamp that
+ * reaches only a rim 95 % of the pixels are black, which gives no exposure. */
 static float bright_part(const train_view *v, const train_mixture *m, float mean)
 {
     enum { BINS = 512 };
@@ -155,7 +155,7 @@ static float bright_part(const train_view *v, const train_mixture *m, float mean
     return fmaxf(exp2f(((float)bin + 0.5f) / 8 - 30), mean);
 }
 
-/* White balance goes most of the way to what would make the light white. */
+/* Applies white balance, by most of what would make the light white. */
 static void balance(vec3 light, float share, float gain[3])
 {
     float mean = luminance_of(light);
@@ -164,7 +164,7 @@ static void balance(vec3 light, float share, float gain[3])
         gain[c] *= powf(mean / fmaxf(channel[c], 1e-3f * mean), share);
 }
 
-/* The colour of all light together, weighed by what it does to the picture. */
+/* Returns the colour of all light together, weighted by its luminance in the picture. */
 static vec3 color_of(const train_view *v, const means *m, const train_mixture *mix)
 {
     vec3 room = vec3_make(v->sh[0], v->sh[1], v->sh[2]), sum = vec3_scale(mix->flash, m->flash);
@@ -188,21 +188,22 @@ void train_mixture_draw(const train_view *v, rng *r, train_camera *lens, train_m
     find_strongest(v, &m, out);
     out->lens_known = known;
     out->told_flash = told && out->kind == TRAIN_FLASH;
-    if (out->kind == TRAIN_FLASH) return; /* exposed as rendered: that is what tells dark objects from bright ones */
+    if (out->kind == TRAIN_FLASH) return; /* exposed as rendered, which tells dark objects from bright ones */
     balance(color_of(v, &m, out), share, lens->gain);
     float exposure = target * lens->white / bright_part(v, out, amount_of(v, &m, out));
     for (int c = 0; c < 3; c++)
         lens->gain[c] *= exposure;
 }
 
-/* ---- what the network is to say of it -------------------------------------------------------------------------- */
+/* ---- targets: what the network has to predict about the light ------------------------------------------------------
+ */
 
 static vec3 way_to(const train_lamp *l)
 {
     return l->distant ? l->at : vec3_sub(l->at, vec3_make(0, 0, -1));
 }
 
-/* A lamp as what surrounds the object sends it: parallel light. */
+/* Adds a lamp's light, as parallel light, to the coefficients of the surroundings. */
 static void add_lamp(const train_lamp *l, vec3 strength, float sh[9][3])
 {
     sh_accumulate(sh, vec3_normalize(way_to(l)), vec3_scale(strength, LIGHT_POWER));
@@ -223,7 +224,7 @@ static void put_rest(const train_view *v, const train_mixture *m, vec3 gain)
     model_encode_sh((const float(*)[3])sh, code);
     for (int i = 0; i < MODEL_SH; i++)
         all += code[i] * code[i];
-    v->rest_weight[0] = 1 / (1 + all); /* light on a dark object is strong, and its error the larger */
+    v->rest_weight[0] = 1 / (1 + all); /* light on a dark object is strong, and its error larger */
 }
 
 static void put_lights(const train_view *v, const train_mixture *m, const train_camera *lens)
@@ -243,7 +244,8 @@ static void put_lights(const train_view *v, const train_mixture *m, const train_
         v->lights[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength(m->presence * channel[c]);
 }
 
-/* The strongest lamp's visibility counts where it would be seen, and where it matters. Maps are as unpacked. */
+/* Sets the strongest lamp's visibility and its weight: where the lamp would be seen, by how much it matters. Maps are
+ * as unpacked. */
 static void put_visibility(const train_view *v, const train_mixture *m)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
@@ -269,7 +271,7 @@ static void put_sight(const train_view *v, const train_mixture *m)
     v->lens_values[2] = v->lens.slant.up;
 }
 
-/* Relief as nn_render counts it, of distance. */
+/* Converts distance to relief, as nn_render defines it. */
 static void put_relief(const train_view *v)
 {
     float scale = camera_tangent(CAMERA_FOV) / camera_tangent(v->lens.fov);

@@ -9,7 +9,7 @@
 #include "optics/camera.h"
 #include "optics/sh.h"
 
-/* about the axis x, y or z */
+/* Computes the rotation about the axis x, y or z. */
 static void rotation_about(int axis, float angle, float out[3][3])
 {
     int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -41,7 +41,7 @@ bool train_motion_moves(const train_motion *m)
     return m->turned || m->distance != 1;
 }
 
-/* What a turned picture is resampled from: maps are weighted by coverage, images have it in them. */
+/* Images that are resampled for a turned camera: maps are weighted by coverage, images contain it. */
 enum { MAX_LAYERS = 7 };
 typedef struct layer {
     float *data;
@@ -82,13 +82,13 @@ static status copy_picture(const train_view *v, picture *out)
     return OK;
 }
 
-/* The four pixels around a place, their shares, and those times their coverage. */
+/* The four pixels around a position, their bilinear weights, and those times coverage. */
 typedef struct taps {
     size_t pixel[4];
     float share[4], covered[4], coverage;
 } taps;
 
-/* x and y in pixels, the first one's middle at 0. What lies outside the frame has no share. */
+/* Returns the taps at x and y, in pixels, the first one's middle at 0. Pixels outside the frame have no weight. */
 static taps taps_at(const picture *p, float x, float y)
 {
     taps t = {.coverage = 0};
@@ -125,7 +125,7 @@ static vec3 turned(const float m[3][3], vec3 v)
                      m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z);
 }
 
-/* Back to where a direction came from. */
+/* Applies the inverse of a rotation. */
 static vec3 turned_back(const float m[3][3], vec3 v)
 {
     return vec3_make(m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,

@@ -9,7 +9,7 @@
 #include "image/color.h"
 #include "model/model.h"
 
-/* Natural logarithm of the highest radiance a sensor takes without saturating. */
+/* Natural logarithm of the highest radiance at which a sensor saturates. */
 static const float WHITE_RANGE = 0.9f;
 
 train_camera train_camera_perfect(void)
@@ -31,7 +31,8 @@ train_camera train_camera_draw(const train_config *c, rng *r)
     return lens;
 }
 
-/* Backgrounds are farther from the flash than the object and mostly dark in its light, but a white sheet is not. */
+/* Chooses a background: farther from the flash than the object, so that it is mostly dark, but it may be a white sheet.
+ */
 static void draw_background(rng *r, train_camera *lens)
 {
     enum { ENDS = 2 };
@@ -52,13 +53,13 @@ void train_camera_degrade(const train_config *c, rng *r, train_camera *lens)
     bool wrong = rng_uniform(r) < (float)c->outline_error, larger = rng_uniform(r) < 0.5f;
     lens->outline = wrong ? (larger ? 1 : -1) : 0;
     lens->jpeg = rng_uniform(r) < (float)c->jpeg;
-    /* a photograph that was made smaller has lost most of what compression did to it: no very low qualities */
+    /* no very low qualities: a photograph that was shrunk has lost most of its compression artefacts */
     lens->jpeg_settings.quality = 50 + rng_below(r, 46);
     lens->jpeg_settings.halved = rng_uniform(r) < 0.7f;
     if (rng_uniform(r) < (float)c->perfect_camera) *lens = train_camera_perfect();
 }
 
-/* Nearly normal, mean 0, variance 1, from one draw: the sum of its four bytes. */
+/* Returns an approximately normal number, mean 0, variance 1: the sum of a random number's four bytes. */
 static float cheap_normal(rng *r)
 {
     uint32_t u = rng_u32(r);
@@ -66,8 +67,7 @@ static float cheap_normal(rng *r)
     return ((float)sum - 510.0f) * (1.0f / 147.8f); /* variance of four bytes: 4 (256² - 1)/12 */
 }
 
-/* What a camera's own curve makes of a value that is coded as sRGB: a power, and an S about the middle, whose feet are
- * the toe and the shoulder of film. */
+/* Applies the camera's tone curve to an sRGB code: a power, and a sigmoid with a toe and a shoulder as of film. */
 static float toned(const train_camera *lens, float code)
 {
     float y = powf(code, lens->gamma);
@@ -93,7 +93,7 @@ static float background_at(const train_camera *lens, int size, size_t pixel, int
     return (1 - t) * lens->behind[0][channel] + t * lens->behind[1][channel];
 }
 
-/* How much of the light the lens keeps away from a pixel's corner of the frame: cos⁴ of a wide lens and less. */
+/* Returns the factor of vignetting at a pixel: cos⁴ for a wide lens, weaker for others. */
 static float vignette_at(const train_camera *lens, int size, size_t pixel)
 {
     if (lens->vignette == 0) return 1;
@@ -102,7 +102,7 @@ static float vignette_at(const train_camera *lens, int size, size_t pixel)
     return 1 - lens->vignette * 0.5f * (right * right + down * down);
 }
 
-/* What arrives from an object's pixel. */
+/* Returns the radiance of an object's pixel. */
 static float radiance_of(const train_view *v, bool global, size_t value)
 {
     if (v->photo) return v->photo[value];
@@ -110,7 +110,7 @@ static float radiance_of(const train_view *v, bool global, size_t value)
     return v->env ? radiance + v->env[value] : radiance;
 }
 
-/* What the sensor sees, of the object's pixels or of the whole frame. */
+/* Simulates the sensor, for the object's pixels or the whole frame. */
 static void expose(const train_view *v, bool global, const train_camera *lens, bool whole, rng *noise)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;
@@ -143,7 +143,7 @@ static status compress(const train_view *v, const train_camera *lens)
     return s;
 }
 
-/* Where whoever cut the object out saw it: the true mask, or a pixel more or less of it. */
+/* Tells whether a pixel is inside the mask as cut out: the true mask, dilated or eroded by a pixel. */
 static bool is_seen(const train_view *v, int outline, int x, int y)
 {
     static const int beside[5][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -159,7 +159,7 @@ static bool is_seen(const train_view *v, int outline, int x, int y)
 
 status train_photograph(const train_view *v, bool global, const train_camera *lens, rng *noise)
 {
-    /* a mask too large shows pixels that the object covers by less than half */
+    /* a dilated mask shows pixels that the object covers by less than half */
     expose(v, global, lens, lens->background || lens->jpeg || lens->outline > 0, noise);
     status s = lens->jpeg ? compress(v, lens) : OK;
     for (int y = 0; y < v->size; y++) {

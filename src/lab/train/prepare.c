@@ -68,7 +68,7 @@ void train_add_environment(const train_view *maps, const float sh[9][3], float *
     }
 }
 
-/* image -= what the specular lobe reflects of the environment, times coverage. */
+/* Subtracts what the specular lobe reflects of the environment, times coverage. */
 static void subtract_highlights(const train_view *maps, const float sh[9][3], float *image)
 {
     int size = maps->size;
@@ -84,7 +84,7 @@ static void subtract_highlights(const train_view *maps, const float sh[9][3], fl
     }
 }
 
-/* Environment image and coefficients at the strength of this presentation. */
+/* Scales environment image and coefficients to the strength of this presentation. */
 static void scale_environment(const train_view *v, float strength)
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
@@ -94,13 +94,13 @@ static void scale_environment(const train_view *v, float strength)
         v->sh[i] *= strength;
 }
 
-/* Direct gains what the rendering layer makes of the environment, indirect what that lacks of the truth. Shadows do not
- * take more than there was, and light of later bounces does not exceed the first's: what does is a highlight that is
- * not as the coefficients say. */
+/* Adds the environment: direct gains what the rendering layer makes of it, indirect the remainder of the truth. That
+ * remainder is limited: shadows do not remove more light than there was, and later bounces do not exceed the first, as
+ * a larger remainder is a highlight that the coefficients do not describe. */
 static void add_environment(const train_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
-    float *rest = v->env, *shaded = v->reconstruction; /* which is filled later */
+    float *rest = v->env, *shaded = v->reconstruction; /* which is computed later */
     memset(shaded, 0, values * sizeof *shaded);
     train_add_environment(v, sh, shaded);
     subtract_highlights(v, sh, rest);
@@ -110,7 +110,7 @@ static void add_environment(const train_view *v, const float sh[9][3])
     }
 }
 
-/* The target under both lights, clipped as the rendering layer clips. */
+/* Adds the environment to the target, clipped as by the rendering layer. */
 static void add_target_environment(const train_view *v, const float sh[9][3])
 {
     size_t values = 3 * (size_t)v->size * (size_t)v->size;
@@ -126,7 +126,7 @@ static void clip_direct(const train_view *v)
         v->direct[i] = fminf(v->direct[i], 1.0f);
 }
 
-/* Masks become binary, maps go to the network's ranges. */
+/* Converts masks to binary, and maps to the network's ranges. */
 static void convert(const train_view *v)
 {
     size_t pixels = (size_t)v->size * (size_t)v->size;

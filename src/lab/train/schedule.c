@@ -19,7 +19,7 @@ void train_order_free(train_order *o)
     *o = (train_order){0};
 }
 
-/* Fisher and Yates. */
+/* Shuffles by Fisher and Yates. */
 static void shuffle(train_order *o, uint64_t epoch)
 {
     rng r = rng_at(o->seed, epoch, TRAIN_STREAM_ORDER);

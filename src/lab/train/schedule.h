@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Which sample comes when, and how fast the network learns then. Both depend on the presentation's number alone, so
- * that a resumed run goes on as if it had never stopped. */
+/* Order of the samples and schedule of the learning rate. Both depend on the presentation's number alone, so that a
+ * resumed run continues as if it had not been stopped. */
 #ifndef MERLIN_LAB_TRAIN_SCHEDULE_H
 #define MERLIN_LAB_TRAIN_SCHEDULE_H
 
@@ -8,20 +8,21 @@
 
 #include "lab/train/train_config.h"
 
-/* Every epoch is a permutation of 0 .. count-1 of its own. */
+/* The order of samples: every epoch has its own permutation of 0 .. count-1. */
 typedef struct train_order {
     uint64_t seed;
     size_t count;
-    uint64_t epoch; /* that `index` holds; UINT64_MAX: none yet */
+    uint64_t epoch; /* epoch whose permutation is in `index`; UINT64_MAX: none yet */
     uint32_t *index;
 } train_order;
 
 status train_order_new(train_order *o, uint64_t seed, size_t count);
 void train_order_free(train_order *o);
-/* The sample of presentation p. */
+/* Returns the sample of presentation p. */
 size_t train_order_at(train_order *o, uint64_t p);
 
-/* Of the step that begins at this presentation: rises over the first warmup_steps, halves every halve_every_epochs. */
+/* Returns the rate of the step that begins at this presentation: it rises over the first warmup_steps and halves every
+ * halve_every_epochs. */
 double train_learning_rate(const train_config *c, size_t epoch, uint64_t presentation);
 
 #endif

@@ -34,7 +34,7 @@ typedef struct run {
     train_order order;
     train_state state;
     double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
-    bool chart_missed;                           /* one could not be drawn, which has been said */
+    bool chart_missed;                           /* a chart could not be drawn, which has been reported */
 } run;
 
 static void close_run(run *r)
@@ -76,7 +76,7 @@ static status read_configuration(run *r)
     return r->model_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
 
-/* The type of rank 0, where each would take what is faster on its machine. */
+/* Copies rank 0's number type to all ranks, as each would choose the faster one of its machine. */
 static void share_type(run *r)
 {
     int type = (int)r->training.type;
@@ -84,7 +84,7 @@ static void share_type(run *r)
     r->training.type = (nn_type)type;
 }
 
-/* What was trained in, not what was asked for: another type's sums are others. */
+/* Records the number type that is used instead of "auto": another type would give other sums. */
 static status record_training(run *r)
 {
     r->training.type = nn_program_type(r->program);
@@ -92,7 +92,7 @@ static status record_training(run *r)
     return r->training_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
 
-/* What a run begins from is not what it writes. */
+/* Refuses to overwrite the weights that a run starts from. */
 static status check_kept(const run *r)
 {
     bool replaces = r->options->init && file_is_same(r->options->init, r->paths.weights);
@@ -103,7 +103,7 @@ static status check_kept(const run *r)
                 r->paths.weights);
 }
 
-/* The folder itself is made once data and model are accepted. */
+/* Composes the output's paths; the folder is made once data and model are accepted. */
 static status name_output(run *r)
 {
     const char *folder = r->options->output;
@@ -160,7 +160,7 @@ static void weigh_losses(nn_program *p, const train_config *c)
     nn_set_loss_weight(p, "relight_brdf_ssim", (float)c->ssim_weight);
 }
 
-/* No more of the graph than there are losses for. */
+/* Returns the part of the graph with the losses that are configured. */
 static model_part part_of(const train_config *c)
 {
     if (c->ssim_weight > 0) return MODEL_TRAINING_SSIM;
@@ -216,7 +216,8 @@ static train_identity identity_of(const run *r)
                             ranks_count(r->options->together)};
 }
 
-/* Time spent is kept beside the checkpoint, not in it: a resumed run's files are those of one that was not stopped. */
+/* Writes the time spent beside the checkpoint, not into it: a resumed run's files equal those of an uninterrupted one.
+ */
 static status write_seconds(const run *r)
 {
     char text[32];
@@ -246,13 +247,13 @@ static status resume(run *r)
     return s == OK ? read_seconds(r) : s;
 }
 
-/* What rank 0 alone reads and writes. */
+/* Opens the files that only rank 0 reads and writes. */
 static status begin_files(run *r)
 {
     status s = file_make_folder(r->options->output);
     if (s != OK) return s;
     if (r->options->resume) return resume(r);
-    /* curves left by a run that never reached its first checkpoint */
+    /* removes curves left by a run that never wrote a checkpoint */
     s = train_curve_truncate(r->paths.curves, 0);
     return s == OK ? train_curve_truncate(r->paths.validation, 0) : s;
 }
@@ -281,7 +282,7 @@ static int64_t presented(const run *r)
     return r->state.step * r->training.batch;
 }
 
-/* Where this rank's share of the next batch begins. */
+/* Returns where this rank's share of the next batch begins. */
 static uint64_t own_presentations(const run *r)
 {
     return (uint64_t)(presented(r) + (int64_t)ranks_index(r->options->together) * r->batch);
@@ -301,7 +302,7 @@ static status export_weights(run *r)
     return train_export(r->paths.weights, r->params, &from);
 }
 
-/* Does it with the mean of the weights in their place, if the run keeps one. */
+/* Runs a function with the weights' mean in place of the weights, if the run has one. */
 static status with_average(run *r, status (*act)(run *))
 {
     if (!r->average) return act(r);
@@ -311,8 +312,8 @@ static status with_average(run *r, status (*act)(run *))
     return s;
 }
 
-/* Drawn of what the tables hold anyhow, so that a training is not ended for want of a chart or of libvips, which draws
- * it. */
+/* Draws the chart. It shows only what the tables contain, so that training goes on if it, or libvips, which draws it,
+ * fails. */
 static void draw_chart(run *r)
 {
     status s = train_curve_chart(r->paths.curves, r->paths.validation, r->paths.chart);
@@ -327,7 +328,7 @@ static status save(run *r)
     if (!is_first(r)) return OK;
     train_identity identity = identity_of(r);
     train_learner learner = learner_of(r);
-    /* before the checkpoint: behind the last one nothing is done again */
+    /* before the checkpoint: after the last one nothing is repeated */
     status s = r->validation ? OK : with_average(r, export_weights);
     if (s == OK) s = train_curve_keep(r->paths.curves);
     if (s == OK) s = train_curve_keep(r->paths.validation);
@@ -352,9 +353,9 @@ static train_curve_row row_of(const run *r)
                                                      (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
 }
 
-/* Batch norm's running statistics as the mean over many batches with the weights as they are ("precise BN", Wu and
- * Johnson 2021). The moving ones see ten batches, too few for the coarsest level, where a handful of pixels decides
- * about the depth of the whole object. The batches are those that come next. */
+/* Recomputes batch norm's running statistics as the mean over many batches with fixed weights ("precise BN", Wu and
+ * Johnson 2021). The moving averages cover ten batches, too few for the coarsest level, where a handful of pixels
+ * decides about the depth of the whole object. The batches are those that come next. */
 static status settle_statistics(run *r)
 {
     enum { SETTLING_BATCHES = 64 };
@@ -418,13 +419,14 @@ static status one_step(run *r)
     return s;
 }
 
-/* Not behind the last step: that checkpoint says that all is done, which the last validation still is not. */
+/* Tells whether to write a checkpoint. Not after the last step: that checkpoint states that the run is complete, and
+ * the last validation is still to come. */
 static bool is_time_to_save(const run *r, int64_t last)
 {
     return r->state.step < last && clock_seconds() - r->saved_at > 60 * r->training.checkpoint_minutes;
 }
 
-/* Whether any rank was asked to stop. */
+/* Finds out whether any rank was asked to stop. */
 static status ask_to_stop(const run *r, bool *stop)
 {
     double asked = r->options->interrupted && r->options->interrupted();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Training: from a folder of samples to weights.
+/* Trains a network: from a folder of samples to weights.
  *
  *     train_options o = {.config = "configs/runs/merlin-point/01-128.json", .data = "data/train", .output = "runs/1"};
  *     status s = train_run(&o);
@@ -19,17 +19,19 @@
 typedef struct train_options {
     const char *config, *data, *output;
     const char *init; /* weights to start from, or NULL */
-    /* or other models' weights, ended by NULL: what fits by name and shape, of the last that has it */
+    /* Other models' weights, ended by NULL: tensors that fit by name and shape are taken, from the last file that has
+     * them. */
     const char *const *init_shared;
-    const char *note; /* kept in the weights' metadata, such as the commit; or NULL */
-    bool resume;      /* go on from the output folder's checkpoint; without, such a folder is refused */
+    const char *note; /* stored in the weights' metadata, such as the commit; or NULL */
+    bool resume;      /* continue from the output folder's checkpoint; without, such a folder is refused */
     bool quiet;
-    int (*interrupted)(void); /* asked after every step; NULL: never */
-    ranks *together;          /* NULL, or processes that share every batch: rank 0 alone writes */
+    int (*interrupted)(void); /* called after every step; NULL: never */
+    ranks *together;          /* NULL, or processes that share every batch: only rank 0 writes */
 } train_options;
 
-/* MERLIN_STOPPED after an interrupt, with everything saved. Of ranks that cannot begin the first hears why, the others
- * STATUS_ELSEWHERE. Later the others wait for one that has failed: ranks_abort ends them. */
+/* Runs the training. Returns MERLIN_STOPPED after an interrupt, with everything saved. If ranks cannot begin, the first
+ * of them returns the error, the others STATUS_ELSEWHERE. Later the others wait for one that has failed: ranks_abort
+ * ends them. */
 status train_run(const train_options *o);
 
 #endif

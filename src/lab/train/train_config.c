@@ -24,11 +24,11 @@ static status read_rates(json_object *o, train_config *c)
     return s;
 }
 
-/* The keys that may be left out. */
+/* An optional key. */
 typedef struct optional {
     const char *key;
     double high;
-    size_t offset; /* in train_config */
+    size_t offset; /* offset in train_config */
     double left_out;
 } optional;
 
@@ -58,7 +58,7 @@ static status read_optionals(json_object *o, train_config *c)
     return s;
 }
 
-/* Those that are not as if left out, each behind a comma and a space. */
+/* Writes the optional keys that differ from their defaults, each after a comma and a space. */
 static void write_optionals(const train_config *c, char *out, size_t size)
 {
     size_t length = 0;
@@ -133,7 +133,7 @@ static status parse_parts(json_object *o, model_config *model, train_config *tra
     return s;
 }
 
-/* Takes what a reader has come to, and o. */
+/* Parses the objects after a reader that returned s and o. */
 static status parse_read(status s, json_object *o, model_config *model, train_config *training)
 {
     memset(model, 0, sizeof *model);

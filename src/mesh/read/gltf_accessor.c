@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Accessors: numbers of six types in a buffer, close together or apart, some of them replaced by others. */
+/* Accessors: numbers of six types in a buffer, packed or strided, some of them replaced by sparse values. */
 #include <math.h>
 #include <string.h>
 
@@ -32,7 +32,7 @@ static int components_of(const char *type)
     return 0;
 }
 
-/* `count` elements of `size` bytes in the view that `about` names; *stride becomes how far they are apart. */
+/* Finds `count` elements of `size` bytes in the view that `about` names; *stride becomes their distance. */
 static status find_elements(gltf *g, const cJSON *about, size_t count, size_t size, const uint8_t **data,
                             size_t *stride)
 {
@@ -143,7 +143,7 @@ status gltf_find_accessor(gltf *g, size_t index, gltf_accessor *out)
     return s;
 }
 
-/* Returns where the i-th element is; NULL for a zero. */
+/* Returns where the i-th element is; NULL for zero. */
 static const uint8_t *element_at(const gltf_accessor *a, size_t i)
 {
     size_t low = 0, high = a->sparse_count, place_bytes = bytes_of((size_t)a->sparse_type);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The bytes that a document names: its own, written into it, or a file's beside it. */
+/* Buffers of a document: its own chunk, embedded as a data: URI, or a file beside it. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "mesh/read/gltf.h"
 #include "mesh/read/mesh_limits.h"
 
-/* The value of a letter of base 64; -1 of any other. */
+/* Returns the value of a base 64 digit; -1 for other characters. */
 static int value_of(char c)
 {
     if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -34,7 +34,7 @@ static status decode(const char *text, uint8_t **out, size_t *size)
     return OK;
 }
 
-/* A data: URI's bytes. */
+/* Decodes a data: URI. */
 static status take_data(gltf_buffer *b, const char *uri)
 {
     const char *comma = strchr(uri, ',');
@@ -45,7 +45,7 @@ static status take_data(gltf_buffer *b, const char *uri)
     return s;
 }
 
-/* The name of a file with what %20 and the like stand for, in place. */
+/* Replaces %20 and the like in a file's name, in place. */
 static bool unescape(char *name)
 {
     char *to = name;
@@ -64,7 +64,7 @@ static bool unescape(char *name)
     return true;
 }
 
-/* A file beside the document. */
+/* Maps a file beside the document. */
 static status map_file(const gltf *g, gltf_buffer *b, const char *uri)
 {
     if (!g->folder || strstr(uri, "://")) return fail(MERLIN_BAD_INPUT, "its buffer %.60s is no file beside it", uri);

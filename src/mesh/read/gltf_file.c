@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The file: GLB or text, its JSON, what it requires. */
+/* The file: GLB or text, its JSON, required extensions. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +32,7 @@ static uint32_t word_at(const uint8_t *at)
     return word;
 }
 
-/* The chunk at `*at`, which moves behind it. */
+/* Takes the chunk at `*at`, which moves behind it. */
 static status take_chunk(const uint8_t **at, const uint8_t *end, uint32_t kind, const uint8_t **data, size_t *size)
 {
     if ((size_t)(end - *at) < CHUNK_HEAD) return gltf_damaged("it ends within a chunk");
@@ -48,7 +48,7 @@ static status take_chunk(const uint8_t **at, const uint8_t *end, uint32_t kind, 
     return OK;
 }
 
-/* The JSON of a GLB, else all of the file. */
+/* Finds the JSON of a GLB, else the whole file. */
 static status find_json(gltf *g, const char **text, size_t *size)
 {
     const uint8_t *at = g->file.data, *end = at + g->file.size, *json = at;
@@ -69,7 +69,8 @@ static status find_json(gltf *g, const char **text, size_t *size)
 
 /* ---- JSON ---- */
 
-/* The parser calls itself for each level and takes a hundred bytes for a value, be it one byte long. */
+/* Limits nesting and size, as the parser recurses for each level and takes a hundred bytes for every value, even of one
+ * byte. */
 static status check_json(const char *text, size_t size)
 {
     size_t depth = 0, values = 0;
@@ -125,7 +126,7 @@ static status list_all(gltf *g)
     return g->buffer && g->accessor ? OK : fail(MERLIN_NO_MEMORY, "no memory for the mesh");
 }
 
-/* An extension that a file requires is understood, says nothing of the surface, or else the file is not. */
+/* Accepts required extensions that are supported or do not affect the surface, and refuses others. */
 static status check_extension(const char *name)
 {
     static const char *const fine[] = {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",

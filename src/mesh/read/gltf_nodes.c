@@ -5,7 +5,7 @@
 
 #include "mesh/read/gltf.h"
 
-/* Nodes in the order in which they are met, each before its children. */
+/* Nodes in the order in which they are visited, each before its children. */
 typedef struct walk {
     const gltf *g;
     struct placed {
@@ -18,7 +18,7 @@ typedef struct walk {
 
 static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/* Numbers of an array; false where there are not so many. */
+/* Reads the numbers of an array; returns false if it has another length. */
 static bool take_numbers(const cJSON *array, int count, double *out)
 {
     const cJSON *item;
@@ -31,7 +31,7 @@ static bool take_numbers(const cJSON *array, int count, double *out)
     return i == count;
 }
 
-/* Rotation by the quaternion q of x, y, z, w, each column scaled. */
+/* Computes the rotation by the quaternion q of x, y, z, w, each column scaled. */
 static void rotation(const double *q, const double *scale, double *m)
 {
     double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], s = norm > 0 ? 2 / norm : 0;
@@ -105,7 +105,7 @@ static status meet_all(walk *w, const cJSON *numbers, const double *parent)
     return s;
 }
 
-/* Takes, in a document without scenes, the nodes that are nobody's children. */
+/* Visits the nodes that are no node's children, for a document without scenes. */
 static status meet_roots(walk *w)
 {
     size_t count = w->g->nodes.count;

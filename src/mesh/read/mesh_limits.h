@@ -5,11 +5,11 @@
 
 #include <stddef.h>
 
-/* Triangles of a mesh at most; bytes at most of a file, or of all that make one mesh. */
+/* Largest number of triangles of a mesh; largest size of a file, or of all files of one mesh, bytes. */
 enum { MESH_TRIANGLES = 5000000, MESH_BYTES = 1 << 30 };
 
-/* Returns how many triangles a mesh of so many bytes may have: five million, and of a small file, which can only repeat
- * itself, one and what it has bytes for. */
+/* Returns how many triangles a mesh of so many bytes may have: five million, and fewer for a small file, which can only
+ * repeat itself: one plus as many as it has bytes for. */
 size_t mesh_most_triangles(size_t bytes);
 
 #endif

@@ -10,7 +10,7 @@
 #include "mesh/read/mesh_read_obj.h"
 #include "mesh/read/mesh_read_ply.h"
 
-/* Above 0 where a triangle faces the way of its vertices' normals, below where it faces the other way. */
+/* Returns a value above 0 if a triangle faces the way of its vertices' normals, below 0 if it faces the other way. */
 static float agreement(const triangle_mesh *mesh, const uint32_t t[3])
 {
     if (!mesh->normal) return 0;
@@ -19,11 +19,11 @@ static float agreement(const triangle_mesh *mesh, const uint32_t t[3])
     return vec3_dot(n, vec3_add(vec3_add(mesh->normal[t[0]], mesh->normal[t[1]]), mesh->normal[t[2]]));
 }
 
-/* Turns the triangles that wind against the file's normals, each on its own, for a mirrored part's do beside others
- * that do not; where there are none to tell, all when the surface winds around a negative volume. */
+/* Reverses triangles that wind against the file's normals, one by one, as a mirrored part's do beside others that do
+ * not. Without normals all are reversed if they enclose a negative volume. */
 static void wind_outward(triangle_mesh *mesh)
 {
-    mesh_normalize(mesh); /* centred, so that an open surface's volume has a sensible sign */
+    mesh_normalize(mesh); /* centred, so that an open surface's volume has a meaningful sign */
     bool inward = mesh_signed_volume(mesh) < 0;
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         uint32_t *t = mesh->triangle[i], swap = t[1];

@@ -24,10 +24,10 @@ typedef struct reader {
     size_t instances;
     primitive *primitive;
     size_t primitives;
-    size_t *first; /* of a mesh's primitives; one more than there are meshes */
-    bool *shown;   /* of a mesh: some instance has it */
-    bool smooth;   /* all that is shown has normals */
-    /* what became of a position: to[i] where stamp[i] is of the primitive at hand */
+    size_t *first; /* index of a mesh's first primitive; one entry more than there are meshes */
+    bool *shown;   /* per mesh: an instance shows it */
+    bool smooth;   /* everything shown has normals */
+    /* new index of a position: to[i], valid if stamp[i] is the current primitive's */
     uint32_t *stamp, *to, round;
     double origin[3];
     triangle_mesh *mesh;
@@ -67,7 +67,7 @@ static status read_attributes(gltf *g, const cJSON *about, primitive *p)
     return OK;
 }
 
-/* Points and lines are none. */
+/* Reads a primitive; points and lines are skipped. */
 static status read_primitive(reader *r, const cJSON *about)
 {
     size_t material;
@@ -128,7 +128,7 @@ static int compare_materials(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
-/* Materials that are shown, by number, are the parts; no material is one, too, the last. */
+/* Numbers the parts: the materials that are shown, in order; primitives without a material are the last part. */
 static status name_parts(reader *r, int *parts)
 {
     uint32_t *material = malloc((r->primitives + 1) * sizeof *material);
@@ -150,14 +150,14 @@ static status name_parts(reader *r, int *parts)
 
 /* ---- triangles ---- */
 
-/* Six times the volume that becomes of the unit cube's, below 0 where the transform mirrors. */
+/* Returns the determinant of the transform's linear part, below 0 if it mirrors. */
 static double determinant(const double *m)
 {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
            m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
-/* By the inverse's transpose, whose length does not matter: the cofactors. */
+/* Transforms a normal by the cofactors, the inverse's transpose up to length. */
 static vec3 turn_normal(const double *m, const double *n)
 {
     double sign = determinant(m) < 0 ? -1 : 1, out[3], length = 0;
@@ -190,7 +190,7 @@ static status add_vertex(reader *r, const primitive *p, const double *m, size_t 
     return OK;
 }
 
-/* Corners of triangle t, in the primitive's count. */
+/* Returns the corners of triangle t, in the primitive's numbering. */
 static void corners_of(size_t mode, size_t t, size_t corner[3])
 {
     size_t odd = mode == STRIP ? t % 2 : 0, first = mode == TRIANGLES ? 3 * t : t;
@@ -199,7 +199,8 @@ static void corners_of(size_t mode, size_t t, size_t corner[3])
     corner[2] = first + 2 - odd;
 }
 
-/* The file's vertices become the mesh's as triangles need them: many primitives may share one large list. */
+/* Adds a triangle and those of its vertices that the mesh does not have yet: many primitives may share one large list.
+ */
 static status add_triangle(reader *r, const primitive *p, const double *m, size_t t, bool mirrored)
 {
     size_t corner[3];
@@ -217,13 +218,13 @@ static status add_triangle(reader *r, const primitive *p, const double *m, size_
     return r->mesh->failed ? no_memory() : OK;
 }
 
-/* The most vertices that can come of a primitive: of triangles, or of its positions. */
+/* Returns the most vertices that a primitive can add: those of its triangles, or its positions. */
 static size_t most_vertices(const primitive *p)
 {
     return 3 * p->triangles < p->position.count ? 3 * p->triangles : p->position.count;
 }
 
-/* Counts before anything is made, and makes room. */
+/* Counts vertices and triangles before anything is added, and allocates room. */
 static status prepare(reader *r)
 {
     size_t triangles = 0, vertices = 0, longest = 0, most = mesh_most_triangles(r->g->bytes);
@@ -236,7 +237,7 @@ static status prepare(reader *r)
             if (triangles > most) return fail(MERLIN_BAD_INPUT, "more than %zu triangles", most);
         }
     if (triangles == 0) return fail(MERLIN_BAD_INPUT, "no triangles in it");
-    for (int row = 0; row < 3; row++) /* coordinates may be too far away for floats */
+    for (int row = 0; row < 3; row++) /* coordinates may be too large for floats */
         r->origin[row] = r->instance[0].m[4 * row + 3];
     r->stamp = calloc(longest + 1, sizeof *r->stamp);
     r->to = calloc(longest + 1, sizeof *r->to);

@@ -9,34 +9,34 @@
 
 enum { CORNERS = 1024, MATERIALS = 256, NAME = 128, COUNT_LIMIT = 20000000 };
 
-/* A corner's places in the lists of vertices and normals, from 0. */
+/* A corner's indices into the lists of vertices and normals, from 0. */
 typedef struct corner {
-    uint32_t vertex, normal; /* normal: UINT32_MAX where it has none */
+    uint32_t vertex, normal; /* normal: UINT32_MAX without one */
 } corner;
 
-/* A list of triples that grows. */
+/* A growing list of triples. */
 typedef struct triples {
     double (*at)[3];
     size_t count, room;
 } triples;
 
-/* Vertices of the mesh that lie at one of the file's, each with another normal. */
+/* A vertex of the mesh at a position of the file, for one of the normals there. */
 typedef struct twin {
     uint32_t normal, index, next;
 } twin;
 
 typedef struct obj {
-    const char *at, *end; /* what is left of the text; *end is zero */
+    const char *at, *end; /* rest of the text; *end is zero */
     size_t line;
     triples vertex, normal;
-    size_t vertices, normals; /* of those, how many stand before the line: negative places count from there */
+    size_t vertices, normals; /* how many precede the current line: negative indices count from there */
     bool smooth;              /* every corner has a normal */
     double origin[3];
     twin *twins;
-    uint32_t *first_twin; /* of a vertex, + 1; 0: none yet */
+    uint32_t *first_twin; /* per vertex, + 1; 0: none yet */
     size_t twin_count, twin_room;
     char material[MATERIALS][NAME];
-    int materials, current; /* current: of the faces to come; -1 until one is named */
+    int materials, current; /* current: material of the following faces; -1 until one is named */
     int part_of[MATERIALS + 1];
     int parts;
     size_t most;
@@ -50,7 +50,7 @@ static status damaged(const obj *o, const char *what)
 
 /* ---- words ---- */
 
-/* Characters of a backslash and the end of line that it takes back; 0 where there is none. */
+/* Returns the length of a backslash and the line end that it continues; 0 if there is none. */
 static size_t continuation(const char *at)
 {
     if (*at != '\\') return 0;
@@ -73,7 +73,7 @@ static bool ends_line(const obj *o)
     return o->at >= o->end || *o->at == '\n' || *o->at == '\r' || *o->at == '#' || *o->at == 0;
 }
 
-/* Passes what else a line says that may go on behind a backslash. */
+/* Skips the rest of a line, with its continuations. */
 static void skip_rest(obj *o)
 {
     for (skip_blanks(o); !ends_line(o); skip_blanks(o))
@@ -87,7 +87,7 @@ static void next_line(obj *o)
     o->line++;
 }
 
-/* Tells whether the line begins with this word, which is passed then. */
+/* Tells whether the line begins with this word, and then skips it. */
 static bool takes_word(obj *o, const char *word)
 {
     size_t length = strlen(word);
@@ -124,13 +124,14 @@ static status add_triple(obj *o, triples *list)
     return OK;
 }
 
-/* Not the end of a line, which strtoll would pass. */
+/* Tells whether a number begins here, rather than the end of the line, which strtoll would skip. */
 static bool begins_number(const obj *o)
 {
     return (*o->at >= '0' && *o->at <= '9') || *o->at == '-' || *o->at == '+';
 }
 
-/* A place in a list, from 1 or, negative, from its end so far; COUNT_LIMIT, where nothing is, for what lies outside. */
+/* Reads an index into a list, from 1 or, if negative, from its current end; COUNT_LIMIT, which is never used, if it is
+ * outside. */
 static status take_place(obj *o, size_t so_far, uint32_t *place)
 {
     char *after = NULL;
@@ -155,7 +156,7 @@ static status take_corner(obj *o, corner *c)
     return begins_number(o) ? take_place(o, o->normals, &c->normal) : OK;
 }
 
-/* ---- the first time through: the lists, and whether all has normals ---- */
+/* ---- first pass: the lists, and whether all corners have normals ---- */
 
 static status look_at_line(obj *o)
 {
@@ -171,7 +172,7 @@ static status look_at_line(obj *o)
     return OK;
 }
 
-/* ---- the second time: faces ---- */
+/* ---- second pass: faces ---- */
 
 static status check_corner(const obj *o, corner c)
 {
@@ -187,8 +188,8 @@ static vec3 place_of(const obj *o, uint32_t vertex)
     return vec3_make((real)(p[0] - from[0]), (real)(p[1] - from[1]), (real)(p[2] - from[2]));
 }
 
-/* The mesh's vertex of a corner with a normal; UINT32_MAX without memory. Where a vertex has very many normals, one
- * more than needed does no harm, and a search through all of them would take for ever. */
+/* Returns the mesh's vertex for a corner with a normal; UINT32_MAX without memory. If a vertex has very many normals, a
+ * duplicate is harmless, while searching all of them would take too long. */
 static uint32_t twin_of(obj *o, corner c)
 {
     uint32_t t = o->first_twin[c.vertex];
@@ -211,7 +212,8 @@ static uint32_t twin_of(obj *o, corner c)
     return index;
 }
 
-/* Parts are counted as faces come: a material that no face has is none. */
+/* Returns the part of the current material. Parts are numbered as faces occur, so that a material without faces has
+ * none. */
 static uint8_t current_part(obj *o)
 {
     int *part = &o->part_of[o->current + 1];
@@ -239,7 +241,7 @@ static status add_face(obj *o)
     return o->mesh->failed ? fail(MERLIN_NO_MEMORY, "no memory for the mesh") : OK;
 }
 
-/* The last of many materials stands for those that have no room. */
+/* Selects a material; those beyond the limit share the last one. */
 static void use_material(obj *o)
 {
     skip_blanks(o);
@@ -285,7 +287,7 @@ static status each_line(obj *o, const char *text, status (*take)(obj *))
     return s;
 }
 
-/* Scans lie in their country's coordinates, of which floats hold no more than half metres. */
+/* Chooses an origin near the vertices: scans use national coordinates, which floats hold only to half metres. */
 static void choose_origin(obj *o)
 {
     double low[3], high[3], extent = 0, far = 0;
@@ -303,7 +305,7 @@ static void choose_origin(obj *o)
     if (far < 1000 * extent) memset(o->origin, 0, sizeof o->origin);
 }
 
-/* Without normals the mesh's vertices are the file's. */
+/* Begins the faces; without normals the mesh's vertices are the file's. */
 static status begin_faces(obj *o)
 {
     choose_origin(o);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* OBJ files (Wavefront's format of 1995, as everybody writes it): v, vn, f and usemtl. Nothing else is opened for them:
- * a material library says nothing of the shape. */
+/* Reads OBJ files (Wavefront's format of 1995, as in common use): v, vn, f and usemtl. Material libraries are not
+ * opened, as they do not affect the shape. */
 #ifndef MERLIN_MESH_READ_MESH_READ_OBJ_H
 #define MERLIN_MESH_READ_MESH_READ_OBJ_H
 
@@ -9,10 +9,10 @@
 #include "mesh/mesh.h"
 
 /* Reads polygons, cut into triangles, into an empty mesh: a part for each material that a face has, 32 at most; normals
- * where every corner has one. MERLIN_BAD_INPUT, with the line, for what is damaged, or has more than `most` triangles.
+ * if every corner has one. MERLIN_BAD_INPUT, naming the line, if the file is damaged or has more than `most` triangles.
  */
 status mesh_read_obj(const char *path, size_t most, triangle_mesh *mesh, int *parts);
-/* The same from a text that ends in a zero byte. */
+/* Reads from a text that ends in a zero byte. */
 status mesh_parse_obj(const char *text, size_t size, size_t most, triangle_mesh *mesh, int *parts);
 
 #endif

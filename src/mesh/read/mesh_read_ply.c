@@ -14,7 +14,7 @@ typedef enum number_type { I8, U8, I16, U16, I32, U32, F32, F64, NO_TYPE } numbe
 
 typedef struct property {
     char name[NAME];
-    number_type type, count_type; /* count_type: NO_TYPE unless a list */
+    number_type type, count_type; /* count_type: NO_TYPE unless it is a list */
 } property;
 
 typedef struct element {
@@ -28,7 +28,7 @@ typedef struct ply {
     bool binary;
     int elements;
     element element[ELEMENTS];
-    const char *at, *end; /* what is left of the file; *end is zero */
+    const char *at, *end; /* rest of the file; *end is zero */
     triangle_mesh *mesh;
     double origin[3]; /* the first vertex */
     vec3 *normal;
@@ -106,7 +106,7 @@ static status read_header(ply *p)
     return OK;
 }
 
-/* The next number; false at the end of the file. */
+/* Reads the next number; returns false at the end of the file. */
 static bool read_number(ply *p, number_type type, double *value)
 {
     static const size_t SIZES[] = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -163,14 +163,14 @@ static status read_vertex(ply *p, const element *e)
     if ((found & 7) != 7) return damaged("vertices without x, y, z");
     if (found == 63)
         p->normal[p->normals++] = vec3_normalize(vec3_make((real)value[3], (real)value[4], (real)value[5]));
-    /* from the first one: scans lie in their country's coordinates, of which floats hold no more than half metres */
+    /* relative to the first vertex: scans use national coordinates, which floats hold only to half metres */
     if (p->mesh->vertex_count == 0) memcpy(p->origin, value, sizeof p->origin);
     const double *o = p->origin;
     mesh_add_vertex(p->mesh, vec3_make((real)(value[0] - o[0]), (real)(value[1] - o[1]), (real)(value[2] - o[2])));
     return OK;
 }
 
-/* A face, or an element of no interest, whose numbers are passed over. */
+/* Reads a face, or skips the numbers of an element that is not needed. */
 static status read_face(ply *p, const element *e, bool is_face)
 {
     for (int i = 0; i < e->properties; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* PLY files, ascii and binary little endian (Turk 1994). */
+/* Reads PLY files, ascii and binary little endian (Turk 1994). */
 #ifndef MERLIN_MESH_READ_MESH_READ_PLY_H
 #define MERLIN_MESH_READ_MESH_READ_PLY_H
 
@@ -8,9 +8,9 @@
 #include "mesh/mesh.h"
 
 /* Reads vertices (with normals, if they have nx, ny, nz) and polygons, cut into fans, into an empty mesh.
- * MERLIN_BAD_INPUT for what is damaged or not PLY. */
+ * MERLIN_BAD_INPUT if the file is damaged or not PLY. */
 status mesh_read_ply(const char *path, triangle_mesh *mesh);
-/* The same from bytes with a zero behind them. */
+/* Reads from bytes followed by a zero. */
 status mesh_parse_ply(const char *data, size_t size, triangle_mesh *mesh);
 
 #endif

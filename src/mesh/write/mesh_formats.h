@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A built mesh as a file: one source a format. Internal to mesh_write.h. */
+/* Writers of a surface mesh, one for each format. Internal to mesh_write.h. */
 #ifndef MERLIN_MESH_WRITE_MESH_FORMATS_H
 #define MERLIN_MESH_WRITE_MESH_FORMATS_H
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer; albedo, a tangent-space normal map and roughness as PNGs
- * inside. Its roughness is that of docs/conventions.md: both square it to the width of the lobe.
+/* Writes GLB: binary glTF 2.0 (Khronos, ISO/IEC 12113), one buffer; albedo, a tangent-space normal map and roughness as
+ * embedded PNGs. glTF's roughness is that of docs/conventions.md: both square it to the width of the lobe.
  *
- * Vertex normals are the triangles'; the normal map holds what the photometric normals say beyond them, so that a mesh
- * thinned out later keeps its shading. Tangents run along the picture's rows, x to the right and y up. */
+ * Vertex normals are the triangles'; the normal map holds the photometric normals' difference to them, so that a
+ * decimated mesh keeps its shading. Tangents run along the picture's rows, x to the right and y up. */
 #include <cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,11 +18,11 @@ enum { FLOAT = 5126, UNSIGNED_INT = 5125, ARRAY_BUFFER = 34962, ELEMENT_ARRAY_BU
 enum { HEADER = 12, CHUNK_HEADER = 8, MOST_PARTS = 8 };
 static const size_t LARGEST_PICTURE = (size_t)1 << 30;
 
-/* One stretch of the buffer and how it is described. */
+/* A range of the buffer and its description. */
 typedef struct part {
     const void *data;
     size_t size, count;
-    const char *type; /* NULL: a picture */
+    const char *type; /* accessor type; NULL: a picture */
     int component, target;
     float low[3], high[3];
     bool bounded;
@@ -50,7 +50,7 @@ static vec3 vertex_normal(const surface_mesh *m, size_t v)
     return vec3_of(m->normal + 3 * v);
 }
 
-/* x to the right, made perpendicular to the normal. */
+/* Returns the direction to the right, made perpendicular to the normal. */
 static vec3 tangent_of(vec3 n)
 {
     vec3 t = vec3_normalize(vec3_make(1 - n.x * n.x, -n.x * n.y, -n.x * n.z));
@@ -76,7 +76,7 @@ static status add_tangents(glb *g, const surface_mesh *m)
     return OK;
 }
 
-/* Parts 0 to 3: positions with their bounds, normals, texture coordinates, triangles. */
+/* Adds parts 0 to 3: positions with their bounds, normals, texture coordinates, triangles. */
 static void add_geometry(glb *g, const surface_mesh *m)
 {
     size_t n = m->vertices;
@@ -105,7 +105,7 @@ static void add_geometry(glb *g, const surface_mesh *m)
 
 /* ---- pictures ---- */
 
-/* The bytes of a PNG, by way of a temporary file beside the mesh. */
+/* Encodes a PNG by way of a temporary file beside the mesh. */
 static status png_bytes(const char *beside, const img *picture, img_encoding encoding, char **bytes, size_t *size)
 {
     char *name = NULL, *temporary = NULL;
@@ -161,7 +161,7 @@ static status add_normal_map(glb *g, const char *path, const surface_mesh *m, co
     return s;
 }
 
-/* glTF keeps roughness in green, and in blue what is metal. */
+/* Adds roughness, which glTF stores in green, with metalness in blue. */
 static status add_roughness(glb *g, const char *path, const img *roughness)
 {
     img map = {0};
@@ -191,7 +191,8 @@ static void put_bounds(cJSON *accessor, const char *name, const float bound[3])
         json_append(a, cJSON_CreateNumber((double)bound[c]));
 }
 
-/* Accessors come first among the parts' numbers, so that an accessor has its view's number. Pictures follow. */
+/* Writes the parts. Accessors have the first numbers, so that an accessor has the number of its view; pictures follow.
+ */
 static void put_parts(cJSON *root, const glb *g)
 {
     cJSON *views = json_put_array(root, "bufferViews"), *accessors = json_put_array(root, "accessors");
@@ -219,7 +220,7 @@ static void put_parts(cJSON *root, const glb *g)
     json_put_number(json_append_object(buffers), "byteLength", (double)offset);
 }
 
-/* A texture of the picture in that part; does nothing without one. */
+/* Writes a texture of the picture in that part; does nothing if there is none. */
 static void put_texture(cJSON *root, cJSON *user, const char *name, int picture)
 {
     if (picture < 0) return;
@@ -284,7 +285,7 @@ static void put_padded(FILE *f, const void *data, size_t size, int filler)
         fputc(filler, f);
 }
 
-/* The sizes that stand in the file's head, padded. */
+/* Padded sizes for the file's header. */
 typedef struct chunks {
     const glb *g;
     const char *json;

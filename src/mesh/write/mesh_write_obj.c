@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* OBJ with texture coordinates, its material beside it, and the material's albedo texture as PNG. */
+/* Writes OBJ with texture coordinates, its material file, and the albedo texture as PNG. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
 
-/* path with another ending of four characters, malloc'ed. */
+/* Returns path with another extension of four characters, malloc'ed. */
 static char *with_ending(const char *path, const char *ending)
 {
     char *out = strdup(path);
@@ -46,7 +46,7 @@ static void print_vertex(FILE *f, const obj *o, size_t v)
     fwrite(lines, 1, (size_t)(end - lines), f);
 }
 
-/* Places, texture coordinates and normals have the same numbers. */
+/* Prints a triangle; positions, texture coordinates and normals have the same numbers. */
 static void print_triangle(FILE *f, const uint32_t *corner)
 {
     char line[10 * DECIMAL_ROOM], *end = stpcpy(line, "f");
@@ -91,7 +91,7 @@ static status write_material(const char *path, const char *texture)
     return s;
 }
 
-/* What the OBJ names is there before the OBJ is. */
+/* Writes the files that the OBJ refers to before the OBJ. */
 status mesh_write_obj(const char *path, const surface_mesh *m, const mesh_source *from)
 {
     char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png");

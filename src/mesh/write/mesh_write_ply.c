@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* PLY, binary little-endian, with normals and vertex colours. */
+/* Writes PLY, binary little-endian, with normals and vertex colours. */
 #include <stdio.h>
 #include <string.h>
 
@@ -28,8 +28,8 @@ static void write_header(FILE *f, const surface_mesh *m)
             m->vertices, m->triangles);
 }
 
-/* Some readers (assimp 5.2 among them) skip all white space behind the header, and with it a first byte that looks like
- * it: sixteen units in the last place away it does not. */
+/* Changes a float whose first byte is white space by sixteen units in the last place: some readers (assimp 5.2 among
+ * them) skip white space after the header, and with it such a byte. */
 static float not_white(float x)
 {
     unsigned char bytes[sizeof x];

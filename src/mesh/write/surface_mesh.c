@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Neighbours whose depths differ by more than this many pixel sizes (a slope of 84 degrees) are not joined. */
+/* Largest difference in depth, in pixel sizes, of neighbours that are joined (a slope of 84 degrees). */
 static const float JUMP = 10;
 
 static bool inside(const mesh_source *from, size_t pixel)
@@ -18,7 +18,7 @@ static float pixel_size(const mesh_source *from, float depth)
     return pinhole_is_near(&from->camera) ? fabsf(depth) / from->camera.focal : 1;
 }
 
-/* So many pixels right of the principal point, and above it. */
+/* Returns the point so many pixels to the right of the principal point and above it. */
 static vec3 point_at(const mesh_source *from, float right, float up, float depth)
 {
     const float size = pixel_size(from, depth);
@@ -49,10 +49,10 @@ static bool joined(const mesh_source *from, size_t a, size_t b)
 typedef struct builder {
     const mesh_source *from;
     surface_mesh *mesh;
-    const uint32_t *vertex; /* of each pixel, UINT32_MAX outside */
+    const uint32_t *vertex; /* per pixel, UINT32_MAX outside */
 } builder;
 
-/* Adds a triangle of three pixels if all are on the object and no side bridges a jump. */
+/* Adds a triangle of three pixels if all are on the object and no side crosses a discontinuity. */
 static void add_triangle(builder *b, size_t p, size_t q, size_t r)
 {
     const uint32_t *v = b->vertex;
@@ -64,7 +64,8 @@ static void add_triangle(builder *b, size_t p, size_t q, size_t r)
     to[2] = v[r];
 }
 
-/* A square of four pixels is cut along its flatter diagonal; a corner outside the mask leaves one triangle. */
+/* Adds the triangles of four pixels, split along the flatter diagonal; with one corner outside the mask there is one
+ * triangle. */
 static void add_square(builder *b, size_t top_left)
 {
     size_t width = (size_t)b->from->depth->width;
@@ -87,7 +88,7 @@ static vec3 corner(const surface_mesh *m, uint32_t v)
     return vec3_of(m->position + 3 * (size_t)v);
 }
 
-/* Sums of the triangles' normals, weighed by area. */
+/* Sums the triangles' normals, weighted by area. */
 static void add_normals(surface_mesh *m)
 {
     for (size_t t = 0; t < m->triangles; t++) {
@@ -162,7 +163,7 @@ status surface_mesh_new(const mesh_source *from, surface_mesh *out)
     out->normal = calloc(3 * n, sizeof *out->normal);
     out->texture = malloc(2 * n * sizeof *out->texture);
     out->pixel = malloc(n * sizeof *out->pixel);
-    /* a vertex is a corner of at most four squares, and a square has a triangle per two of its corners at most */
+    /* a vertex is a corner of at most four squares, and each has at most a triangle per two corners */
     out->index = calloc(6 * n, sizeof *out->index);
     if (vertex && out->position && out->normal && out->texture && out->pixel && out->index)
         build(&(builder){from, out, vertex}, vertex);

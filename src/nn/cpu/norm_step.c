@@ -22,7 +22,7 @@ static void prepare(const nn_step *step, const float *mean, const float *varianc
     }
 }
 
-/* As PyTorch does: the running variance takes the unbiased one. */
+/* Updates running statistics as PyTorch does, with the unbiased variance. */
 static void update_running(const nn_step *step)
 {
     const norm *state = step->state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps each operation to the CPU's way of computing it: a row of a table, and between it and the kernels of
- * nn/cpu/kernels/kernels.h functions that take a step apart. */
+/* Maps each operation to its implementation on the CPU: a row of a table, and functions that unpack a step's tensors
+ * for the kernels of nn/cpu/kernels/kernels.h. */
 #include "nn/cpu/kernels/kernels.h"
 #include "nn/cpu/kernels/steps.h"
 #include "nn/cpu/tuning.h"
@@ -82,7 +82,7 @@ static status slice_forward(nn_step *step)
 
 static status slice_backward(nn_step *step)
 {
-    if (!step->accumulate[0]) cpu_zero(&step->in_gradient[0]); /* the channels beside the slice */
+    if (!step->accumulate[0]) cpu_zero(&step->in_gradient[0]); /* the channels outside the slice */
     cpu_insert_channels(&step->out_gradient, &step->in_gradient[0], step->at.first, step->accumulate[0]);
     return OK;
 }
@@ -260,7 +260,7 @@ static status environment_backward(nn_step *step)
     return OK;
 }
 
-/* The mean over the masks of all ranks, by whose sum the gradients are divided, too. */
+/* Computes the mean over the masks of all ranks, whose sum also divides the gradients. */
 static status sum_loss(nn_step *step)
 {
     if (ranks_count(step->together) == 1) return OK;
@@ -323,9 +323,9 @@ static status fastest_conv_create(nn_step *step)
 enum { READS_IN = 1, READS_OUT = 2 };
 
 typedef struct operation {
-    status (*create)(nn_step *step); /* of a step with a state of its own, in place of all below */
+    status (*create)(nn_step *step); /* for a step with a state of its own, instead of the fields below */
     status (*forward)(nn_step *step), (*backward)(nn_step *step);
-    unsigned reads; /* what backward reads beside out's gradient */
+    unsigned reads; /* what backward reads apart from out's gradient */
 } operation;
 
 static const operation operations[] = {

@@ -32,8 +32,8 @@ static bool is_amd(void)
 }
 #endif
 
-/* AMX computes in bfloat16 many times as fast, and AMD's cores do a bfloat16 product of pairs as often as a float32
- * one. Intel's cores do it a quarter as often: where AMX is missing or hidden, float32 is twice as fast
+/* Chooses the type. AMX computes many times faster in bfloat16, and AMD's cores do as many bfloat16 products of pairs
+ * as float32 products. Intel's cores do a quarter as many: without AMX float32 is twice as fast there
  * (docs/notes/number_type.md). */
 nn_type tuning_fastest_type(void)
 {
@@ -43,23 +43,24 @@ nn_type tuning_fastest_type(void)
 
 /* ---- filtering ---- */
 
-/* Bounds of the layers that are filtered. Weights are then four times as many: with few tiles they cost more to make
- * and to read than is gained, and where nothing is trained more to hold. Passing over pictures of few channels costs
- * more than their products, the more so backwards. */
+/* Bounds of the layers that are computed by filtering. It has four times as many weights: with few tiles they cost more
+ * to compute and to read than is gained, and without training more to hold. Transforming pictures of few channels costs
+ * more than their products, even more so backwards. */
 typedef struct filtered {
     size_t least_tiles;
-    int least_channels;         /* the result's */
-    size_t most_weights_a_tile; /* filtered ones */
+    int least_channels;         /* of the result */
+    size_t most_weights_a_tile; /* filtered weights */
 } filtered;
 
 enum { NEVER = INT_MAX };
 
-/* Measured on Zen 4 (docs/notes/filtered_layers.md). Where nothing is trained, layers of 64 tiles are filtered in
- * float32 up to 160 channels, and not those of 256 that 512×512 pictures have: these would hold 40 MB more. */
+/* Returns the bounds as measured on Zen 4 (docs/notes/filtered_layers.md). Without training, layers of 64 tiles are
+ * filtered in float32 up to 160 channels, and those of 256 channels in 512×512 pictures are not: they would hold 40 MB
+ * more. */
 static filtered filtered_in(nn_type type, bool trained)
 {
 #if defined(__AVX2__) && defined(__FMA__)
-    const bool amx = has_isa(dnnl_cpu_isa_avx512_core_amx); /* computes bfloat16 faster than filtering spares */
+    const bool amx = has_isa(dnnl_cpu_isa_avx512_core_amx); /* computes bfloat16 faster than filtering can save */
     if (type == NN_FLOAT32) return trained ? (filtered){48, 0, SIZE_MAX} : (filtered){64, 0, 12000};
     if (!amx) return trained ? (filtered){48, 48, SIZE_MAX} : (filtered){128, 0, SIZE_MAX};
 #endif

@@ -55,7 +55,7 @@ static void paint_lanes(const material_paint *p, const material_points *at, lane
     if (p->photographed.texture) look_at_photograph(&p->photographed, at, wanted, albedo, roughness);
 }
 
-/* How much of each point a layer covers; returns where it covers any. */
+/* Computes how much of each point a layer covers; returns the points where it covers any. */
 static lane_set cover(const material_layer *l, const material_points *at, lane_set open, float share[LANES])
 {
     lane_set covered = 0;
@@ -71,7 +71,7 @@ static lane_set cover(const material_layer *l, const material_points *at, lane_s
     return covered;
 }
 
-/* Paints and what they leave to see of those beneath. */
+/* The blend of the layers so far, and how much of those below is still visible. */
 typedef struct coat {
     lanes albedo;
     float roughness[LANES], through[LANES];
@@ -101,7 +101,7 @@ void material_eval(const scene_material *material, const material_points *at, la
     float smudge[LANES];
     for (int i = 0; i < LANES; i++)
         c.through[i] = 1;
-    /* from the top, so that what is covered is never looked at */
+    /* from the top, so that covered layers are not evaluated */
     lane_set open = at->wanted;
     for (int k = material->layers - 1; k >= 0 && open; k--)
         open = lay_under(&c, &material->layer[k], at, open);
@@ -116,7 +116,7 @@ void material_eval(const scene_material *material, const material_points *at, la
     }
 }
 
-/* The relief of the ground that shows: the last layer without a mask. */
+/* Adds the normal detail of the visible base: the last layer without a mask. */
 static void add_photographed_slope(const scene_material *material, const material_points *at, int lane,
                                    const lanes tangent[2], float d[2][LANES])
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which paints an object wears: plain, painted, grown or weathered, as objects are. */
+/* Random materials: plain, painted, of natural patterns or weathered, in frequencies as of real objects. */
 #include <stdlib.h>
 
 #include "base/number.h"
@@ -8,7 +8,7 @@
 
 static const uint32_t ALL_PARTS = 0xffffffffu;
 
-/* What the steps of making one material share. */
+/* State shared by the steps of making one material. */
 typedef struct maker {
     rng *r;
     scene_material *out;
@@ -16,7 +16,7 @@ typedef struct maker {
     bool mirrored;
     int parts;
     vec3 palette[PALETTE];
-    float gloss; /* the object's usual roughness */
+    float gloss; /* typical roughness of the object */
 } maker;
 
 static bool chance(maker *m, float p)
@@ -24,7 +24,7 @@ static bool chance(maker *m, float p)
     return rng_uniform(m->r) < p;
 }
 
-/* Log-uniform. */
+/* Returns a log-uniform number. */
 static float scale_between(maker *m, float low, float high)
 {
     return low * powf(high / low, rng_uniform(m->r));
@@ -67,7 +67,7 @@ static material_paint plain_paint(maker *m, vec3 colour)
     return (material_paint){.colours = 1, .colour = {colour}, .roughness = paint_gloss(m)};
 }
 
-/* Almost plain: shades of one colour, as hand-painted or worn surfaces have. */
+/* Returns an almost plain paint: shades of one colour, as on hand-painted or worn surfaces. */
 static material_paint shaded_paint(maker *m, vec3 colour)
 {
     material_paint p = plain_paint(m, colour);
@@ -78,7 +78,7 @@ static material_paint shaded_paint(maker *m, vec3 colour)
     return p;
 }
 
-/* Wood, marble, granite, scales: two or three colours through one strong pattern. */
+/* Returns wood, marble, granite or scales: two or three colours through one strong pattern. */
 static material_paint patterned_paint(maker *m)
 {
     static const pattern_kind KINDS[] = {PATTERN_FBM,     PATTERN_FBM,   PATTERN_TURBULENCE,  PATTERN_CELLS,
@@ -119,7 +119,7 @@ static void add_layer(maker *m, uint32_t parts, const pattern *mask, float opaci
     if (mask) l->mask = *mask;
 }
 
-/* A region with a border, mostly crisp, as of paint. */
+/* Returns a region with a border, mostly sharp, as of paint. */
 static pattern any_region(maker *m)
 {
     static const pattern_kind KINDS[] = {PATTERN_FBM,     PATTERN_FBM,         PATTERN_FBM,        PATTERN_PATCHES,
@@ -138,7 +138,7 @@ static pattern any_region(maker *m)
     return p;
 }
 
-/* A base for each part (often one for all), alike on parts that come in pairs. */
+/* Adds a base for each part (often one for all), the same on paired parts. */
 static void add_bases(maker *m, bool patterned)
 {
     add_layer(m, ALL_PARTS, NULL, 1, patterned ? patterned_paint(m) : any_paint(m));
@@ -150,7 +150,7 @@ static void add_bases(maker *m, bool patterned)
     }
 }
 
-/* Concentric rings of colour around the same places: eyes, targets, petals. */
+/* Adds concentric rings of colour around the same centres: eyes, targets, petals. */
 static void add_rings(maker *m)
 {
     pattern p = pattern_between(m, PATTERN_PATCHES, 1.5f, 4);
@@ -174,7 +174,7 @@ static void add_painting(maker *m)
     if (chance(m, 0.25f)) add_rings(m);
 }
 
-/* Dirt, dust and wear: soft, rough, half transparent; or scratches that shine. */
+/* Adds dirt, dust and wear: soft, rough, half transparent; or shiny scratches. */
 static void add_wear(maker *m)
 {
     bool scratched = chance(m, 0.3f);
@@ -196,7 +196,7 @@ static void add_bump(maker *m, const pattern *p, float frequency, float slope, u
         .parts = parts, .pattern = *p, .height = slope / frequency, .step = min_of(0.01f, 0.08f / frequency)};
 }
 
-/* Grain, dents, scales, hammer marks, cloth: slopes from faint to strong. */
+/* Adds grain, dents, scales, hammer marks or cloth, with slopes from faint to strong. */
 static void add_grain(maker *m)
 {
     static const pattern_kind KINDS[] = {PATTERN_FBM,        PATTERN_FBM,       PATTERN_FBM,
@@ -212,7 +212,7 @@ static void add_grain(maker *m)
     add_bump(m, &p, frequency, chance(m, 0.5f) ? -slope : slope, parts);
 }
 
-/* The border of a painted region, carved or raised. */
+/* Carves or raises the border of a painted region. */
 static void emboss_top_layer(maker *m)
 {
     scene_material *out = m->out;
@@ -220,7 +220,7 @@ static void emboss_top_layer(maker *m)
     if (l->everywhere) return;
     pattern p = l->mask;
     float frequency = vec3_length(p.frame.row[0]), middle = 0.5f * (p.low + p.high);
-    p.low = middle - 0.12f; /* wide enough a slope to catch light */
+    p.low = middle - 0.12f; /* a slope wide enough to be shaded */
     p.high = middle + 0.12f;
     float side = chance(m, 0.5f) ? -1.0f : 1.0f;
     add_bump(m, &p, frequency, side * rng_range(m->r, 0.04f, 0.15f), l->parts);
@@ -265,7 +265,7 @@ scene_material *material_random(rng *r, const triangle_mesh *mesh, const shape_t
 
 void material_apply_textures(scene_material *material, const scene_textures *textures, rng *r)
 {
-    bool worn = rng_uniform(r) < 0.75f; /* the rest stay procedural */
+    bool worn = rng_uniform(r) < 0.75f; /* the others stay procedural */
     for (int i = 0; worn && i < material->layers; i++) {
         material_layer *l = &material->layer[i];
         if (!l->everywhere || (i > 0 && rng_uniform(r) < 0.3f)) continue;

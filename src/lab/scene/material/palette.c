@@ -19,7 +19,7 @@ vec3 colour_hsv(float hue, float saturation, float value)
                      channel(hue, saturation, value, 1));
 }
 
-/* A colour between two, given as hue, saturation and value. */
+/* Returns a random colour between two, given as hue, saturation and value. */
 static vec3 between(rng *r, vec3 low, vec3 high)
 {
     float hue = rng_range(r, low.x, high.x), saturation = rng_range(r, low.y, high.y),
@@ -27,13 +27,13 @@ static vec3 between(rng *r, vec3 low, vec3 high)
     return colour_hsv(hue, saturation, value);
 }
 
-/* Wood, clay, stone, leaves, leather: oranges to greens of low saturation. */
+/* Returns a colour of wood, clay, stone, leaves or leather: orange to green of low saturation. */
 static vec3 natural(rng *r)
 {
     return between(r, (vec3){0.01f, 0.08f, 0.25f}, (vec3){0.3f, 0.6f, 0.92f});
 }
 
-/* Reds to yellows are the commonest paints. */
+/* Returns a colour of paint, most often red to yellow. */
 static vec3 painted(rng *r)
 {
     bool warm = rng_uniform(r) < 0.4f;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Colours that go together: what an object's paints are mixed from. */
+/* Random palettes of matching colours, from which an object's paints are mixed. */
 #ifndef MERLIN_LAB_SCENE_MATERIAL_PALETTE_H
 #define MERLIN_LAB_SCENE_MATERIAL_PALETTE_H
 
@@ -9,10 +9,10 @@
 enum { PALETTE = 6 };
 
 /* Fills colour[PALETTE] with linear albedos in [0.01, 0.95] of one random theme: natural, painted, pale, dark, of one
- * hue, or anything. */
+ * hue, or arbitrary. */
 void palette_random(rng *r, vec3 colour[PALETTE]);
 
-/* Linear colour of hue (turns), saturation and sRGB-encoded value. */
+/* Returns the linear colour of a hue (in turns), saturation and sRGB-encoded value. */
 vec3 colour_hsv(float hue, float saturation, float value);
 
 #endif

@@ -11,7 +11,7 @@ static float wave(float x)
     return 0.5f + 0.5f * sinf(2 * PI * x);
 }
 
-/* Lines of text on the plane the surface faces most. */
+/* Returns lines of text in the coordinate plane that the surface faces most. */
 static float letters(const pattern *p, vec3 q, vec3 facing)
 {
     float ax = fabsf(facing.x), ay = fabsf(facing.y), az = fabsf(facing.z);
@@ -38,7 +38,7 @@ static void patches(const pattern *p, const lanes *q, float out[LANES])
         out[i] = max_of(0, 1 - 0.5f * out[i]);
 }
 
-/* Thin lines in three families of directions. */
+/* Computes thin lines in three families of directions. */
 static void scratches(const pattern *p, const lanes *at, float out[LANES])
 {
     lanes q = *at, s;
@@ -60,7 +60,7 @@ static void scratches(const pattern *p, const lanes *at, float out[LANES])
     }
 }
 
-/* Patterns made of noise, for all lanes at once; false for the others. */
+/* Computes patterns made of noise, for all lanes at once; returns false for other kinds. */
 static bool noise_values(const pattern *p, const lanes *q, float out[LANES])
 {
     switch (p->kind) {
@@ -106,7 +106,7 @@ static void cellular_values(const pattern *p, const lanes *q, float out[LANES])
                                                  : noise_unit(c.id[i] * 0x9e3779b9u);
 }
 
-/* Patterns of few points each, or of functions that have no vector form. */
+/* Returns patterns that need a few points each, or functions without a vector form. */
 static float plain_value(const pattern *p, vec3 q, vec3 facing)
 {
     switch (p->kind) {
@@ -155,7 +155,7 @@ static void choose_centres(rng *r, pattern *p, const triangle_mesh *mesh)
     p->centres = 1 + rng_below(r, PATTERN_CENTRES);
     p->offset = (vec3){0, 0, 0};
     for (int i = 0; i < p->centres; i++) {
-        /* half of the time on something that sticks out, such as an eye, if the mesh has such a part */
+        /* half of the time on something that protrudes, such as an eye, if the mesh has such a part */
         uint32_t triangle = (uint32_t)rng_below(r, (int)mesh->triangle_count);
         int tries = rng_uniform(r) < 0.5f ? 24 : 0;
         while (tries-- > 0 && mesh->part[triangle] == 0)
@@ -193,7 +193,7 @@ void pattern_threshold(pattern *p, float share, float width)
 {
     float at;
     switch (p->kind) {
-    case PATTERN_CELL_EDGES: /* lines: the second region is what lies between them */
+    case PATTERN_CELL_EDGES: /* lines: the second region is between them */
         at = 0.05f + 0.4f * (1 - share);
         break;
     case PATTERN_MARBLE:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Scalar patterns in the solid space of an object: what colours, borders, roughness and normal detail are made from.
+/* Scalar patterns in an object's solid space, from which colours, borders, roughness and normal detail are made.
  *
  *     pattern_values(&pattern, &reference, &facing, lanes_first(count), share);      // in [0, 1]
  */
@@ -32,23 +32,23 @@ enum { PATTERN_CENTRES = 6 };
 
 typedef struct pattern {
     pattern_kind kind;
-    mat3 frame; /* turns and scales the reference: one feature a unit */
+    mat3 frame; /* rotates and scales the reference: one feature a unit */
     vec3 offset;
-    float warp;      /* how far noise bends the space, in units of features */
-    float low, high; /* the raw value's range that becomes 0 .. 1, smoothly; close together for a crisp border */
-    bool mirrored;   /* alike for x and -x */
+    float warp;      /* amplitude of noise added to the position, in units of features */
+    float low, high; /* range of raw values mapped smoothly to 0 .. 1; narrow for a sharp border */
+    bool mirrored;   /* symmetric in x */
     int octaves, centres;
     vec3 centre[PATTERN_CENTRES];
     float sharpness; /* of patches: 2 for ellipsoids, larger for boxes */
     uint32_t seed;
 } pattern;
 
-/* At sixteen points; those not wanted may be anything finite and are given anything. facing: normal of the undeformed
- * surface, by which lettering picks the plane it lies in. */
+/* Evaluates a pattern at sixteen points; those not wanted may hold any finite position and get any value. facing:
+ * normal of the undeformed surface, by which lettering chooses its plane. */
 void pattern_values(const pattern *p, const lanes *reference, const lanes *facing, lane_set wanted, float out[LANES]);
 
-/* A random pattern of a kind, with features of about 1/frequency of the object's radius; centres are taken among the
- * mesh's vertices. Its low and high leave the raw value's whole range. */
+/* Returns a random pattern of a kind, with features of about 1/frequency of the object's radius; centres are vertices
+ * of the mesh. low and high span the whole range of raw values. */
 pattern pattern_random(rng *r, pattern_kind kind, float frequency, const triangle_mesh *mesh, bool mirrored);
 
 /* Sets low and high for two regions with a border of this width (in raw values), the second covering roughly `share`.

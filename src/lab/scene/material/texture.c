@@ -3,7 +3,7 @@
 
 enum { PLANES = 3, MAX_CHANNELS = 3 };
 
-/* A point seen on the three planes: z, x and y across. */
+/* Texture coordinates of a point on the three planes perpendicular to z, x and y. */
 typedef struct planes {
     float u[PLANES], v[PLANES], weight[PLANES];
 } planes;
@@ -16,7 +16,7 @@ static planes see(const texture_place *place, vec3 reference, vec3 facing)
     float sharp[PLANES] = {f.z * f.z, f.x * f.x, f.y * f.y}, sum = 0;
     for (int i = 0; i < PLANES; i++) {
         float s = sharp[i] * sharp[i];
-        p.weight[i] = s * s; /* steep, so that photographs are seldom seen through one another */
+        p.weight[i] = s * s; /* a high power, so that the planes' photographs rarely show through one another */
         sum += p.weight[i];
     }
     for (int i = 0; i < PLANES; i++)
@@ -30,7 +30,7 @@ static int wrapped(int i, int n)
     return i < 0 ? i + n : i;
 }
 
-/* Adds weight × the bilinear value at (u, v), in tiles' widths. */
+/* Adds weight × the bilinear value at (u, v), in tile widths. */
 static void add_tile(const img *tile, float u, float v, float weight, float out[MAX_CHANNELS])
 {
     v *= (float)tile->width / (float)tile->height; /* pixels are square */
@@ -76,5 +76,5 @@ vec3 texture_gradient(const texture_place *place, vec3 reference, vec3 facing)
     for (int i = 0; i < PLANES; i++)
         if (p.weight[i] > 1e-3f) add_tile(&place->texture->slope, p.u[i], p.v[i], p.weight[i], slope[i]);
     vec3 g = {slope[0][0] + slope[2][0], slope[0][1] + slope[1][1], slope[1][0] + slope[2][1]};
-    return mat3_apply_transposed(&place->turn, g); /* back from the texture's axes */
+    return mat3_apply_transposed(&place->turn, g); /* rotates back from the texture's axes */
 }

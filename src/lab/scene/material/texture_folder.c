@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which files of a folder make which material, and their reading. */
+/* Groups a folder's files into materials and reads them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static const struct {
     {"preview", MAP_OTHER},
 };
 
-/* A file of the folder: what it is of the material whose name is the path's first `stem` characters. */
+/* A file of the folder: its kind of map, and its material, named by the path's first `stem` characters. */
 typedef struct source {
     const char *path;
     map_kind kind;
@@ -66,7 +66,7 @@ static bool word_is(const char *at, size_t length, const char *word)
     return strlen(word) == length && strncasecmp(at, word, length) == 0;
 }
 
-/* The stem without its separators, and without "base" of base_color. */
+/* Returns the stem's end without separators and without "base" of base_color. */
 static size_t trimmed(const char *name, size_t start, size_t end)
 {
     while (end > start && separates(name[end - 1]))
@@ -75,8 +75,8 @@ static size_t trimmed(const char *name, size_t start, size_t end)
     return end == start + 4 && word_is(name + start, 4, "base") ? start : end;
 }
 
-/* Whether a name says which map it is and nothing else, its material being the folder: normal.png, nor_gl.png. But a
- * picture of metal is called metal.png. */
+/* Tells whether a name is only a keyword, so that the material is the folder: normal.png, nor_gl.png. metal.png is an
+ * exception, as it usually is a picture of metal. */
 static bool is_bare(const char *name, size_t length)
 {
     size_t first = strcspn(name, "_- ."), rest = first < length ? first + 1 : length;
@@ -84,7 +84,7 @@ static bool is_bare(const char *name, size_t length)
     return (rest == length || form) && !word_is(name, first, "metal");
 }
 
-/* The last word that names a map decides, and not the first of several: a material may be called "metal". */
+/* Classifies a file by the last keyword in its name, as a material may itself be called "metal". */
 static source classify(const char *path)
 {
     size_t start = (size_t)(file_name_of(path) - path), end = (size_t)(strrchr(path, '.') - path);
@@ -118,7 +118,7 @@ static status read_tile(const source *s, img *out)
     return st;
 }
 
-/* Encoded normals to slopes of the height they were taken from. */
+/* Converts encoded normals to slopes of the height. */
 static status slopes(const source *s, const img *normal, img *out)
 {
     static const float STEEPEST = 3;
@@ -154,7 +154,7 @@ static void free_texture(scene_texture *t)
     img_free(&t->slope);
 }
 
-/* The file of a kind that belongs to the same material as `albedo`, or NULL. */
+/* Returns the file of a kind that belongs to the same material as `albedo`, or NULL. */
 static source *partner(source *all, size_t count, const source *albedo, map_kind kind)
 {
     for (size_t i = 0; i < count; i++)
@@ -193,7 +193,7 @@ static status read_materials(source *all, size_t count, const char *folder, scen
     return s;
 }
 
-/* Pictures by content, and what is called like one, so that reading it tells what is wrong. */
+/* Keeps pictures by content, and files named like pictures, so that reading those reports what is wrong. */
 static status keep_pictures(char **names, size_t *count, const char *folder, skipped_files *skipped)
 {
     static const char *const endings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".exr", NULL};

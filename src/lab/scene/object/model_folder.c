@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 
-/* Streams of random numbers, apart from those of other steps. */
+/* Random stream, distinct from those of other steps. */
 enum { STREAM_CHOICE = 0x5ca1ab40 };
 
 static status read_one(const char *path, const char *folder, scene_models *out)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Meshes of a folder as objects for rendering: each drawn as often as the others, deformed so that a few hundred give
- * hundreds of thousands.
+/* Meshes of a folder as objects for rendering: chosen with equal probability and deformed, so that a few hundred give
+ * hundreds of thousands of objects.
  *
  *     scene_models models;
  *     status s = scene_models_read("meshes", &models);
@@ -21,16 +21,16 @@ typedef struct scene_models {
     skipped_files skipped; /* meshes that cannot be read */
 } scene_models;
 
-/* The .ply, .obj, .gltf and .glb files of a folder and of those in it; other files are passed over. MERLIN_BAD_INPUT if
- * none can be read. */
+/* Reads the .ply, .obj, .gltf and .glb files of a folder and its sub-folders; other files are skipped. MERLIN_BAD_INPUT
+ * if none can be read. */
 status scene_models_read(const char *folder, scene_models *out);
 void scene_models_free(scene_models *models);
 
-/* Whether an object is one of them, as is the share of all. */
+/* Tells whether an object is one of these meshes, which holds for the share `share` of all. */
 bool scene_models_chosen(uint64_t seed, uint64_t index, float share);
 
-/* A mesh drawn from (seed, index), a third of them as they are, the others mirrored, stretched, bent, twisted or
- * dented; posed, with a procedural material, as scene_object_from_model does it. */
+/* Makes an object from a mesh chosen by (seed, index): a third of them unchanged, the others mirrored, stretched, bent,
+ * twisted or dented; posed, with a procedural material, as by scene_object_from_model. */
 status scene_object_from_models(const scene_models *models, uint64_t seed, uint64_t index, float fov,
                                 scene_object *out);
 

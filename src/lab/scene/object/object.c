@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Objects put together: shape, pose, material. */
+/* Assembles objects: shape, pose, material. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "lab/scene/shape/mesh_deform.h"
 #include "mesh/read/mesh_read.h"
 
-/* Streams of random numbers, apart so that a change to one step leaves the others' draws alone. */
+/* Random streams, separate so that a change to one step leaves the numbers of the others alone. */
 enum { STREAM_SHAPE = 0x5ca1ab1e, STREAM_POSE, STREAM_MATERIAL, STREAM_TEXTURE, STREAM_DEFORM };
 
 static status check_fov(float fov)

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: MIT */
-/* What rays see on an object: place, normals and material of points on its triangles. */
+/* Evaluates points on an object's triangles: position, normals and material. */
 #include "lab/scene/material/material.h"
 #include "lab/scene/scene.h"
 
-/* Triangles' corners, in camera space and in the material's space, and a point on each. */
+/* Corners of triangles, in camera space and in the material's space, and a point on each. */
 typedef struct corners {
     lanes position[3], normal[3], reference[3];
     float u[LANES], v[LANES];
 } corners;
 
-/* The triangles themselves: edges from the first corner and their cross product, in camera space (p) and in the
- * material's (q). */
+/* The triangles' edges from the first corner and their cross product, in camera space (p) and in the material's (q). */
 typedef struct patches {
     lanes p[2], q[2], cross_p, cross_q;
 } patches;
 
-/* Lanes beyond count repeat the first. */
+/* Gathers the corners; lanes beyond count repeat the first. */
 static void gather_corners(const scene_object *o, const scene_place *places, int count, corners *out)
 {
     for (int i = 0; i < LANES; i++) {
@@ -54,7 +53,7 @@ static void make_patches(const corners *c, patches *out)
     }
 }
 
-/* What the surface is without its material; the normals are the smooth ones. */
+/* The surface without its material; the normals are the smooth ones. */
 typedef struct surfaces {
     lanes position, geometric_normal, normal;
 } surfaces;
@@ -71,8 +70,8 @@ static void interpolate_all(const corners *c, const patches *e, material_points 
     }
 }
 
-/* Bends the normals by the surface gradient, in camera space, of the material's height field (after Mikkelsen 2010):
- * the height's change along the two reference edges, carried to the posed edges and scaled as the triangle was. */
+/* Perturbs the normals by the gradient of the material's height field in camera space (after Mikkelsen 2010): the
+ * height's changes along two reference edges, transferred to the posed edges and scaled as the triangle was. */
 static void bend_normals(const scene_material *material, const patches *e, const material_points *at, lanes *normal)
 {
     lanes tangent[2];
@@ -101,7 +100,7 @@ static void bend_normals(const scene_material *material, const patches *e, const
     }
 }
 
-/* Those bent behind the surface: back to where they just face outward. */
+/* Returns a normal that faces outward: one perturbed beyond that is moved back to grazing. */
 static vec3 outward(vec3 n, vec3 geometric)
 {
     float front = vec3_dot(n, geometric);

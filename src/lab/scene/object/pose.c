@@ -8,9 +8,9 @@
 
 enum { RASTER = 64, ATTEMPTS = 4, STEPS = 9 };
 
-static const float NEAREST = 0.42f, FRAME = 1.9f; /* least depth; largest side, of a frame that is 2 wide */
+static const float NEAREST = 0.42f, FRAME = 1.9f; /* least depth; largest side, in a frame 2 wide */
 
-/* Camera space from object space: stretch (rotation p) + offset. */
+/* Transform from object space to camera space: stretch (rotation p) + offset. */
 typedef struct pose {
     mat3 rotation;
     vec3 stretch, offset;
@@ -26,7 +26,7 @@ static vec3 pose_apply(const pose *at, vec3 p)
     return vec3_add(vec3_mul(at->stretch, mat3_apply(&at->rotation, p)), at->offset);
 }
 
-/* Marks the pixels whose centres lie in the triangle, whichever way it winds. */
+/* Marks the pixels whose centres are inside the triangle, in either winding. */
 static void mark_triangle(uint8_t *mask, const float a[2], const float b[2], const float c[2])
 {
     float low_x = min_of(a[0], min_of(b[0], c[0])), high_x = max_of(a[0], max_of(b[0], c[0]));
@@ -45,7 +45,7 @@ static void mark_triangle(uint8_t *mask, const float a[2], const float b[2], con
     }
 }
 
-/* screen: room for two floats a vertex. */
+/* Measures the silhouette. screen: room for two floats a vertex. */
 static silhouette measure(const triangle_mesh *mesh, const pose *at, float tangent, float (*screen)[2])
 {
     float low_x = 1e9f, high_x = -1e9f, low_y = 1e9f, high_y = -1e9f, nearest = 1e9f;
@@ -90,8 +90,8 @@ static mat3 choose_rotation(rng *r, const shape_traits *traits)
     return random_rotation(r);
 }
 
-/* One step of the search: size toward the target coverage within the frame, then centre. aim is where the middle of the
- * silhouette's box belongs, as a share of the room left in the frame. */
+/* Takes one step of the search: scales toward the target coverage within the frame, then centres. aim: desired position
+ * of the bounding box's middle, as a share of the room left in the frame. */
 static void improve(pose *at, const silhouette *s, float target, float tangent, const float aim[2])
 {
     float width = s->high_x - s->low_x, height = s->high_y - s->low_y;
@@ -113,7 +113,7 @@ static void improve(pose *at, const silhouette *s, float target, float tangent, 
     float depth = (1 - s->nearest) * grow;
     if (depth > 1 - NEAREST) at->stretch.z *= 0.97f * (1 - NEAREST) / depth;
     float room_x = max_of(0, 0.5f * (FRAME - width * grow)), room_y = max_of(0, 0.5f * (FRAME - height * grow));
-    /* growing is about the object's own middle, so the box moves with its distance from there */
+    /* the object grows about its own middle, so that the box's offset from there grows, too */
     float mean_x = 0.5f * (s->low_x + s->high_x), mean_y = 0.5f * (s->low_y + s->high_y);
     at->offset.x += (aim[0] * room_x - mean_x) * tangent;
     at->offset.y += (aim[1] * room_y - mean_y) * tangent;
@@ -124,7 +124,7 @@ static bool in_frame(const silhouette *s)
     return s->low_x > -0.985f && s->high_x < 0.985f && s->low_y > -0.985f && s->high_y < 0.985f;
 }
 
-/* How far a result is from what was asked; 0 is perfect. */
+/* Returns how far a result is from the requirements; 0 is perfect. */
 static float badness(const silhouette *s, float target)
 {
     float bad = fabsf(s->coverage - target) * 0.1f;

@@ -14,7 +14,7 @@ static float segment_distance(float x, float y, const float a[2], const float b[
     return hypotf(x - a[0] - t * dx, y - a[1] - t * dy);
 }
 
-/* One of the nine points a stroke may begin or end at, inside the letter's cell. */
+/* Returns one of the nine points of the letter's cell between which strokes run. */
 static void lattice_point(uint32_t bits, float p[2])
 {
     p[0] = 0.22f + 0.25f * (float)(bits % 3);
@@ -42,7 +42,7 @@ float glyph_ink(float x, float y, float weight, uint32_t seed)
             d = segment_distance(x, y, from, to);
         }
         distance = min_of(distance, d);
-        if (bits % 7 > 1) { /* most strokes go on where the last one ended */
+        if (bits % 7 > 1) { /* most strokes continue where the last one ended */
             from[0] = to[0];
             from[1] = to[1];
         } else {

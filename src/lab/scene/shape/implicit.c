@@ -15,7 +15,7 @@ static float blob_distance(const blob *b, vec3 p)
 {
     vec3 q = mat3_apply_transposed(&b->rotation, vec3_sub(p, b->centre)), s = b->radii;
     switch (b->kind) {
-    case BLOB_ELLIPSOID: { /* first order in the distance: |q/s| (|q/s| - 1) / |q/s²| */
+    case BLOB_ELLIPSOID: { /* to first order: |q/s| (|q/s| - 1) / |q/s²| */
         vec3 a = vec3_make(q.x / s.x, q.y / s.y, q.z / s.z), c = vec3_make(a.x / s.x, a.y / s.y, a.z / s.z);
         float k = vec3_length(a);
         return k * (k - 1) / max_of(vec3_length(c), 1e-6f);
@@ -34,7 +34,7 @@ static float blob_distance(const blob *b, vec3 p)
     }
 }
 
-/* The quadratic smooth minimum: min(a, b), rounded where they are within k. */
+/* Returns the quadratic smooth minimum: min(a, b), rounded where they differ by less than k. */
 static float smooth_minimum(float a, float b, float k)
 {
     float h = max_of(k - fabsf(a - b), 0) / max_of(k, 1e-6f);
@@ -59,7 +59,7 @@ typedef struct field {
     float step;
     int n[3];
     float *value;
-    uint32_t *vertex; /* the mesh vertex of the cell whose lowest corner this is */
+    uint32_t *vertex; /* mesh vertex of the cell whose lowest corner this is */
 } field;
 
 static size_t field_index(const field *f, int i, int j, int k)
@@ -74,8 +74,8 @@ static vec3 field_point(const field *f, float i, float j, float k)
 
 enum { BLOCK = 4 };
 
-/* The blobs that can matter within `reach` of p, where the distance is d: no others come within their blending width.
- */
+/* Returns the blobs that matter within `reach` of p, where the distance is d: no others come within their blending
+ * width. */
 static implicit blobs_near(const implicit *shape, vec3 p, float d, float reach)
 {
     implicit near = {0};
@@ -87,7 +87,7 @@ static implicit blobs_near(const implicit *shape, vec3 p, float d, float reach)
     return near;
 }
 
-/* One block of samples: far from the surface its centre's distance stands for all. */
+/* Samples one block; far from the surface its centre's distance stands for the whole block. */
 static void sample_block(field *f, int i0, int j0, int k0)
 {
     float half = 0.5f * (BLOCK - 1), far = 1.4f * 1.7320508f * (half + 1) * f->step;
@@ -113,7 +113,7 @@ static vec3 onto_surface(const field *f, vec3 p)
     return vec3_fma(p, min_of(far, max_of(-far, move)), g);
 }
 
-/* The vertex of a cell: the mean of the places where its edges cross the surface, then moved onto it. */
+/* Places the vertex of a cell: at the mean of its edges' intersections with the surface, then moved onto it. */
 static void place_vertex(field *f, triangle_mesh *mesh, int i, int j, int k)
 {
     float corner[8];
@@ -140,7 +140,7 @@ static void place_vertex(field *f, triangle_mesh *mesh, int i, int j, int k)
     f->vertex[field_index(f, i, j, k)] = mesh_add_vertex(mesh, onto_surface(f, p));
 }
 
-/* The quad across the lattice edge from `at` along `axis`, if the surface crosses it. */
+/* Adds the quad across the lattice edge from `at` along `axis`, if the surface crosses it. */
 static void join_cells(const field *f, triangle_mesh *mesh, const int at[3], int axis, uint8_t part)
 {
     int next[3] = {at[0] + (axis == 0), at[1] + (axis == 1), at[2] + (axis == 2)};
@@ -156,7 +156,7 @@ static void join_cells(const field *f, triangle_mesh *mesh, const int at[3], int
         corner[here ? c : 3 - c] = f->vertex[field_index(f, cell[0], cell[1], cell[2])];
     }
     for (int c = 0; c < 4; c++)
-        if (corner[c] == UINT32_MAX) return; /* cannot be, but for a rounding at the edge of the field */
+        if (corner[c] == UINT32_MAX) return; /* happens only by rounding at the edge of the lattice */
     mesh_add_quad(mesh, corner[0], corner[1], corner[2], corner[3], part);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Smooth unions of simple solids given by approximate signed distances, turned to triangles by surface nets. */
+/* Smooth unions of simple solids given by approximate signed distances, triangulated by surface nets. */
 #ifndef MERLIN_LAB_SCENE_SHAPE_IMPLICIT_H
 #define MERLIN_LAB_SCENE_SHAPE_IMPLICIT_H
 
@@ -9,11 +9,11 @@ typedef enum blob_kind { BLOB_ELLIPSOID, BLOB_CAPSULE, BLOB_BOX } blob_kind;
 
 typedef struct blob {
     blob_kind kind;
-    bool carve; /* taken away instead of added */
+    bool carve; /* subtracted instead of added */
     vec3 centre;
     mat3 rotation; /* from the solid's axes to the shape's */
     vec3 radii;    /* ellipsoid: radii; capsule: radius at -y, half length, radius at +y; box: half sides */
-    float blend;   /* width over which it melts into those before it */
+    float blend;   /* width of the smooth transition to earlier blobs */
 } blob;
 
 enum { BLOBS = 32 };
@@ -25,7 +25,7 @@ typedef struct implicit {
 /* Adds one blob if there is room. */
 void implicit_add(implicit *shape, blob b);
 
-/* Approximate signed distance, negative inside. */
+/* Returns the approximate signed distance, negative inside. */
 float implicit_distance(const implicit *shape, vec3 p);
 
 /* Adds the surface with about `cells` cells along its longest side (surface nets, Gibson 1998, each vertex then moved

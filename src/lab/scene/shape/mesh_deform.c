@@ -16,7 +16,7 @@ static void mirror(triangle_mesh *mesh)
     }
 }
 
-/* Along axes of its own choice, by up to 1.4 times each. */
+/* Stretches along random axes, by up to 1.4 times each. */
 static void stretch(rng *r, triangle_mesh *mesh)
 {
     const mat3 turn = random_rotation(r);
@@ -32,7 +32,7 @@ void mesh_deform(rng *r, triangle_mesh *mesh)
 {
     bool as_it_is = rng_uniform(r) < 1.0f / 3, mirrored = rng_uniform(r) < 0.5f;
     bool stretched = rng_uniform(r) < 0.6f, bent = rng_uniform(r) < 0.5f, dented = rng_uniform(r) < 0.4f;
-    /* normals of the file are those of the shape it was */
+    /* the file's normals belong to the undeformed shape */
     free(mesh->normal);
     mesh->normal = NULL;
     if (as_it_is) return;

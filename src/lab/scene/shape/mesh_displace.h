@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Relief of noise on a mesh. */
+/* Displacement of a mesh by noise. */
 #ifndef MERLIN_LAB_SCENE_SHAPE_MESH_DISPLACE_H
 #define MERLIN_LAB_SCENE_SHAPE_MESH_DISPLACE_H
 

@@ -79,7 +79,7 @@ void lathe_profile_add_corner(lathe_profile *p, const float from[2], const float
     }
 }
 
-/* One ring of the lathe; on the axis all its vertices are the same one. */
+/* Adds one ring of the lathe; on the axis all its vertices are the same. */
 static void lathe_ring(triangle_mesh *mesh, float radius, float height, int segments, uint32_t *ring)
 {
     if (radius < 1e-5f) {

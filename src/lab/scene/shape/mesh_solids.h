@@ -12,7 +12,7 @@
 
 #include "mesh/mesh.h"
 
-/* The cube [-1, 1]^3 with n x n squares a face, each vertex put where map sends it; map keeps the orientation. */
+/* Adds the cube [-1, 1]^3 with n x n squares a face, each vertex mapped by `map`, which must preserve orientation. */
 void mesh_add_cube_grid(triangle_mesh *mesh, int n, uint8_t part, vec3 (*map)(const void *context, vec3 cube),
                         const void *context);
 
@@ -20,18 +20,19 @@ void mesh_add_cube_grid(triangle_mesh *mesh, int n, uint8_t part, vec3 (*map)(co
 enum { PROFILE_POINTS = 256 };
 typedef struct lathe_profile {
     int count;
-    bool closed; /* a loop that never touches the axis: a ring */
+    bool closed; /* a loop that does not touch the axis: a ring */
     float radius[PROFILE_POINTS], height[PROFILE_POINTS];
 } lathe_profile;
 
 void lathe_profile_add(lathe_profile *p, float radius, float height);
-/* Adds the corner of the way from -> corner -> to, rounded by a curve that leaves it `round` before. */
+/* Adds the corner of the path from -> corner -> to, rounded by a curve that leaves it `round` before. */
 void lathe_profile_add_corner(lathe_profile *p, const float from[2], const float corner[2], const float to[2],
                               float round, int steps);
-/* Turns the profile about the y axis. */
+/* Adds the surface of the profile revolved about the y axis. */
 void mesh_add_lathe(triangle_mesh *mesh, const lathe_profile *p, int segments, uint8_t part);
 
-/* A tube around the polyline path, as wide as radius says at each point, flattened by aspect; its ends are closed. */
+/* Adds a tube along the polyline path, as wide as radius says at each point, flattened by aspect; its ends are closed.
+ */
 void mesh_add_tube(triangle_mesh *mesh, const vec3 *path, const float *radius, int count, int segments, float aspect,
                    uint8_t part);
 

@@ -8,7 +8,7 @@ ALWAYS_INLINE float fade(float t)
     return t * t * t * (t * (t * 6 - 15) + 10);
 }
 
-/* A point within its lattice cube. */
+/* Points relative to their lattice cubes. */
 typedef struct cube {
     int ix, iy, iz;
     float x, y, z;
@@ -25,7 +25,8 @@ ALWAYS_INLINE cube cube_of(vec3 p)
     return (cube){(int)fx, (int)fy, (int)fz, p.x - fx, p.y - fy, p.z - fz};
 }
 
-/* What the corner of the cube at (cx, cy, cz) adds: its gradient times the way from it. */
+/* Returns the contribution of the cube's corner at (cx, cy, cz): the dot product of its gradient and the offset from
+ * it. */
 ALWAYS_INLINE float corner(cube q, int cx, int cy, int cz, uint32_t seed)
 {
     uint32_t h = noise_hash(q.ix + cx, q.iy + cy, q.iz + cz, seed);
@@ -34,7 +35,7 @@ ALWAYS_INLINE float corner(cube q, int cx, int cy, int cz, uint32_t seed)
     return gx * (q.x - (float)cx) + gy * (q.y - (float)cy) + gz * (q.z - (float)cz);
 }
 
-/* Along the edge in x through (cy, cz). */
+/* Interpolates along the edge in x through (cy, cz). */
 ALWAYS_INLINE float edge(cube q, int cy, int cz, float u, uint32_t seed)
 {
     float a = corner(q, 0, cy, cz, seed), b = corner(q, 1, cy, cz, seed);
@@ -69,7 +70,7 @@ void noise_vectors(const lanes *p, uint32_t seed, lanes *out)
     noise_gradients(p, seed + 0x02e5be93u, out->z);
 }
 
-/* Not exactly 2, so that lattice planes of the octaves do not fall together. */
+/* Ratio of the octaves' frequencies: not exactly 2, so that their lattice planes do not coincide. */
 static const float lacunarity = 2.03f;
 
 float noise_fbm(vec3 p, int octaves, uint32_t seed)
@@ -96,7 +97,7 @@ float noise_turbulence(vec3 p, int octaves, uint32_t seed)
     return sum / total;
 }
 
-/* Both sums over octaves, of the noise or of its absolute value. */
+/* Sums octaves of the noise or of its absolute value. */
 static void octaves_of(const lanes *p, int octaves, uint32_t seed, bool absolute, float out[LANES])
 {
     lanes q = *p;
@@ -127,8 +128,7 @@ void noise_turbulences(const lanes *p, int octaves, uint32_t seed, float out[LAN
     octaves_of(p, octaves, seed, true, out);
 }
 
-/* The cells around a point's own, and behind them some so far away that they never matter: a whole number of vectors.
- */
+/* Cells around a point's own, padded to a whole number of vectors by cells so far away that they never matter. */
 enum { CELLS = 27, PADDED = 32, AWAY = 1000 };
 static const int cell_x[PADDED] = {-1, 0, 1,  -1, 0, 1,  -1, 0, 1,  -1, 0, 1,    -1,   0,    1,    -1,
                                    0,  1, -1, 0,  1, -1, 0,  1, -1, 0,  1, AWAY, AWAY, AWAY, AWAY, AWAY};
@@ -137,7 +137,7 @@ static const int cell_y[PADDED] = {-1, -1, -1, 0, 0,  0,  1,  1, 1, -1, -1, -1, 
 static const int cell_z[PADDED] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0,
                                    0,  0,  0,  0,  1,  1,  1,  1,  1,  1, 1, 1, 1};
 
-/* Squared distance to the feature point of the cell x, y, z away, and its hash. */
+/* Returns the squared distance to the feature point of the cell at offset x, y, z, and its hash. */
 ALWAYS_INLINE float feature_distance(cube q, int x, int y, int z, uint32_t seed, uint32_t *id)
 {
     uint32_t h = noise_hash(q.ix + x, q.iy + y, q.iz + z, seed);
@@ -168,7 +168,7 @@ noise_cell noise_cellular(vec3 p, uint32_t seed)
     return (noise_cell){sqrtf(first), sqrtf(second), id[nearest]};
 }
 
-/* Takes the features of one of the cells around each point into account. */
+/* Updates the two nearest features by the feature point of one of the cells around each point. */
 static void meet_cell(const cubes *q, int x, int y, int z, uint32_t seed, noise_cells *out)
 {
 #pragma omp simd

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Solid noise without tables or state: lattice hashes alone, so that any thread may evaluate it anywhere.
+/* Solid noise without tables or state: it depends on lattice hashes alone, so that any thread may evaluate it anywhere.
  *
  *     float height = noise_fbm(vec3_scale(p, 3), 4, seed);
- *     noise_fbms(&points, 4, seed, heights);      the same for sixteen points, which costs little more
+ *     noise_fbms(&points, 4, seed, heights);      the same for sixteen points, for little more time
  */
 #ifndef MERLIN_LAB_SCENE_SHAPE_NOISE_H
 #define MERLIN_LAB_SCENE_SHAPE_NOISE_H
@@ -11,7 +11,7 @@
 
 #include "base/lanes.h"
 
-/* Well-mixed bits of a lattice point. */
+/* Returns well-mixed bits of a lattice point. */
 static inline uint32_t noise_hash(int x, int y, int z, uint32_t seed)
 {
     uint32_t h = ((uint32_t)x * 0x8da6b343u) ^ ((uint32_t)y * 0xd8163841u) ^ ((uint32_t)z * 0xcb1ab31fu) ^ seed;
@@ -20,7 +20,7 @@ static inline uint32_t noise_hash(int x, int y, int z, uint32_t seed)
     return h ^ (h >> 15);
 }
 
-/* The hash as a number in [0, 1). */
+/* Converts a hash to a number in [0, 1). */
 static inline float noise_unit(uint32_t hash)
 {
     return (float)(hash >> 8) * 0x1p-24f;
@@ -30,7 +30,7 @@ static inline float noise_unit(uint32_t hash)
 float noise_gradient(vec3 p, uint32_t seed);
 void noise_gradients(const lanes *p, uint32_t seed, float out[LANES]);
 
-/* Three independent gradient noises a point. */
+/* Computes three independent gradient noises a point. */
 void noise_vectors(const lanes *p, uint32_t seed, lanes *out);
 
 /* Sum of octaves, each half as high and twice as fine, in about [-1, 1]. */

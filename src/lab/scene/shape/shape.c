@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What several classes of shapes share: rotations, ellipsoids, bending. */
+/* Functions shared by several classes of shapes: rotations, ellipsoids, bending. */
 #include "lab/scene/shape/shape.h"
 #include "lab/scene/shape/mesh_displace.h"
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Smooth implicit bodies: heaps of melted solids, and figures with body, head, limbs, ears and eyes, alike on both
- * sides, as toys and figurines are. */
+/* Smooth implicit bodies: clusters of blended solids, and symmetric figures with body, head, limbs, ears and eyes, as
+ * toys and figurines have. */
 #include "base/number.h"
 #include "lab/scene/shape/implicit.h"
 #include "lab/scene/shape/shape.h"
 
-/* Cells along the longest side: the longer and thinner the body, the fewer triangles a cell count makes. */
+/* Cells along the longest side; long and thin bodies get fewer triangles. */
 enum { CELLS = 68 };
 
 static blob make_blob(blob_kind kind, vec3 centre, vec3 radii, vec3 angles, float blend)
@@ -17,7 +17,7 @@ static void add_pair(implicit *shape, blob b)
 {
     implicit_add(shape, b);
     b.centre.x = -b.centre.x;
-    /* mirroring a rotation in x = 0 turns the signs of the entries that mix x with y and z */
+    /* mirroring a rotation in x = 0 changes the sign of the entries that mix x with y and z */
     b.rotation.row[0].y = -b.rotation.row[0].y;
     b.rotation.row[0].z = -b.rotation.row[0].z;
     b.rotation.row[1].x = -b.rotation.row[1].x;
@@ -123,7 +123,7 @@ static figure add_figure(rng *r, implicit *shape)
     return f;
 }
 
-/* Balls set halfway into the head, found by walking from its centre outward to the surface. */
+/* Adds balls set halfway into the head, whose surface is found by stepping outward from its centre. */
 static void add_eyes(rng *r, triangle_mesh *mesh, const implicit *shape, const figure *f)
 {
     float out = rng_range(r, 0.3f, 0.75f), up = rng_range(r, 0, 0.5f),

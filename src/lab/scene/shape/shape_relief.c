@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Nearly flat things with fine relief on their front: coins, plaques, tablets, tiles, cushions, folded sheets. */
+/* Nearly flat objects with fine relief on their front: coins, plaques, tablets, tiles, cushions, folded sheets. */
 #include "base/number.h"
 #include "lab/scene/shape/glyph.h"
 #include "lab/scene/shape/noise.h"
@@ -8,7 +8,7 @@
 enum { GRID = 116 };
 
 typedef struct relief {
-    float width, height, thickness, square; /* outline: 2 for an ellipse, large for a rectangle */
+    float width, height, thickness, square; /* square: the outline's exponent, 2 for an ellipse */
     float bevel, bulge, curl;
     float fbm, fbm_frequency, ridge, ridge_frequency, cells, cell_frequency, letters, letter_size, folds,
         fold_frequency;
@@ -17,7 +17,7 @@ typedef struct relief {
     uint32_t seed;
 } relief;
 
-/* Maps the square [-1, 1]² to the superellipse, keeping rays from the middle. */
+/* Maps the square [-1, 1]² to the superellipse, preserving rays from the middle. */
 static void to_outline(const relief *f, float u, float v, float *x, float *y)
 {
     float reach = max_of(fabsf(u), fabsf(v)), length = 1;
@@ -45,7 +45,7 @@ static float relief_height(const relief *f, float x, float y)
     return h;
 }
 
-/* The front surface above the grid point at (u, v) in [-1, 1]². */
+/* Returns the front surface above the grid point at (u, v) in [-1, 1]². */
 static vec3 front_point(const relief *f, float u, float v)
 {
     float x, y, edge = 1 - max_of(fabsf(u), fabsf(v));
@@ -80,7 +80,7 @@ static relief random_relief(rng *r)
     return f;
 }
 
-/* The flat back: a fan around the middle, and the wall up to the front's border. */
+/* Adds the flat back: a fan around the middle, and the wall up to the front's border. */
 static void close_back(triangle_mesh *mesh, const relief *f, const uint32_t *grid)
 {
     enum { BORDER = 4 * GRID };
@@ -121,7 +121,7 @@ void shape_relief(rng *r, triangle_mesh *mesh, shape_traits *traits)
         }
     close_back(mesh, &f, grid);
     float k = clamp(f.curl, -1, 1);
-    for (uint32_t i = 0; i < mesh->vertex_count && fabsf(k) > 0.02f; i++) { /* bent over an upright cylinder */
+    for (uint32_t i = 0; i < mesh->vertex_count && fabsf(k) > 0.02f; i++) { /* bends it over an upright cylinder */
         vec3 p = mesh->position[i];
         float angle = k * p.x, radius = 1 / k + p.z;
         mesh->position[i] = vec3_make(radius * sinf(angle), p.y, radius * cosf(angle) - 1 / k);

@@ -6,7 +6,7 @@
 
 enum { KNOTS = 8 };
 
-/* Catmull-Rom through `count` equally spaced knots at t in [0, 1]. */
+/* Interpolates `count` equally spaced knots at t in [0, 1] (Catmull-Rom). */
 static float spline(const float *knot, int count, float t)
 {
     float x = t * (float)(count - 1);
@@ -64,7 +64,7 @@ static void vessel(rng *r, lathe_profile *p, outline *o)
     add_bottom(p, o);
     add_side(p, o, steps);
     float rim = outline_radius(o, 1), h = o->half_height;
-    for (int i = 1; i < 6; i++) { /* half round rim */
+    for (int i = 1; i < 6; i++) { /* half-round rim */
         float a = PI * (float)i / 6;
         lathe_profile_add(p, rim - 0.5f * wall * (1 - cosf(a)), h + 0.5f * wall * sinf(a));
     }
@@ -88,7 +88,7 @@ static void lathed_solid(rng *r, lathe_profile *p, outline *o)
     }
 }
 
-/* A ball or egg with dimpled or pointed ends: fruit, pebbles, eggs. */
+/* Makes a ball or egg with dimpled or pointed ends: fruit, pebbles, eggs. */
 static void fruit(rng *r, lathe_profile *p)
 {
     float tall = rng_range(r, 0.75f, 1.5f), egg = rng_range(r, -0.25f, 0.25f);
@@ -112,7 +112,7 @@ static void ring(rng *r, lathe_profile *p)
     }
 }
 
-/* Flutes: the radius waves around the axis, perhaps twisting with height. */
+/* Adds flutes: the radius varies around the axis, possibly twisting with height. */
 static void flute(rng *r, triangle_mesh *mesh)
 {
     int count = 3 + rng_below(r, 22);

@@ -10,7 +10,7 @@ typedef struct radial {
     vec3 axes;
     float exponent_side, exponent_height; /* 2: ellipsoid; large: box; 1: octahedron */
     int planes;
-    vec3 plane[PLANES]; /* outward direction over distance */
+    vec3 plane[PLANES]; /* outward direction divided by distance */
     float sharpness;
 } radial;
 
@@ -21,7 +21,7 @@ static float superellipsoid_radius(const radial *s, vec3 d)
     return powf(all, -1 / s->exponent_height);
 }
 
-/* The p-norm of the distances to the planes rounds the polyhedron's edges. */
+/* Returns the polyhedron's radius; a p-norm of the distances to the planes rounds its edges. */
 static float polyhedron_radius(const radial *s, vec3 d)
 {
     float sum = 0;
@@ -52,7 +52,7 @@ static radial random_polyhedron(rng *r)
         s.plane[i] = random_direction(r);
         s.plane[i] = vec3_scale(s.plane[i], 1 / rng_range(r, 0.6f, 1));
     }
-    for (int k = 0; k < 6 && s.planes <= PLANES - 1; k++) { /* a cage, so that no direction is open */
+    for (int k = 0; k < 6 && s.planes <= PLANES - 1; k++) { /* a cage, so that the body is closed */
         float sign = k % 2 ? -1 : 1, far = rng_range(r, 0.7f, 1.1f);
         s.plane[s.planes++] =
             vec3_make(k / 2 == 0 ? sign / far : 0, k / 2 == 1 ? sign / far : 0, k / 2 == 2 ? sign / far : 0);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Unions of 1 to 9 cubes, ellipsoids and cylinders, each deformed by a random smooth height field (Xu et al. 2018);
- * one in ten put together as a toy on wheels. */
+/* Unions of 1 to 9 cubes, ellipsoids and cylinders, each deformed by a random smooth height field (Xu et al. 2018); one
+ * in ten assembled as a toy on wheels. */
 #include "base/number.h"
 #include "lab/scene/shape/mesh_solids.h"
 #include "lab/scene/shape/shape.h"
@@ -10,7 +10,7 @@ typedef struct rounded_box {
     float round;
 } rounded_box;
 
-/* The outer quarter of each side of the cube grid goes to the rounded edge. */
+/* Maps the cube grid to a rounded box; the outer quarter of each side becomes the rounded edge. */
 static vec3 map_rounded_box(const void *context, vec3 cube)
 {
     const rounded_box *box = context;
@@ -82,7 +82,7 @@ static void place_box(triangle_mesh *mesh, vec3 half, float round, vec3 at, uint
     mesh_transform(mesh, first, &one, at, true);
 }
 
-/* A disc lying in the xy plane, its edge rounded and its face a little hollow. */
+/* Adds a disc in the xy plane, its edge rounded and its face slightly concave. */
 static void place_wheel(triangle_mesh *mesh, float radius, float width, vec3 at, uint8_t part)
 {
     float hub = 0.6f * radius, points[4][2] = {{hub, -width}, {radius, -width}, {radius, width}, {hub, width}};
@@ -99,7 +99,7 @@ static void place_wheel(triangle_mesh *mesh, float radius, float width, vec3 at,
     mesh_transform(mesh, first, &on_its_side, at, true);
 }
 
-/* A toy car, engine or cart along x: a body, perhaps a cabin and a bonnet, four or six wheels (part 2). */
+/* Makes a toy car, engine or cart along x: a body, perhaps a cabin and a bonnet, four or six wheels (part 2). */
 static void vehicle(rng *r, triangle_mesh *mesh, shape_traits *traits)
 {
     float length = rng_range(r, 0.7f, 1), height = rng_range(r, 0.15f, 0.35f), width = rng_range(r, 0.3f, 0.5f);
@@ -131,7 +131,7 @@ void shape_union(rng *r, triangle_mesh *mesh, shape_traits *traits)
     int count = 1 + rng_below(r, 9), n = (int)sqrtf(26000.0f / (12.0f * (float)count));
     n = n < 16 ? 16 : n > 42 ? 42 : n;
     vec3 place = {0, 0, 0};
-    bool regular = rng_uniform(r) < 0.3f; /* axes aligned, as made things are */
+    bool regular = rng_uniform(r) < 0.3f; /* axis-aligned, as manufactured objects are */
     for (int i = 0; i < count; i++) {
         uint32_t first = mesh->vertex_count;
         add_primitive(r, mesh, n, (uint8_t)i);
@@ -143,7 +143,7 @@ void shape_union(rng *r, triangle_mesh *mesh, shape_traits *traits)
         if (regular) m = (mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
         for (int k = 0; k < 3; k++)
             m.row[k] = vec3_scale(m.row[k], size);
-        /* each next one starts at or near the surface of those before, so that all hang together */
+        /* each one begins at or near the surface of those before, so that all are connected */
         float far = rng_range(r, 0.35f, 0.44f + 0.44f * size);
         vec3 away = vec3_fma(place, far, random_direction(r));
         if (i > 0) mesh_transform(mesh, first, &m, away, true);

@@ -62,7 +62,7 @@ status dnn_argument_of(dnn_call *call, const dnn_context *context, int kind, con
     return s;
 }
 
-/* Machine code is made here, in memory that oneDNN does not ask twice about. */
+/* Makes a primitive. oneDNN generates machine code here, and does not check whether it got memory for it. */
 static status make_primitive(dnn_call *call, const char *what)
 {
     enum { MOST_CODE = 32 << 20 };

@@ -2,7 +2,8 @@
 /* Convolutions by oneDNN.
  *
  * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
- * layout and type it asked for, made anew after every change, with batch norm by running statistics folded into it. */
+ * layout and type it asked for, converted again after every change, with batch norm by running statistics folded into
+ * it. */
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -13,7 +14,7 @@
 
 typedef struct conv {
     dnn_call forward, data, weights;
-    dnn_call convert, convert_back, collect; /* weights to forward and data; gradient from weights */
+    dnn_call convert, convert_back, collect; /* weights to forward and backward-data; gradient from weights */
     dnn_shape plain;                         /* the float32 weights */
     void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
     bool has_bias;
@@ -35,11 +36,11 @@ static dnn_shape bias_shape(const nn_step *step)
     return (dnn_shape){1, {step->out.c}, dnnl_f32, dnnl_a};
 }
 
-/* Strides and padding: (k - 1)/2 before, the rest behind. */
+/* Returns the convolution with its strides and padding: (k - 1)/2 before, the rest behind. */
 static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind)
 {
     int k = step->at.kernel, stride = step->at.stride, before = (k - 1) / 2, behind = k - stride - before;
-    if (behind < 0) behind = 0; /* a kernel smaller than its stride leaves pixels out */
+    if (behind < 0) behind = 0; /* a kernel smaller than its stride skips pixels */
     return (dnn_convolution){
         .kind = kind,
         .source = dnn_activation(&step->in[0], step->compute),
@@ -63,7 +64,8 @@ static status describe_forward(nn_step *step, conv *state)
     return dnn_describe(&state->forward, step->context, &wanted);
 }
 
-/* The forward primitive that oneDNN wants as a hint for backward: without float32 output and post-operations. */
+/* Describes the forward primitive that oneDNN needs as a hint for backward: without float32 output and post-operations.
+ */
 static status describe_hint(nn_step *step, dnn_call *hint)
 {
     nn_step bare = *step;
@@ -82,9 +84,10 @@ static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
     return dnn_describe(&state->data, step->context, &wanted);
 }
 
-/* With fewer than 16 channels, the weights' gradient of oneDNN 2.6.3's 1×1 convolution with a stride differs from run
- * to run of the same numbers, by up to a quarter. It packs the pixels it needs first, maybe by 16 channels and over the
- * next thread's; to be safe, no rest of channels is left to it. */
+/* Tells whether oneDNN's gradient may differ from run to run. With fewer than 16 channels, the weights' gradient of
+ * oneDNN 2.6.3's 1×1 convolution with a stride differs by up to a quarter between runs on the same numbers, probably
+ * because it packs pixels by 16 channels into the next thread's part. To be safe, channel counts that leave a remainder
+ * are computed otherwise. */
 static bool differs_from_run_to_run(const nn_step *step)
 {
     return step->at.kernel == 1 && step->at.stride > 1 && step->in[0].c % 16 != 0;
@@ -117,7 +120,7 @@ static status describe_backward(nn_step *step, conv *state)
     if (s == OK && step->wants[0]) s = own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
     if (s != OK) return s;
     size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
-    /* prepared gradient, unaccumulated gradient of the input, oneDNN's own */
+    /* prepared gradient, gradient of the input before accumulation, oneDNN's own */
     step->backward_scratch =
         conv_prepared_bytes(step) + conv_align(tensor_bytes(&step->in[0])) + (data > weights ? data : weights);
     return OK;
@@ -164,7 +167,7 @@ static status bind_forward(nn_step *step, conv *state)
     return s == OK ? dnn_make(call, step->forward_space, context) : s;
 }
 
-/* Places in the backward scratch. */
+/* Return the positions of these parts of the backward scratch. */
 static char *prepared_place(const nn_step *step)
 {
     return step->backward_space;
@@ -226,7 +229,7 @@ static status conv_bind(nn_step *step)
     return s;
 }
 
-/* Where they are used first: oneDNN keeps the number of threads of where it was asked for them. */
+/* Makes the conversions where they are first used: oneDNN fixes the number of threads at the one in force then. */
 static status make_conversions(const nn_step *step, conv *state)
 {
     const dnn_context *context = step->context;
@@ -248,7 +251,7 @@ static status conv_refresh(nn_step *step)
     conv *state = step->state;
     status s = is_made(&state->convert) ? OK : make_conversions(step, state);
     if (s != OK) return s;
-    /* into the scratch of forward, which is free between runs */
+    /* into the forward scratch, which is free between runs */
     conv_make_weights(step, step->forward_space, state->folded_bias);
     s = dnn_run(&state->convert, step->context);
     if (s == OK && is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Convolutions in oneDNN's own words, by version 2 or 3, whichever the header is of. */
+/* Descriptions of convolutions for oneDNN's version 2 or 3, by the header's version. */
 #include <string.h>
 
 #include "nn/cpu/dnn/dnn.h"
@@ -29,7 +29,7 @@ static dnnl_status_t describe_operation(const dnn_convolution *c, const memories
                                               c->strides, c->before, c->behind);
 }
 
-/* A walk over implementations; the iterator goes on reading the operation, so both stay together. */
+/* An iteration over implementations; the iterator keeps reading the operation, so that both stay together. */
 typedef struct walk {
     dnnl_convolution_desc_t operation;
     dnnl_primitive_desc_iterator_t at;
@@ -69,7 +69,7 @@ static dnnl_status_t append_relu(dnnl_post_ops_t post)
     return dnnl_post_ops_append_eltwise(post, dnnl_eltwise_relu, 0, 0);
 }
 
-/* A walk over implementations, which a description does by itself. */
+/* An iteration over implementations, which in this version a description does itself. */
 typedef struct walk {
     dnnl_primitive_desc_t at; /* borrowed */
 } walk;

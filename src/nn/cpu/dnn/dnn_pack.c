@@ -10,13 +10,13 @@ struct dnn_packing {
     const float *source;
     void *target;
     bool bfloat16;
-    uint32_t place[]; /* place in the target of each value of the source, in values */
+    uint32_t place[]; /* position in the target of each value of the source */
 };
 
 #if DNNL_VERSION_MAJOR >= 3
 
-/* A blocked layout: the sizes with padding, and how far apart neighbours are along each dimension, outside of the inner
- * blocks and within them. */
+/* A blocked layout: padded sizes, and the distances between neighbours along each dimension, outside the inner blocks
+ * and inside them. */
 typedef struct blocking {
     const dnnl_dims_t *padded, *strides, *blocks, *dimensions;
     int32_t block_count;
@@ -43,7 +43,7 @@ static bool is_padded(const blocking *b, const dnn_shape *from)
     return false;
 }
 
-/* Returns where a value lies; its indices are used up. */
+/* Returns the position of a value; overwrites its indices. */
 static uint32_t place_of(const blocking *b, int rank, dnnl_dims_t index)
 {
     dnnl_dim_t place = 0, step = 1;

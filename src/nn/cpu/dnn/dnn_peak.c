@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The machine's peak: the rate of a convolution that everything favours. */
+/* The machine's peak rate, measured by a convolution of the most favourable shape. */
 #include <string.h>
 
 #include "base/memory.h"
@@ -9,7 +9,7 @@
 
 typedef status (*pass)(nn_step *step);
 
-/* The best of many runs, after one to warm up: whatever else the machine does only slows some of them. */
+/* Returns the best rate of many runs, after one to warm up: other work on the machine only slows some of them. */
 static status best_rate(nn_step *step, pass run, double flops, double *rate)
 {
     enum { RUNS = 24 };
@@ -24,7 +24,8 @@ static status best_rate(nn_step *step, pass run, double flops, double *rate)
     return OK;
 }
 
-/* Written, so that no page is the system's one page of zeros, which would always be in the cache. */
+/* Allocates memory and writes to it: untouched pages all map to one page of zeros, which would always be in the cache.
+ */
 static void *new_written(size_t bytes)
 {
     void *memory = memory_new(bytes);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Operations that pick, repeat, weigh or sum whole pixels: runs of channels. */
+/* Operations that select, repeat, weight or sum whole pixels: runs of channels. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include <assert.h>
@@ -14,7 +14,7 @@ static size_t pixel_count(const cpu_tensor *t)
     return (size_t)t->n * (size_t)t->h * (size_t)t->w;
 }
 
-/* So many pixels that their channels fill about a chunk. */
+/* Returns the number of pixels whose channels fill about a chunk. */
 static size_t pixels_per_tile(const cpu_tensor *t)
 {
     assert(t->c <= CPU_MAX_CHANNELS);
@@ -95,7 +95,7 @@ void cpu_tile(const cpu_tensor *x, cpu_tensor *y)
     }
 }
 
-/* sum[c] += Σ over a row's pixels, in float within the row and in double between rows */
+/* Adds a row's pixels: sum[c] += Σ, in float within the row and in double between rows. */
 static void sum_row(const cpu_tensor *t, size_t row, double *sum)
 {
     size_t channels = (size_t)t->c, width = (size_t)t->w;
@@ -110,7 +110,7 @@ static void sum_row(const cpu_tensor *t, size_t row, double *sum)
         sum[c] += partial[c];
 }
 
-/* to = scale times the sum of from's pixels, one image at a time. */
+/* Computes to = scale times the sum of from's pixels, one image at a time. */
 static void sum_images(const cpu_tensor *from, cpu_tensor *to, double scale, bool accumulate)
 {
     size_t channels = (size_t)to->c, height = (size_t)from->h, batch = (size_t)from->n;
@@ -151,7 +151,7 @@ void cpu_spatial_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumu
     }
 }
 
-/* q[i, c] = p[i, c]·gate[i] */
+/* Computes q[i, c] = p[i, c]·gate[i]. */
 static void weigh(const float *p, const float *gate, float *q, size_t pixels, size_t channels)
 {
     for (size_t i = 0; i < pixels; i++) {
@@ -187,7 +187,8 @@ void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y)
     }
 }
 
-/* The inputs in their order: what is gated by itself has one gradient, written first and added to then. */
+/* Writes the inputs' gradients in their order: where an input is its own gate there is one gradient, written first and
+ * then added to. */
 void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
                        bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate)
 {
@@ -210,7 +211,7 @@ void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_te
     }
 }
 
-/* Shorter vectors than this have no direction: divided by it, and no gradient flows. */
+/* Shortest vector that is normalized; shorter ones are divided by this length, and pass no gradient. */
 static const float shortest = 1e-6f;
 
 static inline float length(const float *x, size_t channels)
@@ -237,7 +238,7 @@ void cpu_normalize(const cpu_tensor *x, cpu_tensor *y)
     for (size_t row = 0; row < rows; row++) {
         const float *p = (const float *)x->data + row * width * channels;
         float *q = (float *)y->data + row * width * channels;
-        /* normals have 3 channels: a constant count lets the compiler unroll */
+        /* normals have 3 channels: with a constant count the compiler unrolls the loop */
         if (channels == 3)
             normalize(p, q, width, 3);
         else
@@ -251,7 +252,7 @@ typedef struct normalize_gradient {
     bool accumulate;
 } normalize_gradient;
 
-/* d(x/|x|): the part of dy across y, over the length */
+/* Computes the gradient of x/|x|: the part of dy perpendicular to y, divided by the length. */
 static inline void normalize_backward(const normalize_gradient *g, size_t pixels, size_t channels)
 {
     for (size_t i = 0; i < pixels; i++) {

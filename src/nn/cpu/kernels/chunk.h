@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tensors as runs of floats: the kernels of this folder are written once, on float32 chunks that stay in the first
+/* Tensors as runs of floats: the kernels of this folder are written once, on float32 chunks that fit the first-level
  * cache, whatever type the tensor has in memory.
  *
  *     float room_x[CPU_CHUNK], room_y[CPU_CHUNK];
@@ -18,8 +18,8 @@
 #include "nn/cpu/kernels/kernels.h"
 
 enum {
-    CPU_CHUNK = 1024,         /* elements; three or four such buffers fit the first cache */
-    CPU_PARALLEL_MIN = 16384, /* below this many elements waking a second thread costs more than it saves */
+    CPU_CHUNK = 1024,         /* elements; three or four such buffers fit the first-level cache */
+    CPU_PARALLEL_MIN = 16384, /* below this many elements, waking a second thread costs more than it saves */
 };
 
 static inline size_t cpu_element_size(const cpu_tensor *t)
@@ -27,7 +27,7 @@ static inline size_t cpu_element_size(const cpu_tensor *t)
     return t->type == NN_FLOAT32 ? sizeof(float) : sizeof(uint16_t);
 }
 
-/* Elements [at, at + count) as floats: in place, or converted into buffer. */
+/* Returns elements [at, at + count) as floats: in place, or converted into buffer. */
 static inline const float *cpu_load(const cpu_tensor *t, size_t at, size_t count, float *buffer)
 {
     if (t->type == NN_FLOAT32) return (const float *)t->data + at;
@@ -38,7 +38,7 @@ static inline const float *cpu_load(const cpu_tensor *t, size_t at, size_t count
     return buffer;
 }
 
-/* Where to compute the values that cpu_store will put at element `at`. */
+/* Returns where to compute the values that cpu_store will put at element `at`. */
 static inline float *cpu_target(const cpu_tensor *t, size_t at, float *buffer, bool accumulate)
 {
     return t->type == NN_FLOAT32 && !accumulate ? (float *)t->data + at : buffer;

@@ -41,8 +41,8 @@ status conv_own_folded_bias(nn_step *step, void **bias)
     return step->folded.weight ? conv_own(step, (size_t)step->out.c * sizeof(float), bias) : OK;
 }
 
-/* What batch norm multiplies channel o of the result with; its bias goes among the others, which are NULL where there
- * is nothing to fold. */
+/* Returns batch norm's factor for output channel o and stores its bias in folded_bias; where there is no batch norm to
+ * fold, these are 1 and NULL. */
 static float fold(const nn_step *step, int o, float *folded_bias)
 {
     if (!folded_bias) return 1;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Structural dissimilarity as a loss (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, Image quality assessment:
- * from error visibility to structural similarity, IEEE TIP 13(4), 2004): a window around every pixel, black beyond the
+ * from error visibility to structural similarity, IEEE TIP 13(4), 2004): a window around every pixel, black outside the
  * mask and the frame, so that windows without any of the object cost nothing.
  *
- * A plane (one channel of one picture) is a thread's; planes are summed in order: the same bits whatever the number of
- * threads. */
+ * Each plane (one channel of one picture) is computed by one thread, and planes are summed in order: the same bits for
+ * any number of threads. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,13 +31,12 @@ static operands operands_of(const cpu_tensor *prediction, const cpu_tensor *targ
     return o;
 }
 
-/* What a thread works with: one channel of one picture, of it the rectangle that windows with some of the object touch.
- */
+/* A thread's work: one channel of one picture, restricted to the rectangle whose windows contain some of the object. */
 typedef struct plane {
     size_t top, left, height, width;
     float *x, *y;                  /* prediction and target times the mask */
-    float *mx, *my, *xx, *yy, *xy; /* the windows' means of them and of their products */
-    float *rows, *line;            /* for blur, with a margin of REACH above and below, left and right */
+    float *mx, *my, *xx, *yy, *xy; /* windowed means of them and of their products */
+    float *rows, *line;            /* buffers of blur, with a margin of REACH above and below, left and right */
     float *memory;
 } plane;
 
@@ -66,7 +65,7 @@ static inline void blur_line(const operands *o, const float *from, size_t step, 
     }
 }
 
-/* In place: weighted means over the window, zero beyond the rectangle. */
+/* Replaces values by weighted means over the window, zero beyond the rectangle. */
 static void blur(const operands *o, plane *p, float *image)
 {
     size_t width = p->width, margin = REACH * width;
@@ -86,7 +85,7 @@ static size_t less(size_t x)
     return x > REACH ? x - REACH : 0;
 }
 
-/* The mask's rectangle and REACH around it. */
+/* Finds the mask's bounding rectangle, enlarged by REACH. */
 static void find_rectangle(const operands *o, const float *mask, plane *p)
 {
     size_t height = (size_t)o->mask->h, width = (size_t)o->mask->w;
@@ -110,7 +109,7 @@ static void find_rectangle(const operands *o, const float *mask, plane *p)
     p->width = bottom ? min_size(right + REACH, width) - p->left : 0;
 }
 
-/* Where the plane's values of a tensor begin: those of a row lie t->c apart. */
+/* Returns where the plane's values in a row of a tensor begin; neighbours are t->c apart. */
 static size_t place(const cpu_tensor *t, size_t picture, size_t channel, const plane *p, size_t y)
 {
     size_t row = picture * (size_t)t->h + p->top + y;
@@ -145,7 +144,7 @@ static void take_plane(const operands *o, size_t index, plane *p)
         blur(o, p, blurred[i]);
 }
 
-/* The similarity's two factors and their denominators at one window. */
+/* The two factors of the similarity and their denominators, at one window. */
 typedef struct terms {
     float light, structure, light_sum, structure_sum;
 } terms;
@@ -168,7 +167,8 @@ static double dissimilarity(const plane *p)
     return sum;
 }
 
-/* Replaces mx, xx and xy by the similarities' derivatives by them, summed over the windows that a pixel is in. */
+/* Replaces mx, xx and xy by the derivatives of the similarities by them, summed over all windows that contain a pixel.
+ */
 static void differentiate(const operands *o, plane *p)
 {
 #pragma omp simd
@@ -200,7 +200,7 @@ static status no_memory(const operands *o)
     return fail(MERLIN_NO_MEMORY, "no memory to compare pictures of %dx%d", o->prediction->w, o->prediction->h);
 }
 
-/* What is done with a plane once its windows' means are known. */
+/* A function called for each plane once its windowed means are known. */
 typedef void plane_work(const operands *o, plane *p, size_t index, void *context);
 
 static status over_planes(const operands *o, plane_work *work, void *context)

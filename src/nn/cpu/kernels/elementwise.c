@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Operations that look at one element at a time. */
+/* Elementwise operations. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include <assert.h>
@@ -8,7 +8,7 @@
 #include "nn/cpu/kernels/chunk.h"
 #include "nn/cpu/kernels/fast_math.h"
 
-/* out[i] = f(a[i], b[i]); the coefficients are f's own. */
+/* Coefficients of an elementwise function out[i] = f(a[i], b[i]). */
 typedef struct affine {
     float scale, shift;
 } affine;
@@ -48,7 +48,7 @@ void cpu_zero(cpu_tensor *x)
         memset((char *)x->data + at, 0, min_size(block, bytes - at));
 }
 
-/* NaN passes, so that a broken run shows. */
+/* Computes ReLU. NaN passes, so that a diverged run is visible. */
 static void relu(const float *x, const float *unused, float *y, size_t count, affine k)
 {
     (void)unused, (void)k;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The diffuse half of setting B's rendering layer: maps under an environment known by nine spherical harmonics, and the
- * derivative by maps and coefficients. A pixel outside the mask is never looked at. */
+/* The diffuse half of setting B's rendering layer: maps under an environment given by nine spherical harmonics, and the
+ * derivative by maps and coefficients. Pixels outside the mask are never read. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include "nn/cpu/kernels/chunk.h"
@@ -13,7 +13,7 @@ static const float INVERSE_PI = 0.318309886183790672f;
 typedef struct row {
     const float *albedo, *normal, *mask;
     const float (*sh)[3];
-    size_t first, width; /* pixel of the batch, pixels */
+    size_t first, width; /* first: index of the row's first pixel in the batch; width: pixels */
 } row;
 
 static row row_at(const cpu_environment *in, const cpu_tensor *mask, size_t y)
@@ -27,13 +27,13 @@ static row row_at(const cpu_environment *in, const cpu_tensor *mask, size_t y)
                  .width = width};
 }
 
-/* What a white surface would reflect, times the mask. */
+/* Returns what a white surface would reflect, times the mask. */
 static vec3 white(const row *r, size_t i)
 {
     return vec3_scale(sh_irradiance(r->sh, vec3_of(r->normal + 3 * i)), r->mask[i] * INVERSE_PI);
 }
 
-/* Albedo comes in the network's [-1, 1]. */
+/* Returns the albedo in [0, 1]; the network's is in [-1, 1]. */
 static vec3 albedo_at(const row *r, size_t i)
 {
     const vec3 half = {0.5f, 0.5f, 0.5f};
@@ -62,7 +62,7 @@ static void store3(cpu_tensor *t, size_t pixel, vec3 v, bool accumulate)
     to[2] = (accumulate ? to[2] : 0) + v.z;
 }
 
-/* The coefficients' gradient grows by this pixel's: outgoing is d(loss)/d(irradiance). */
+/* Adds one pixel's gradient by the coefficients; outgoing is d(loss)/d(irradiance). */
 static void add_coefficients(vec3 n, vec3 outgoing, float sum[COEFFICIENTS])
 {
     const float channels[3] = {outgoing.x, outgoing.y, outgoing.z};
@@ -92,7 +92,7 @@ static void differentiate_row(const row *r, const float *dy, cpu_environment *gr
     }
 }
 
-/* A sample's rows in order, each summed in float and then in double: the same bits whatever the number of threads. */
+/* Sums a sample's rows in order, each in float and then in double: the same bits for any number of threads. */
 void cpu_environment_backward(const cpu_environment *in, const cpu_tensor *mask, const cpu_tensor *dy,
                               cpu_environment *gradients, cpu_environment_accumulate accumulate)
 {

@@ -5,12 +5,12 @@
 
 #include "base/half.h"
 
-/* e^x within 2e-7 relative for x in [-87, 88]; clamped beyond. x = n ln 2 + r with |r| <= ln 2 / 2, Taylor in r. */
+/* Returns e^x to 2e-7 relative for x in [-87, 88]; clamped beyond. x = n ln 2 + r with |r| <= ln 2 / 2, Taylor in r. */
 static inline float fast_exp(float x)
 {
     x = x > 88.0f ? 88.0f : x;
     x = x < -87.0f ? -87.0f : x;
-    /* adding 1.5 * 2^23 rounds to an integer that then sits in the low bits */
+    /* adding 1.5 * 2^23 rounds to an integer, which is then in the low bits */
     const float magic = 0x1.8p23f;
     float shifted = x * 1.44269504f + magic;
     float n = shifted - magic;
@@ -27,13 +27,14 @@ static inline float fast_exp(float x)
     return p * bits_float((float_bits(shifted) + 127u) << 23);
 }
 
-/* Within 3e-7 relative for x > -87. */
+/* Returns the sigmoid to 3e-7 relative for x > -87. */
 static inline float fast_sigmoid(float x)
 {
     return 1 / (1 + fast_exp(-x));
 }
 
-/* Within 3e-7 relative: an odd minimax polynomial (Moshier, Cephes) below 0.625, where 1 - 2/(e^2x + 1) cancels. */
+/* Returns tanh to 3e-7 relative: an odd minimax polynomial (Moshier, Cephes) below 0.625, where 1 - 2/(e^2x + 1)
+ * cancels. */
 static inline float fast_tanh(float x)
 {
     float a = x < 0 ? -x : x, z = x * x;

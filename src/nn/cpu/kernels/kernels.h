@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* What oneDNN has no primitive for: forward and backward of the elementwise, resampling, rendering and loss operations
- * on channels-last tensors, as short OpenMP loops.
+/* Operations for which oneDNN has no primitive: forward and backward of elementwise, resampling, rendering and loss
+ * operations on channels-last tensors, as short OpenMP loops.
  *
- * Every forward writes all of y. Every backward writes dx, or adds to it if `accumulate` says that another use of x has
- * already written its gradient there. Tensors are float32 or bfloat16 (computed in float32); x, y and their gradients
- * share a type unless said otherwise. Sizes must fit (the compiler of the graph has checked them). Results do not
- * depend on the number of threads. */
+ * Every forward writes all of y. Every backward writes dx, or adds to it if `accumulate` is set because another use of
+ * x has already written its gradient there. Tensors are float32 or bfloat16 (computed in float32); x, y and their
+ * gradients share a type unless stated otherwise. Sizes must fit (the compiler of the graph has checked them). Results
+ * do not depend on the number of threads. */
 #ifndef MERLIN_NN_CPU_KERNELS_KERNELS_H
 #define MERLIN_NN_CPU_KERNELS_KERNELS_H
 
@@ -15,7 +15,7 @@
 #include "nn/adam_step.h"
 #include "nn/tensor.h"
 
-enum { CPU_MAX_CHANNELS = 2048 }; /* the widest tensor these loops take: their buffers live on the stack */
+enum { CPU_MAX_CHANNELS = 2048 }; /* the widest tensor these loops take: their buffers are on the stack */
 
 typedef nn_tensor cpu_tensor;
 
@@ -24,7 +24,7 @@ static inline size_t cpu_count(const cpu_tensor *t)
     return tensor_count(t);
 }
 
-/* y = x, converting type; with accumulate y += x. Also the backward of a conversion. */
+/* Computes y = x, converting the type; with accumulate y += x. Also the backward pass of a conversion. */
 void cpu_cast(const cpu_tensor *x, cpu_tensor *y, bool accumulate);
 void cpu_zero(cpu_tensor *x);
 
@@ -40,41 +40,41 @@ void cpu_reciprocal(const cpu_tensor *x, cpu_tensor *y, float scale, float shift
 void cpu_reciprocal_backward(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, float scale, bool accumulate);
 
 void cpu_add(const cpu_tensor *a, const cpu_tensor *b, cpu_tensor *y);
-/* Copies x's channels to channels [first, first + x.c) of y, or from there to x (backward, slice). */
+/* Copy x's channels to channels [first, first + x.c) of y, or from there to x (backward, slice). */
 void cpu_insert_channels(const cpu_tensor *x, cpu_tensor *y, int first, bool accumulate);
 void cpu_extract_channels(const cpu_tensor *y, int first, cpu_tensor *x, bool accumulate);
 
-/* y = x·gate, gate.c == 1. Backward: dx or dgate NULL (or without data) where none is wanted. */
+/* Computes y = x·gate, gate.c == 1. Backward: dx or dgate is NULL (or has no data) if it is not needed. */
 void cpu_gate(const cpu_tensor *x, const cpu_tensor *gate, cpu_tensor *y);
 void cpu_gate_backward(const cpu_tensor *x, const cpu_tensor *gate, const cpu_tensor *dy, cpu_tensor *dx,
                        bool accumulate_x, cpu_tensor *dgate, bool accumulate_gate);
 
 void cpu_upsample_bilinear(const cpu_tensor *x, cpu_tensor *y);
 void cpu_upsample_bilinear_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
-/* x is N×1×1×C, y N×H×W×C. */
+/* Repeats a vector: x is N×1×1×C, y N×H×W×C. */
 void cpu_tile(const cpu_tensor *x, cpu_tensor *y);
 void cpu_tile_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 void cpu_space_to_depth(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
 void cpu_depth_to_space(const cpu_tensor *x, cpu_tensor *y, int block, bool accumulate);
 
-/* x is N×H×W×C, y N×1×1×C. */
+/* Averages over pixels: x is N×H×W×C, y N×1×1×C. */
 void cpu_spatial_mean(const cpu_tensor *x, cpu_tensor *y);
 void cpu_spatial_mean_backward(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
 
-/* float32 only from here. */
+/* ---- float32 only from here on ---- */
 void cpu_normalize(const cpu_tensor *x, cpu_tensor *y);
 void cpu_normalize_backward(const cpu_tensor *x, const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx,
                             bool accumulate);
 
 typedef struct cpu_render_tensors {
-    cpu_tensor albedo, normal, roughness, depth; /* values; or their gradients, data NULL where none is wanted */
+    cpu_tensor albedo, normal, roughness, depth; /* values; or their gradients, data NULL if not needed */
 } cpu_render_tensors;
 typedef struct cpu_render_accumulate {
     bool albedo, normal, roughness, depth;
 } cpu_render_accumulate;
-/* What the maps are seen by and lit by. */
+/* Camera and light of the maps. */
 typedef struct cpu_render_view {
-    cpu_tensor mask, light, lens; /* lens.data NULL: that of fov for all */
+    cpu_tensor mask, light, lens; /* lens.data NULL: the lens of fov for all samples */
     float fov, light_power;
 } cpu_render_view;
 void cpu_render(const cpu_render_tensors *maps, const cpu_render_view *view, cpu_tensor *y);
@@ -82,7 +82,7 @@ void cpu_render_backward(const cpu_render_tensors *maps, const cpu_render_view *
                          cpu_render_tensors *dmaps, cpu_render_accumulate accumulate);
 
 typedef struct cpu_environment {
-    cpu_tensor albedo, normal, sh; /* values; or their gradients, data NULL where none is wanted */
+    cpu_tensor albedo, normal, sh; /* values; or their gradients, data NULL if not needed */
 } cpu_environment;
 typedef struct cpu_environment_accumulate {
     bool albedo, normal, sh;
@@ -93,7 +93,7 @@ void cpu_environment_backward(const cpu_environment *in, const cpu_tensor *mask,
 
 /* Returns the loss; mask_sum receives ΣM for the backward pass. Sums are in double, in a fixed order. */
 float cpu_masked_l2(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask, double *mask_sum);
-/* d(scale · loss)/d(prediction). */
+/* Computes d(scale · loss)/d(prediction). */
 void cpu_masked_l2_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                             double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
 float cpu_masked_gradient_l2(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
@@ -101,14 +101,14 @@ float cpu_masked_gradient_l2(const cpu_tensor *prediction, const cpu_tensor *tar
 void cpu_masked_gradient_l2_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                                      double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
 
-/* MERLIN_NO_MEMORY. */
+/* Computes structural dissimilarity. MERLIN_NO_MEMORY. */
 status cpu_masked_dssim(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                         double *mask_sum, float *loss);
 status cpu_masked_dssim_backward(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask,
                                  double mask_sum, float scale, cpu_tensor *dprediction, bool accumulate);
 
 void cpu_adam(const adam_step *step, size_t count, float *value, const float *gradient, float *moment1, float *moment2);
-/* Σ g² in double, fixed order; NaN or infinity if any element is. */
+/* Returns Σ g² in double, in a fixed order; NaN or infinity if any element is. */
 double cpu_sum_squares(const float *x, size_t count);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Masked losses. A pixel outside the mask is never looked at, so that what stands there may be anything.
+/* Masked losses. Pixels outside the mask are never read, so that they may hold anything.
  *
- * Sums are taken over a fixed number of blocks of rows, then over the blocks in order: the same bits whatever the
- * number of threads. */
+ * Sums are taken over a fixed number of blocks of rows, then over the blocks in order: the same bits for any number of
+ * threads. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include "nn/cpu/kernels/chunk.h"
@@ -106,7 +106,7 @@ static bool inside(const operands *o, size_t pixel)
     return o->mask[pixel] > 0.5f;
 }
 
-/* The error at pixel b minus that at pixel a; zero unless both are inside. */
+/* Returns the error at pixel b minus that at pixel a; zero unless both are inside the mask. */
 static float difference(const operands *o, size_t a, size_t b, size_t channel)
 {
     if (!inside(o, a) || !inside(o, b)) return 0;
@@ -135,7 +135,7 @@ float cpu_masked_gradient_l2(const cpu_tensor *prediction, const cpu_tensor *tar
     return loss_of(prediction, target, mask, mask_sum, masked_gradient_row);
 }
 
-/* What the four differences that pixel i takes part in push it by. */
+/* Returns the gradient at pixel i from the four differences in which it takes part. */
 static float pull(const operands *o, size_t i, size_t channel)
 {
     size_t x = i % o->width, y = i / o->width % o->height;

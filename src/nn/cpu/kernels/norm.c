@@ -13,7 +13,8 @@ size_t norm_partial_floats(int channels)
     return (size_t)CHUNKS * 2 * (size_t)channels + 4 * (size_t)channels;
 }
 
-/* Loops are written once for both types; `bf16` is a constant in every caller, so that they compile to vector code. */
+/* Loads an element as float. Loops are written once for both types; `bf16` is a constant in every caller, so that they
+ * compile to vector code. */
 ALWAYS_INLINE float load(const void *data, size_t i, bool bf16)
 {
     return bf16 ? bf16_to_float(((const uint16_t *)data)[i]) : ((const float *)data)[i];
@@ -25,7 +26,7 @@ ALWAYS_INLINE void store(void *data, size_t i, float x, bool bf16)
         ((float *)data)[i] = x;
         return;
     }
-    uint32_t u = float_bits(x); /* a NaN of arithmetic stays one through this rounding */
+    uint32_t u = float_bits(x); /* a NaN that arithmetic produced remains one after this rounding */
     ((uint16_t *)data)[i] = (uint16_t)((u + 0x7fffu + ((u >> 16) & 1u)) >> 16);
 }
 
@@ -39,7 +40,7 @@ static rows chunk_rows(const nn_tensor *x, int chunk)
     return (rows){count * (size_t)chunk / CHUNKS, count * ((size_t)chunk + 1) / CHUNKS};
 }
 
-/* Sums of (x - origin) and its square over a chunk; origin, the first row, keeps a large mean from cancelling. */
+/* Sums (x - origin) and its square over a chunk; origin, the first row, avoids cancellation for a large mean. */
 ALWAYS_INLINE void sum_rows(const nn_tensor *x, rows r, float *restrict sum, float *restrict square, bool bf16)
 {
     const int c = x->c;
@@ -55,7 +56,7 @@ ALWAYS_INLINE void sum_rows(const nn_tensor *x, rows r, float *restrict sum, flo
     }
 }
 
-/* Mean and mean square of all ranks' rows from each one's mean and variance. */
+/* Computes mean and mean square of all ranks' rows from each rank's mean and variance. */
 static status join_statistics(const ranks *together, int channels, double *sums, float *mean, float *variance)
 {
     const double count = ranks_count(together);
@@ -126,13 +127,13 @@ void norm_apply(const nn_tensor *x, const float *scale, const float *shift, bool
     }
 }
 
-/* Per channel, with x̂ = a x + b: the normalized value is γ x̂ + β. */
+/* Coefficients per channel: x̂ = a x + b, and the result is γ x̂ + β. */
 typedef struct affine {
     float *restrict a, *restrict b;
     const float *restrict gamma, *restrict beta;
 } affine;
 
-/* Sums of dy and dy·x̂ over a chunk, where ReLU passed. */
+/* Sums dy and dy·x̂ over a chunk, where ReLU passed. */
 ALWAYS_INLINE void sum_gradients(const nn_tensor *x, const nn_tensor *dy, rows r, const affine *f, bool relu,
                                  float *restrict sum, float *restrict product, bool bf16)
 {
@@ -151,7 +152,7 @@ ALWAYS_INLINE void sum_gradients(const nn_tensor *x, const nn_tensor *dy, rows r
     }
 }
 
-/* dx = γ/σ (dy - mean(dy) - x̂ mean(dy x̂)): factor (dy - offset - x̂ slope). */
+/* Coefficients of dx = γ/σ (dy - mean(dy) - x̂ mean(dy x̂)), that is factor (dy - offset - x̂ slope). */
 typedef struct input_gradient {
     const float *restrict factor, *restrict offset, *restrict slope;
 } input_gradient;
@@ -223,7 +224,7 @@ status norm_backward(const nn_tensor *x, const nn_tensor *dy, bool relu, const n
         offset[i] = (float)(sums[i] / count);
         slope[i] = (float)(products[i] / count);
     }
-    /* the sums are done with: their place holds γ/σ */
+    /* the sums are no longer needed: γ/σ takes their place */
     for (size_t i = 0; i < channels; i++)
         partial[i] = c->gamma[i] * c->inverse_deviation[i];
     const input_gradient w = {partial, offset, slope};

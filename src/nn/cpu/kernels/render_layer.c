@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The rendering layer: material maps under one point light, by the same inline physics as the renderer, and its
- * derivative. Whole rows at a time, so that the compiler shades 16 pixels in one pass; each row is cut to the span of
- * the mask first. */
+ * derivative. It computes whole rows, so that the compiler shades 16 pixels at once; each row is first cut to the span
+ * of the mask. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include <float.h>
@@ -15,14 +15,14 @@
 typedef struct span {
     const float *albedo, *normal, *roughness, *depth, *mask;
     camera_plane plane;
-    float first, step, up; /* the first pixel in the plane, from one to the next, and the row */
+    float first, step, up; /* position in the image plane: of the first pixel, from one to the next, and of the row */
     float nearer, relief;  /* distance is nearer + relief times the depth */
     vec3 light;
     float power;
-    size_t at, count; /* pixel of the batch, pixels */
+    size_t at, count; /* index of the first pixel in the batch; pixels */
 } span;
 
-/* The camera of a sample. */
+/* Returns the camera of a sample. */
 static camera camera_of(const cpu_render_view *view, size_t sample, float *relief)
 {
     camera c = {.width = view->mask.w, .height = view->mask.h, .fov = view->fov};
@@ -65,7 +65,7 @@ static span span_of_row(const cpu_render_tensors *maps, const cpu_render_view *v
                   .count = end - begin};
 }
 
-/* Albedo and roughness come in the network's [-1, 1]. */
+/* Maps albedo and roughness from the network's [-1, 1] to [0, 1]. */
 static inline float to_unit(float x)
 {
     return 0.5f * x + 0.5f;
@@ -117,13 +117,13 @@ void cpu_render(const cpu_render_tensors *maps, const cpu_render_view *view, cpu
     }
 }
 
-/* Gradients of up to GRADIENT_TILE pixels, before they are stored where they are wanted. */
+/* Pixels whose gradients are computed together before they are stored. */
 enum { GRADIENT_TILE = 256 };
 typedef struct gradient_tile {
     float albedo[3 * GRADIENT_TILE], normal[3 * GRADIENT_TILE], roughness[GRADIENT_TILE], depth[GRADIENT_TILE];
 } gradient_tile;
 
-/* No gradient flows where the output was clipped, nor ever what is not finite. */
+/* Returns the gradient to pass on: none where the output was clipped, and nothing that is not finite. */
 static inline float pass(float radiance, float dy)
 {
     return radiance > 0 && radiance < 1 ? dy : 0;
@@ -139,7 +139,7 @@ static inline void differentiate_pixel(const span *s, size_t pixel, const float 
 {
     shade_input in = pixel_of(s, pixel);
     vec3 radiance = shade_point(&in);
-    float m = s->mask[pixel]; /* zero passes nothing: neither clip nor finite_or_zero lets NaN through */
+    float m = s->mask[pixel]; /* at zero nothing is added: neither the clamp nor finite_or_zero lets NaN through */
     vec3 wanted = vec3_make(pass(radiance.x, dy[0] * m), pass(radiance.y, dy[1] * m), pass(radiance.z, dy[2] * m));
     shade_gradient g = shade_point_gradient(&in, wanted);
     tile->albedo[3 * i] = finite_or_zero(0.5f * g.albedo.x);
@@ -160,7 +160,7 @@ static void differentiate(const span *row, size_t first, size_t count, const flo
         differentiate_pixel(&s, first + i, dy + 3 * i, tile, i);
 }
 
-/* What the backward pass writes for one map. */
+/* Stores the backward pass's result for one map. */
 static void store(cpu_tensor *t, size_t pixel, size_t count, const float *values, bool accumulate)
 {
     if (t->data) cpu_store(t, pixel * (size_t)t->c, count * (size_t)t->c, values, accumulate);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Twice the size, and the exact adjoints. */
+/* Upsampling to twice the size, and its exact adjoint. */
 #include "nn/cpu/kernels/kernels.h"
 
 #include <assert.h>
@@ -7,8 +7,8 @@
 #include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 
-/* A row is worked through in tiles of columns that keep the buffers in the first cache; with the neighbour on either
- * side a tile of the smaller image has at most COLUMNS floats. */
+/* Floats of a tile of columns. A row is processed in tiles whose buffers fit the first-level cache; with a neighbour on
+ * either side a tile of the smaller image has at most this many. */
 enum { COLUMNS = CPU_CHUNK + 2 * CPU_MAX_CHANNELS };
 
 static size_t tile_pixels(size_t channels)
@@ -16,8 +16,8 @@ static size_t tile_pixels(size_t channels)
     return channels >= CPU_CHUNK ? 1 : CPU_CHUNK / channels;
 }
 
-/* v[1 .. n] = the tile's columns of output row `row` interpolated between input rows; v[0], v[n + 1]: the neighbours,
- * or the edge again. */
+/* Computes v[1 .. n], the tile's columns of output row `row` interpolated between input rows; v[0] and v[n + 1] are the
+ * neighbours, or the edge again. */
 static void mix_rows(const cpu_tensor *x, size_t row, size_t at, size_t n, float *v)
 {
     size_t channels = (size_t)x->c, width = (size_t)x->w, height = (size_t)x->h;
@@ -67,7 +67,7 @@ void cpu_upsample_bilinear(const cpu_tensor *x, cpu_tensor *y)
         }
 }
 
-/* Input line i of `size` reaches output lines 2i - 1 .. 2i + 2 with these weights; at the edges, where the line is its
+/* Weights with which input line i of `size` reaches output lines 2i - 1 .. 2i + 2. At the edges, where a line is its
  * own neighbour, the weight of the line that falls outside goes to the one beside it. */
 typedef struct reach {
     float weight[4];
@@ -81,8 +81,8 @@ static reach reach_of(size_t i, size_t size)
     return r;
 }
 
-/* v = the output rows that input row `row` reached, weighed and added: output columns 2at - 1 .. 2(at + n), of which
- * those outside the image stay zero. */
+/* Computes v, the weighted sum of the output rows that input row `row` reached: output columns 2at - 1 .. 2(at + n), of
+ * which those outside the image stay zero. */
 static void gather_rows(const cpu_tensor *dy, size_t row, size_t at, size_t n, float *v)
 {
     size_t channels = (size_t)dy->c, width = (size_t)dy->w, height = (size_t)dy->h / 2;

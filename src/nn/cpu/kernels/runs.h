@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Copies of equal short runs at equal strides: concatenation, slicing and the block rearrangements are all this. */
+/* Copies of short runs of equal length at equal strides: concatenation, slicing and block rearrangements are made of
+ * them. */
 #ifndef MERLIN_NN_CPU_KERNELS_RUNS_H
 #define MERLIN_NN_CPU_KERNELS_RUNS_H
 
@@ -7,7 +8,7 @@
 #include "base/number.h"
 #include "nn/cpu/kernels/chunk.h"
 
-typedef struct run_copy { /* in elements */
+typedef struct run_copy { /* all in elements */
     size_t run, from_stride, to_stride, count;
     bool accumulate;
 } run_copy;
@@ -19,7 +20,7 @@ static inline void copy_bytes(const char *from, size_t from_stride, char *to, si
         memcpy(to + i * to_stride, from + i * from_stride, bytes);
 }
 
-/* The same, adding; inlined so that a constant run becomes a few additions. */
+/* Adds instead of copying; inlined so that a constant run becomes a few additions. */
 ALWAYS_INLINE void add_floats(const float *from, float *to, const run_copy *copy, size_t run)
 {
     for (size_t i = 0; i < copy->count; i++)
@@ -41,7 +42,7 @@ static inline void add_float_runs(const float *from, float *to, const run_copy *
     }
 }
 
-/* Runs of `copy` from element `from_at` of x to element `to_at` of y. */
+/* Copies the runs of `copy` from element `from_at` of x to element `to_at` of y. */
 static inline void copy_runs(const cpu_tensor *x, size_t from_at, cpu_tensor *y, size_t to_at, const run_copy *copy)
 {
     if (copy->accumulate && x->type == NN_FLOAT32 && y->type == NN_FLOAT32) {
@@ -61,7 +62,7 @@ static inline void copy_runs(const cpu_tensor *x, size_t from_at, cpu_tensor *y,
     size_t size = cpu_element_size(x), from_stride = copy->from_stride * size, to_stride = copy->to_stride * size;
     const char *from = (const char *)x->data + from_at * size;
     char *to = (char *)y->data + to_at * size;
-    /* a constant length turns memcpy into one or two moves, which is what matters for the few channels of maps */
+    /* with a constant length memcpy becomes one or two moves, which matters for the few channels of maps */
     switch (copy->run * size) {
     case 2:
         copy_bytes(from, from_stride, to, to_stride, 2, copy->count);

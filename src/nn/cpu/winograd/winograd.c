@@ -8,12 +8,12 @@
 #include "nn/cpu/winograd/winograd_product.h"
 #include "nn/cpu/winograd/winograd_tiles.h"
 
-/* Floats between the points' matrices beyond their size, which would be a multiple of 4 KiB: then all were kept in the
- * same few lines of a cache. */
+/* Floats of padding between the points' matrices, whose size is a multiple of 4 KiB: without it they would compete for
+ * the same few cache lines. */
 enum { APART = 16 };
 
-/* Floats of a block of tiles, before and after the products: what stays in a second-level cache beside a point's
- * weights. */
+/* Floats of a block of tiles, before and after the products, that fit the second-level cache together with one point's
+ * weights; bounds of the number of tiles. */
 enum { BLOCK_FLOATS = 160 * 1024, MOST_TILES = 48, GRADIENT_TILES = 96 };
 
 /* ---- weights ---- */
@@ -23,7 +23,7 @@ size_t winograd_weights(int in, int out)
     return (size_t)POINTS * (size_t)in * (size_t)out;
 }
 
-/* Returns the number of values of the panel that begins at this output; the last may be narrower. */
+/* Returns the number of values in the panel that begins at this output; the last may be narrower. */
 static size_t panel_width(size_t outputs, size_t first)
 {
     return outputs - first < WINOGRAD_PANEL ? outputs - first : WINOGRAD_PANEL;
@@ -36,7 +36,8 @@ static float *weights_at(float *u, int inputs, int outputs, int input, int outpu
     return u + first * (size_t)inputs + (size_t)input * panel_width((size_t)outputs, first) + at;
 }
 
-/* A register of kernels, `apart` floats from one to the next, to the points; turned by half a turn or not. */
+/* Transforms a register of kernels, `apart` floats from one to the next, to the points; rotated by half a turn or not.
+ */
 ALWAYS_INLINE void take_kernels(const float *kernel, size_t apart, const bool turned, float *to, size_t stride)
 {
     float tap[TAPS][WIDE];
@@ -55,7 +56,7 @@ void winograd_transform(const float *weight, int in, int out, float *u)
             take_kernels(weight + (size_t)o * row + (size_t)i * TAPS, row, false, weights_at(u, in, out, i, o), stride);
 }
 
-/* Inputs and outputs change places. */
+/* Transforms with inputs and outputs exchanged. */
 void winograd_transform_back(const float *weight, int in, int out, float *u)
 {
     const size_t row = (size_t)in * TAPS, stride = (size_t)in * (size_t)out;
@@ -67,7 +68,7 @@ void winograd_transform_back(const float *weight, int in, int out, float *u)
 
 /* ---- the convolution ---- */
 
-/* Tiles at a time: a few for every thread even of a small picture. */
+/* Returns the tiles of a block: few enough that every thread gets several even of a small picture. */
 static size_t block_tiles(const winograd *g)
 {
     size_t fit = BLOCK_FLOATS / (size_t)(POINTS * (g->in + g->out)) / WINOGRAD_ROWS * WINOGRAD_ROWS;
@@ -77,7 +78,7 @@ static size_t block_tiles(const winograd *g)
     return most > WINOGRAD_ROWS ? most : WINOGRAD_ROWS;
 }
 
-/* Floats of a block's tiles at one point, and at all. */
+/* Return the floats of a block's tiles at one point, and at all points. */
 static size_t point_stride(size_t tiles, int channels)
 {
     return tiles * (size_t)channels + APART;
@@ -146,7 +147,7 @@ void winograd_convolve(const winograd *g, const void *x, const float *u, const w
 
 /* ---- the weights' gradient ---- */
 
-/* Of wide outputs for an input: what the points have back to taps. */
+/* Transforms the points of a register of outputs for one input back to taps. */
 static void put_kernels(const float *from, size_t stride, int in, int input, int output, float *dw)
 {
     const size_t row = (size_t)in * TAPS;
@@ -164,7 +165,7 @@ size_t winograd_gradient_room(const winograd *g)
            (size_t)g->threads * copy_room(g);
 }
 
-/* The sums of one point grow by some tiles: [input][output]. */
+/* Adds products of some tiles to the sums at one point: [input][output]. */
 static void add_products(const winograd *g, size_t tiles, const float *v, const float *m, bool first, float *sums)
 {
     size_t in = (size_t)g->in, out = (size_t)g->out;
@@ -181,7 +182,7 @@ static void add_products(const winograd *g, size_t tiles, const float *v, const 
                           in, panel_width(out, o));
 }
 
-/* All threads take the same tiles, then share the points, so that every sum has one order. */
+/* Processes the same tiles in all threads, which share the points, so that every sum has one order. */
 void winograd_gradient(const winograd *g, const void *x, const void *dy, float *dw, float *room)
 {
     const size_t tiles = winograd_tiles(g), in = (size_t)g->in, out = (size_t)g->out, matrix = in * out;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The linear maps of F(4, 3), a line of values to six points or of six back, a register of channels side by side. */
+/* The linear maps of F(4, 3): a line of values to six points, or six points back, for a register of channels at once.
+ */
 #ifndef MERLIN_NN_CPU_WINOGRAD_WINOGRAD_LINES_H
 #define MERLIN_NN_CPU_WINOGRAD_WINOGRAD_LINES_H
 
@@ -8,14 +9,15 @@
 
 #include "base/inline.h"
 
-/* Floats of a register, and rows of results, each two registers, that fit beside what they are made of. */
+/* Floats of a register, and rows of results, two registers each, that fit the register file together with their
+ * operands. */
 #ifdef __AVX512F__
 enum { WIDE = 16, WINOGRAD_ROWS = 12 };
 #else
 enum { WIDE = 8, WINOGRAD_ROWS = 6 };
 #endif
 
-/* Handed on by address, because how it is passed by value depends on the processor. */
+/* A vector register; passed by address, because how it is passed by value depends on the processor. */
 typedef float wide __attribute__((vector_size(WIDE * sizeof(float))));
 typedef int32_t wide_bits __attribute__((vector_size(WIDE * sizeof(int32_t))));
 
@@ -32,7 +34,7 @@ ALWAYS_INLINE void wide_store(const wide *v, float *to)
 typedef uint16_t wide_words __attribute__((vector_size(WIDE * sizeof(uint16_t))));
 typedef uint32_t wide_codes __attribute__((vector_size(WIDE * sizeof(uint32_t))));
 
-/* The bfloat16 numbers that begin there, as floats. */
+/* Converts bfloat16 numbers to floats. */
 ALWAYS_INLINE void wide_widen(wide *v, const uint16_t *from)
 {
     wide_words words;
@@ -40,7 +42,7 @@ ALWAYS_INLINE void wide_widen(wide *v, const uint16_t *from)
     *v = (wide)(__builtin_convertvector(words, wide_codes) << 16);
 }
 
-/* Rounds to nearest even, as float_to_bf16 does. */
+/* Converts to bfloat16, rounding to nearest even as float_to_bf16 does. */
 ALWAYS_INLINE void wide_narrow(const wide *v, uint16_t *to)
 {
     wide_codes bits = (wide_codes)*v, rounded = bits + 0x7fff + (bits >> 16 & 1);
@@ -52,7 +54,7 @@ ALWAYS_INLINE void wide_narrow(const wide *v, uint16_t *to)
 
 typedef void line_map(const wide *from, wide *to);
 
-/* Bᵀ d, of six */
+/* Computes Bᵀ d, of six values. */
 ALWAYS_INLINE void input_line(const wide *d, wide *v)
 {
     wide even = d[4] - 4 * d[2], odd = d[3] - 4 * d[1], outer = d[4] - d[2], twice = 2 * (d[3] - d[1]);
@@ -64,7 +66,7 @@ ALWAYS_INLINE void input_line(const wide *d, wide *v)
     v[5] = 4 * d[1] - 5 * d[3] + d[5];
 }
 
-/* Aᵀ m, to four */
+/* Computes Aᵀ m, four values. */
 ALWAYS_INLINE void output_line(const wide *m, wide *y)
 {
     wide sum = m[1] + m[2], difference = m[1] - m[2], far_sum = m[3] + m[4], far_difference = m[3] - m[4];
@@ -74,7 +76,7 @@ ALWAYS_INLINE void output_line(const wide *m, wide *y)
     y[3] = difference + 8 * far_difference + m[5];
 }
 
-/* A y, of four */
+/* Computes A y, of four values. */
 ALWAYS_INLINE void output_line_back(const wide *y, wide *m)
 {
     wide even = y[0] + y[2], odd = y[1] + y[3], far_even = y[0] + 4 * y[2], far_odd = 2 * y[1] + 8 * y[3];
@@ -86,7 +88,7 @@ ALWAYS_INLINE void output_line_back(const wide *y, wide *m)
     m[5] = y[3];
 }
 
-/* G g, of three */
+/* Computes G g, of three values. */
 ALWAYS_INLINE void kernel_line(const wide *g, wide *u)
 {
     wide even = (g[0] + g[2]) * (-1.0f / 6), odd = g[1] * (-1.0f / 6),
@@ -99,7 +101,7 @@ ALWAYS_INLINE void kernel_line(const wide *g, wide *u)
     u[5] = g[2];
 }
 
-/* Gᵀ u, to three */
+/* Computes Gᵀ u, three values. */
 ALWAYS_INLINE void kernel_line_back(const wide *u, wide *g)
 {
     wide sum = (u[1] + u[2]) * (-1.0f / 6), difference = (u[2] - u[1]) * (1.0f / 6), far_sum = u[3] + u[4],

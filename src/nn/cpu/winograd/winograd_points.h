@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Squares of values to the 36 points of F(4×4, 3×3) and back, a register of channels at once. Internal to winograd.h.
- */
+/* Squares of values to the 36 points of F(4×4, 3×3) and back, for a register of channels at once. Internal to
+ * winograd.h. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_WINOGRAD_POINTS_H
 #define MERLIN_NN_CPU_WINOGRAD_WINOGRAD_POINTS_H
 
 #include "nn/cpu/winograd/winograd_lines.h"
 #include "nn/nn.h"
 
-/* Sides of a tile of the result, of what it is made of and of the kernel; numbers of values of the last two. */
+/* Sides of a tile of the result, of its window of the input and of the kernel; numbers of values of the last two. */
 enum { TILE = 4, WINDOW = 6, KERNEL = 3, POINTS = WINDOW * WINDOW, TAPS = KERNEL * KERNEL };
 
-/* Pixels of `type`: channels side by side, elements from one row to the next. */
+/* Pixels of `type`, channels side by side; row: elements from one row to the next. */
 typedef struct square {
     const void *first;
     size_t row;
@@ -33,7 +33,7 @@ ALWAYS_INLINE void wide_write(const wide *v, void *to, size_t at, const nn_type 
 }
 
 /* Maps a square, from its channel c on, to points that are `stride` floats apart. pixel: elements from one pixel to the
- * next; its type, side and map are constants where this is called. */
+ * next; its type, side and map are constants in every caller. */
 ALWAYS_INLINE void to_points(square from, const nn_type type, size_t c, size_t pixel, const size_t side, line_map map,
                              float *to, size_t stride)
 {

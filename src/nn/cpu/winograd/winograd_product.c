@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "nn/cpu/winograd/winograd_product.h"
 
-/* rows, and registers side by side, are constants where this is called. */
+/* Multiplies a fixed number of rows; rows, and registers side by side, are constants in every caller. */
 ALWAYS_INLINE void multiply_rows(const winograd_product *p, const int rows, const int across)
 {
     wide sum[WINOGRAD_ROWS][2];
@@ -33,7 +33,7 @@ ALWAYS_INLINE void multiply_rows(const winograd_product *p, const int rows, cons
             wide_store(&sum[r][i], p->c + (size_t)r * p->c_row + (size_t)i * WIDE);
 }
 
-/* Fewer rows than WINOGRAD_ROWS. */
+/* Multiplies fewer rows than WINOGRAD_ROWS. */
 ALWAYS_INLINE void multiply_rest(const winograd_product *p, size_t rows, const int across)
 {
 #define CASE(n)                                                                                                        \

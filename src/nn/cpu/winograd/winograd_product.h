@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Products of matrices as Winograd's filtering needs them: many rows, a panel of a few registers wide, both operands
- * where they are. Internal to winograd.c. */
+/* Matrix products for Winograd's filtering: many rows, a panel a few registers wide, both operands in place. Internal
+ * to winograd.c. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_WINOGRAD_PRODUCT_H
 #define MERLIN_NN_CPU_WINOGRAD_WINOGRAD_PRODUCT_H
 
@@ -11,12 +11,11 @@
 
 enum { WINOGRAD_PANEL = 2 * WIDE };
 
-/* Some rows of c = a b, or c += a b, a panel wide: a has `depth` values a row, b a row of the panel for each of them.
- */
+/* Rows of c = a b, or c += a b, one panel wide: a has `depth` values a row, b a row of the panel for each of them. */
 typedef struct winograd_product {
     const float *a, *b;
     float *c;
-    size_t a_row, a_next, b_next, c_row; /* floats from one to the next */
+    size_t a_row, a_next, b_next, c_row; /* distances in floats */
     int depth;
     bool add;
 } winograd_product;

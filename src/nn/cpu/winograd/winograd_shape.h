@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The sizes of a convolution by winograd.h, and what is done behind it. */
+/* Sizes of a convolution by winograd.h, and the operations fused after it. */
 #ifndef MERLIN_NN_CPU_WINOGRAD_WINOGRAD_SHAPE_H
 #define MERLIN_NN_CPU_WINOGRAD_WINOGRAD_SHAPE_H
 
@@ -11,21 +11,21 @@
 enum { WINOGRAD_CHANNELS = 16 };
 
 typedef struct winograd {
-    int n, h, w;      /* of input and output */
+    int n, h, w;      /* size of input and output */
     int in, out;      /* channels */
-    int threads;      /* that may work on it; room is for so many */
-    nn_type from, to; /* of input and output in memory */
+    int threads;      /* most threads that work on it; buffers are for so many */
+    nn_type from, to; /* types of input and output in memory */
 } winograd;
 
-/* Work on the sums before they are stored. */
+/* Operations on the sums before they are stored. */
 typedef struct winograd_after {
     const float *bias;  /* out, or NULL */
-    const void *beside; /* of the output's shape and the input's type: added; or NULL */
+    const void *beside; /* added, of the output's shape and the input's type; or NULL */
     bool relu;
-    bool accumulate; /* add to what is there */
+    bool accumulate; /* add to the output's values */
 } winograd_after;
 
-/* The convolution that takes g's output's gradient to its input's. */
+/* Returns the convolution that takes the gradient of g's output to that of its input. */
 static inline winograd winograd_back(const winograd *g)
 {
     return (winograd){g->n, g->h, g->w, g->out, g->in, g->threads, g->to, g->from};

@@ -78,7 +78,7 @@ static void sum_to_bias(const nn_tensor *dy, float *to)
     }
 }
 
-/* The output's gradient as convolutions take it: in the type that is computed in, ReLU's part applied. */
+/* Returns the output's gradient as convolutions take it: in the compute type, multiplied by ReLU's derivative. */
 static nn_tensor prepare(nn_step *step)
 {
     nn_tensor dy = step->out;

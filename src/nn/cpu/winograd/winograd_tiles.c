@@ -16,7 +16,7 @@ size_t winograd_tiles(const winograd *g)
 }
 
 typedef struct corner {
-    int image, y, x; /* of a tile's first pixel */
+    int image, y, x; /* position of a tile's first pixel */
 } corner;
 
 static corner corner_of(const winograd *g, size_t tile)
@@ -30,7 +30,7 @@ static size_t element_bytes(nn_type type)
     return type == NN_FLOAT32 ? sizeof(float) : sizeof(uint16_t);
 }
 
-/* Returns how many elements stand before a pixel. */
+/* Returns the number of elements before a pixel. */
 static size_t place_of(const winograd *g, int channels, corner at)
 {
     size_t pixel = ((size_t)at.image * (size_t)g->h + (size_t)at.y) * (size_t)g->w + (size_t)at.x;
@@ -42,7 +42,7 @@ static const char *pixel_at(const winograd *g, const void *x, nn_type type, int 
     return (const char *)x + place_of(g, channels, at) * element_bytes(type);
 }
 
-/* Returns a square of side × side pixels in place, or copied with zeros outside of the image. */
+/* Returns a square of side × side pixels, in place or copied with zeros outside the image. */
 static square look_at(const winograd *g, const void *x, nn_type type, int channels, corner at, int side, char *copy)
 {
     const size_t pixel = (size_t)channels * element_bytes(type);
@@ -86,7 +86,7 @@ void winograd_take_result_back(const winograd *g, const void *dy, size_t tile, v
         take(from, NN_BFLOAT16, (size_t)g->out, TILE, output_line_back, to, stride);
 }
 
-/* Stores a register of results at element `at` of y, whose channel it is c. */
+/* Stores a register of results at element `at` of y, which is its channel c. */
 ALWAYS_INLINE void finish(wide *v, const winograd *g, const winograd_after *after, size_t c, void *y, size_t at,
                           const nn_type type)
 {
@@ -103,7 +103,7 @@ ALWAYS_INLINE void finish(wide *v, const winograd *g, const winograd_after *afte
         wide_read(&other, y, at, type);
         *v += other;
     }
-    if (after->relu) *v = (wide)((wide_bits)*v & ~(*v < 0)); /* NaN passes, so that a broken run shows */
+    if (after->relu) *v = (wide)((wide_bits)*v & ~(*v < 0)); /* NaN passes, so that a diverged run is visible */
     wide_write(v, y, at, type);
 }
 
@@ -111,7 +111,7 @@ ALWAYS_INLINE void put(const winograd *g, const float *from, size_t stride, cons
                        void *y, const nn_type type)
 {
     const size_t channels = (size_t)g->out, row = (size_t)g->w * channels, first = place_of(g, g->out, at);
-    const size_t rows = (size_t)(g->h - at.y), columns = (size_t)(g->w - at.x); /* that there are */
+    const size_t rows = (size_t)(g->h - at.y), columns = (size_t)(g->w - at.x); /* rows and columns left in the image */
     for (size_t c = 0; c < channels; c += WIDE) {
         wide pixel[TILE][TILE];
         from_points(from + c, stride, TILE, output_line, pixel[0]);
