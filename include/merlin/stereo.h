@@ -15,6 +15,7 @@
 #include <merlin/camera.h>
 #include <merlin/image.h>
 #include <merlin/status.h>
+#include <merlin/warnings.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -46,7 +47,7 @@ typedef struct merlin_capture_files {
                           * edge of the pictures */
     const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png or the like, if any */
     int near_lights;     /* 1: the list holds positions in the camera's space; an .lp file's are about the object, how
-                          * far from the camera the pictures tell if it is not known, unless all have z below 0 */
+                          * far from the camera merlin_stereo finds if it is not known, unless all have z below 0 */
     int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
     float field_of_view; /* horizontal, degrees; 0: not known */
@@ -96,6 +97,8 @@ typedef struct merlin_stereo_params {
     int integrate;  /* 1: depth that is solved with the normals is integrated from them once more, held near what it was
                      */
     int iterations; /* of MERLIN_STEREO_NEAR and _SEMI, at most; 0: the method's own */
+    int unchecked;  /* 1: the result is not held against other lights, lenses and tones, which takes a part of the time
+                     * of solving; its warnings stay empty */
     int (*stop)(void);        /* asked all along; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
     merlin_progress progress; /* told "solving", then "integrating"; may be NULL */
     void *progress_context;
@@ -122,10 +125,13 @@ typedef struct merlin_surface {
                              alike, to tell it: normals may be far off */
     int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where the pictures or the object's
                              outline tell them badly: normals may be far off, or bulge where the object recedes */
+    merlin_warnings warnings; /* what speaks against the pictures, their lights and the result (docs/json.md has the
+                               * codes), these three among it; empty if params.unchecked */
 } merlin_surface;
 
 /* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on (MERLIN_STEREO_UNCALIBRATED: 7) to 1024
- * (MERLIN_STEREO_LS: 4096). */
+ * (MERLIN_STEREO_LS: 4096). Lights that a list has as places about the object are taken for near ones, if the method is
+ * MERLIN_STEREO_AUTO or _NEAR, where that explains the pictures better than directions do. */
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
 void merlin_surface_free(merlin_surface *surface);
 

@@ -15,20 +15,16 @@
 #include <cJSON.h>
 #include <stddef.h>
 
-enum { WARNINGS_MOST = 24, WARNING_WORDS = 512 };
+#include "merlin/warnings.h"
 
-typedef struct warning {
-    const char *code; /* string literal */
-    char message[WARNING_WORDS];
-} warning;
+enum { WARNINGS_MOST = MERLIN_MOST_WARNINGS, WARNING_WORDS = MERLIN_WARNING_WORDS };
 
-typedef struct warnings {
-    size_t count; /* number of warnings in the list, at most WARNINGS_MOST */
-    size_t more;  /* number that did not fit */
-    warning at[WARNINGS_MOST];
-} warnings;
+/* The library's own warnings, by short names for the inside. */
+typedef merlin_warning warning;
+typedef merlin_warnings warnings;
 
-/* Appends a warning; the message is kept to one line, without a full stop. The most important ones come first. */
+/* Appends a warning, whose code is a string literal; the message is kept to one line, without a full stop. The most
+ * important ones come first. */
 void warnings_add(warnings *list, const char *code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Returns the first warning of this code, or NULL. */
 const warning *warnings_find(const warnings *list, const char *code);

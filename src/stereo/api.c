@@ -4,9 +4,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/api_needs.h"
 #include "mesh/write/mesh_write.h"
+#include "stereo/doubts/doubts.h"
 #include "stereo/fit/albedo_scale.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"
@@ -33,9 +35,7 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
     if (s != OK) return s;
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return fail(MERLIN_NO_MEMORY, "no memory for a capture");
-    const watch shown = {files->progress, files->progress_context, files->stop};
     s = pst_capture_read(folder, files, c);
-    if (s == OK && files->near_lights && c->about_object) s = pst_place_lights(c, &shown);
     if (s != OK)
         merlin_capture_free(c);
     else
@@ -152,6 +152,31 @@ void merlin_capture_free(merlin_capture *capture)
 
 /* ---- the surface ---- */
 
+/* Puts lights that are listed about the object where they are as the camera sees it, in a list of their own. */
+static status place_lights(merlin_capture *c, const merlin_stereo_params *params, merlin_light **own)
+{
+    const watch shown = {params->progress, params->progress_context, params->stop};
+    const size_t size = (size_t)c->count * sizeof **own;
+    *own = malloc(size);
+    if (!*own) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
+    memcpy(*own, c->light, size);
+    c->light = *own;
+    return pst_place_lights(c, &shown);
+}
+
+/* c: with a mask. */
+static status solve(merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
+{
+    merlin_light *own = NULL;
+    bool heeds_places = params->method == MERLIN_STEREO_AUTO || params->method == MERLIN_STEREO_NEAR;
+    status s = c->about_object && heeds_places ? place_lights(c, params, &own) : OK;
+    if (s == OK) s = pst_solve(c, params, out);
+    if (s == OK) s = pst_surface_integrate(params, out);
+    if (s == OK && !params->unchecked) s = pst_doubts(c, out, &out->warnings);
+    free(own);
+    return s;
+}
+
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out)
 {
     static const merlin_stereo_params usual = {0};
@@ -165,8 +190,7 @@ merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_p
     merlin_capture c = *capture; /* borrows all but a mask that is found */
     bool search = !c.mask.data;
     if (search) s = pst_capture_find_mask(&c);
-    if (s == OK) s = pst_solve(&c, params, out);
-    if (s == OK) s = pst_surface_integrate(params, out);
+    if (s == OK) s = solve(&c, params, out);
     if (search) img_free(&c.mask);
     if (s != OK) merlin_surface_free(out);
     return s;

@@ -136,6 +136,35 @@ static merlin_image waves_under(int k)
     return p;
 }
 
+static bool has_warning(const merlin_surface *s, const char *code)
+{
+    for (size_t i = 0; i < s->warnings.count; i++)
+        if (strcmp(s->warnings.at[i].code, code) == 0) return strlen(s->warnings.at[i].message) > 10;
+    return false;
+}
+
+static void lights_that_do_not_fit_are_told(void **state)
+{
+    (void)state;
+    merlin_capture *capture;
+    merlin_surface surface;
+    assert_int_equal(merlin_capture_new(NULL, NULL, &capture), MERLIN_OK);
+    for (int k = 0; k < LIGHTS; k++) {
+        merlin_light l = light_at(k), other = light_at((5 * k + 1) % LIGHTS);
+        memcpy(l.intensity, (const float[3]){0.9f, 0.9f, 0.9f}, sizeof l.intensity);
+        merlin_image p = picture_under(l, 1);
+        assert_int_equal(merlin_capture_add(capture, &p, &other), MERLIN_OK);
+        merlin_image_free(&p);
+    }
+    assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_OK);
+    assert_true(has_warning(&surface, "lights_do_not_fit"));
+    merlin_surface_free(&surface);
+    assert_int_equal(merlin_stereo(capture, &(merlin_stereo_params){.unchecked = 1}, &surface), MERLIN_OK);
+    assert_int_equal(surface.warnings.count, 0);
+    merlin_surface_free(&surface);
+    merlin_capture_free(capture);
+}
+
 static void doubts_about_unknown_lights_are_told(void **state)
 {
     (void)state;
@@ -151,6 +180,7 @@ static void doubts_about_unknown_lights_are_told(void **state)
     assert_int_equal(merlin_stereo(capture, NULL, &surface), MERLIN_OK);
     assert_int_equal(surface.method, MERLIN_STEREO_UNCALIBRATED);
     assert_true(surface.lights_unsure);
+    assert_true(has_warning(&surface, "lights_unsure"));
     merlin_surface_free(&surface);
     merlin_capture_free(capture);
 }
@@ -267,6 +297,36 @@ static void folder_becomes_a_mesh(void **state)
     assert_null(capture);
 }
 
+static int give_up(void)
+{
+    return 1;
+}
+
+static void hear(void *context, const char *stage, float share)
+{
+    assert_true(strcmp(stage, "solving") == 0 || strcmp(stage, "integrating") == 0);
+    assert_true(share >= 0 && share <= 1);
+    ++*(int *)context;
+}
+
+static void progress_is_heard_and_work_stops(void **state)
+{
+    (void)state;
+    merlin_capture *capture;
+    merlin_surface surface;
+    int heard = 0;
+    merlin_stereo_params params = {.progress = hear, .progress_context = &heard};
+    assert_int_equal(merlin_capture_new(NULL, NULL, &capture), MERLIN_OK);
+    add_pictures(capture, 1);
+    assert_int_equal(merlin_stereo(capture, &params, &surface), MERLIN_OK);
+    assert_true(heard > 2);
+    merlin_surface_free(&surface);
+    params.stop = give_up;
+    assert_int_equal(merlin_stereo(capture, &params, &surface), MERLIN_STOPPED);
+    assert_null(surface.normal.data);
+    merlin_capture_free(capture);
+}
+
 static void wrong_use_is_named(void **state)
 {
     (void)state;
@@ -346,10 +406,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_in_memory_become_a_surface),
         cmocka_unit_test(unknown_strengths_are_found),
+        cmocka_unit_test(lights_that_do_not_fit_are_told),
         cmocka_unit_test(doubts_about_unknown_lights_are_told),
         cmocka_unit_test(near_lights_and_their_camera_are_taken),
         cmocka_unit_test(mask_says_what_is_solved),
         in_scratch(folder_becomes_a_mesh),
+        cmocka_unit_test(progress_is_heard_and_work_stops),
         cmocka_unit_test(wrong_use_is_named),
         cmocka_unit_test(lights_of_absurd_strengths_are_refused),
     };
