@@ -68,7 +68,7 @@ static status read_open(FILE *f, const char *path, size_t limit, char **data, si
 /* Opens a file for reading. Anything that is neither file nor folder is opened as a path only (O_PATH): fstat can tell
  * what it is, but a pipe is not waited for and a device is not started. O_NONBLOCK covers one that takes the file's
  * place between the two calls. */
-static int open_descriptor(const char *path)
+int file_open_descriptor(const char *path)
 {
     struct stat s;
     bool harmless = stat(path, &s) == 0 && (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
@@ -84,7 +84,7 @@ status file_check_plain(const char *path)
 
 FILE *file_open(const char *path)
 {
-    int descriptor = open_descriptor(path);
+    int descriptor = file_open_descriptor(path);
     FILE *f = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     if (!f && descriptor >= 0) close(descriptor);
     return f;
@@ -140,7 +140,7 @@ static status map_open(int descriptor, const char *path, size_t limit, file_view
 status file_map(const char *path, size_t limit, file_view *out)
 {
     *out = (file_view){0};
-    int descriptor = open_descriptor(path);
+    int descriptor = file_open_descriptor(path);
     if (descriptor < 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot open %s", path);
     status s = map_open(descriptor, path, limit, out);
     close(descriptor);

@@ -50,6 +50,16 @@ void memory_free(void *block)
         free(from.whole);
 }
 
+/* Closing alone does not tell: what was printed may have been refused before, or what is there be gone then. */
+bool memory_stream_close(FILE *stream, char **text)
+{
+    const bool printed = !ferror(stream), closed = fclose(stream) == 0;
+    if (printed && closed && *text) return true;
+    free(*text);
+    *text = NULL;
+    return false;
+}
+
 bool memory_is_left(size_t bytes)
 {
     void *whole = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

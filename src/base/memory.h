@@ -10,12 +10,16 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { MEMORY_ALIGNMENT = 64 };
 
 /* Returns NULL if memory ran out. */
 void *memory_new(size_t bytes);
 void memory_free(void *block);
+
+/* Closes a stream of open_memstream. Returns false if memory ran out for any of it; *text is then NULL, and freed. */
+bool memory_stream_close(FILE *stream, char **text);
 
 /* Tells whether so many bytes can be had now, by allocating and freeing them: called before libraries that crash or
  * hang when they are refused memory. */

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -35,19 +36,19 @@ static void *wait_for_all(void *gate)
 }
 
 /* Starts `count` threads at once, with stacks as large as OpenMP's, and ends them again; returns how many could start.
- */
+ * Asks for no memory, which would be taken for a lack of threads from then on. */
 static int try_threads(int count)
 {
+    enum { MOST = 4 * THREADS_MOST };
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    pthread_t *thread = calloc((size_t)count, sizeof *thread);
-    int started = 0;
+    pthread_t thread[MOST];
+    int started = 0, most = min_int(count, MOST);
     pthread_mutex_lock(&gate);
-    while (thread && started < count && pthread_create(&thread[started], NULL, wait_for_all, &gate) == 0)
+    while (started < most && pthread_create(&thread[started], NULL, wait_for_all, &gate) == 0)
         started++;
     pthread_mutex_unlock(&gate);
     for (int i = 0; i < started; i++)
         pthread_join(thread[i], NULL);
-    free(thread);
     return started;
 }
 
@@ -65,11 +66,10 @@ bool threads_are_left(int count)
  * instead. */
 static void *sleep_for_good(void *team)
 {
-#pragma omp parallel num_threads(*(int *)team)
+#pragma omp parallel num_threads((int)(intptr_t)team)
     {
         __asm__ volatile("" ::: "memory"); /* an empty region would not start the team */
     }
-    free(team);
     while (pause() < 0) /* pause always returns -1 */
         ;
     return NULL;
@@ -77,17 +77,11 @@ static void *sleep_for_good(void *team)
 
 static void start_sleepers(int team)
 {
-    int *context = malloc(sizeof *context);
     sigset_t all, before;
     pthread_t sleeper;
-    if (!context) return;
-    *context = team;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before); /* leave signals to the program's own threads */
-    if (pthread_create(&sleeper, NULL, sleep_for_good, context) == 0)
-        pthread_detach(sleeper);
-    else
-        free(context);
+    if (pthread_create(&sleeper, NULL, sleep_for_good, (void *)(intptr_t)team) == 0) pthread_detach(sleeper);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 

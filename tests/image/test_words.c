@@ -286,11 +286,13 @@ static void what_is_too_large_is_read_at_a_reduced_size(void **state)
 {
     (void)state;
     img color, mask;
+    img_facts facts;
     int width, height;
     write_wide_png(scratch_path("wide.png"), 20001, 5);
     assert_int_equal(img_read_size(scratch_path("wide.png"), &width, &height), OK);
     assert_true(width == 10001 && height == 3);
-    assert_true(img_look(scratch_path("wide.png")).reduced == 2 && img_look(scratch_path("wide.png")).frames == 1);
+    assert_int_equal(img_look(scratch_path("wide.png"), &facts), OK);
+    assert_true(facts.reduced == 2 && facts.frames == 1);
     assert_int_equal(img_read(scratch_path("wide.png"), &color, NULL), OK);
     assert_true(color.width == 10001 && color.height == 3);
     /* the means of 0.2 and 1, of 0 and 1, and the last column alone; the last row is one of the file's */
@@ -327,7 +329,9 @@ static void the_first_picture_of_an_animation_is_read(void **state)
     if (img_read(scratch_path("two.gif"), &color, NULL) != OK) fail_msg("%s", status_message());
     assert_true(color.width == 1 && color.height == 1 && color.data[0] == 1 && color.data[2] == 0);
     img_free(&color);
-    assert_int_equal(img_look(scratch_path("two.gif")).frames, 2);
+    img_facts facts;
+    assert_int_equal(img_look(scratch_path("two.gif"), &facts), OK);
+    assert_int_equal(facts.frames, 2);
 }
 
 /* As EXR and raw pictures are, which come as a whole. */

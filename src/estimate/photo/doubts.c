@@ -326,8 +326,10 @@ merlin_status merlin_shot_read(const char *path, merlin_shot *out)
     status s = api_needs(__func__, path && out);
     if (s != OK) return s;
     exif_facts facts;
-    exif_read(path, &facts);
-    img_facts file = img_look(path);
+    img_facts file;
+    s = exif_read(path, &facts);
+    if (s == OK) s = img_look(path, &file);
+    if (s != OK) return s;
     *out = (merlin_shot){.flash = (merlin_flash)facts.flash,
                          .focal_35mm = facts.focal_35mm,
                          .reduced = file.reduced,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/exr/exr_context.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,6 +19,7 @@ static void keep_complaint(exr_const_context_t context, exr_result_t code, const
 void exr_forget_complaint(void)
 {
     complaint[0] = 0;
+    errno = 0; /* tells lack of memory from what the library takes it for */
 }
 
 bool exr_complained_of(const char *words)
@@ -36,6 +38,7 @@ exr_context_initializer_t exr_quiet(void)
 
 status exr_fail(status s, const char *verb, const char *path, exr_result_t code)
 {
-    if (code == EXR_ERR_OUT_OF_MEMORY) s = MERLIN_NO_MEMORY;
+    if (code == EXR_ERR_OUT_OF_MEMORY || status_by_errno(s) == MERLIN_NO_MEMORY)
+        return fail(MERLIN_NO_MEMORY, "no memory to %s %s", verb, path);
     return fail(s, "cannot %s %s: %s", verb, path, complaint[0] ? complaint : exr_get_default_error_message(code));
 }

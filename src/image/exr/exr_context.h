@@ -18,7 +18,8 @@ void exr_forget_complaint(void);
 /* Tells whether the first message since it was cleared contains these words. */
 bool exr_complained_of(const char *words);
 
-/* Fails with "cannot VERB PATH: the library's first message since it was cleared" and status s. */
+/* Fails with "cannot VERB PATH: the library's first message since it was cleared" and status s, or with
+ * lack of memory. */
 status exr_fail(status s, const char *verb, const char *path, exr_result_t code);
 
 #endif

@@ -72,6 +72,8 @@ static status open_file(exr_file *f)
     if (s != OK) return s;
     exr_context_initializer_t init = exr_quiet();
     exr_result_t r = exr_start_read(&f->context, f->path, &init);
+    /* OpenEXR goes on without attributes that it had no memory for */
+    if (r == EXR_ERR_SUCCESS && status_by_errno(OK) != OK) r = EXR_ERR_OUT_OF_MEMORY;
     /* an unknown method: OpenEXR reports it and then assumes ZIP */
     if (r == EXR_ERR_SUCCESS && exr_complained_of("'compression'")) r = EXR_ERR_FEATURE_NOT_IMPLEMENTED;
     if (r == EXR_ERR_SUCCESS) exr_forget_complaint();

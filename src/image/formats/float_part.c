@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Floats as packed in TIFF and DNG: Adobe's TIFF technical note 3 (the floating-point predictor), and the DNG
  * specification's floats of 16 and 24 bits. */
-#include <libdeflate.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -14,14 +13,6 @@ enum {
     OF_FLOATS_2 = 34894,
     OF_FLOATS_4 = 34895
 }; /* predictors: from the sample 1, 2 or 4 pixels before */
-
-static bool inflate(const void *data, size_t size, void *out, size_t bytes)
-{
-    struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
-    bool done = d && libdeflate_zlib_decompress(d, data, size, out, bytes, NULL) == LIBDEFLATE_SUCCESS;
-    libdeflate_free_decompressor(d);
-    return done;
-}
 
 /* Assembles a float from a code of a sign bit, an exponent and a fraction. */
 static float float_of(uint32_t code, int exponent_bits, int fraction_bits)
@@ -69,12 +60,13 @@ static void take_row(const float_parts *p, const uint8_t *row, float *out)
     }
 }
 
-bool float_part_unpack(const float_parts *p, const void *data, size_t size, void *room, float *out)
+bool float_part_unpack(const float_parts *p, struct libdeflate_decompressor *inflater, const void *data, size_t size,
+                       void *room, float *out)
 {
     size_t count = (size_t)p->part_width * (size_t)p->samples, row = count * (size_t)p->bits / 8;
     size_t bytes = row * (size_t)p->part_height;
     if (p->compression == DEFLATE || p->compression == OLD_DEFLATE) {
-        if (!inflate(data, size, room, bytes)) return false;
+        if (libdeflate_zlib_decompress(inflater, data, size, room, bytes, NULL) != LIBDEFLATE_SUCCESS) return false;
     } else if (p->compression == PLAIN && size >= bytes) {
         memcpy(room, data, bytes);
     } else {

@@ -3,6 +3,7 @@
 #ifndef MERLIN_IMAGE_FORMATS_FLOAT_PART_H
 #define MERLIN_IMAGE_FORMATS_FLOAT_PART_H
 
+#include <libdeflate.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -16,6 +17,7 @@ typedef struct float_parts {
 
 /* Decodes a part from its bytes in the file; returns false if it is damaged. out: part_width × part_height × samples;
  * room: as many bytes as these samples have in the file. */
-bool float_part_unpack(const float_parts *p, const void *data, size_t size, void *room, float *out);
+bool float_part_unpack(const float_parts *p, struct libdeflate_decompressor *inflater, const void *data, size_t size,
+                       void *room, float *out);
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/formats/img_format.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "image/formats/picture.h"
+#include "image/metadata/byte_source.h"
 
 /* Bytes at a fixed position by which all files of a format are recognized. */
 typedef struct mark {
@@ -160,7 +160,7 @@ static bool has_color(unsigned bits)
 
 /* Recognizes Truevision's TGA. It has no signature at its beginning, and not always one at its end, so that a
  * consistent header is required, and at least as many bytes after it as its pixels need. */
-static bool is_tga(FILE *file, const unsigned char *head, size_t size)
+static bool is_tga(uint64_t file_size, const unsigned char *head, size_t size)
 {
     enum { HEAD = 18, MAPPED = 1, RUNS = 8, LONGEST_RUN = 128 };
     if (size < HEAD || head[1] > 1) return false;
@@ -171,19 +171,18 @@ static bool is_tga(FILE *file, const unsigned char *head, size_t size)
     if (head[1] ? !has_color(map_bits) || map == 0 : map != 0 || map_bits != 0) return false;
     unsigned long long pixels = width * height, bytes = (bits + 7) / 8;
     unsigned long long least = type & RUNS ? (pixels + LONGEST_RUN - 1) / LONGEST_RUN * (bytes + 1) : pixels * bytes;
-    if (fseeko(file, 0, SEEK_END) != 0) return false;
-    return (unsigned long long)ftello(file) >= HEAD + head[0] + map * ((map_bits + 7) / 8) + least;
+    return file_size >= HEAD + head[0] + map * ((map_bits + 7) / 8) + least;
 }
 
 img_format img_format_of(const char *path)
 {
-    FILE *file = file_open(path);
-    if (!file) return (img_format){.kind = PICTURE_UNKNOWN};
+    byte_source file;
+    if (!byte_source_open(&file, path)) return (img_format){.kind = PICTURE_UNKNOWN};
     unsigned char head[IMG_FORMAT_HEAD];
-    size_t size = fread(head, 1, sizeof head, file);
+    size_t size = byte_source_read(&file, 0, head, sizeof head);
     img_format f = img_format_of_head(head, size);
-    if (!f.name && is_tga(file, head, size)) f = (img_format){PICTURE_TGA, "TGA", is_read(PICTURE_TGA)};
-    fclose(file);
+    if (!f.name && is_tga(file.size, head, size)) f = (img_format){PICTURE_TGA, "TGA", is_read(PICTURE_TGA)};
+    byte_source_close(&file);
     if (f.kind == PICTURE_TIFF && picture_tiff_is_raw(path)) f = (img_format){PICTURE_RAW, "raw", true};
     return f;
 }

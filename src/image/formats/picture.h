@@ -52,8 +52,6 @@ status picture_check_tiff(const char *path, picture_tiff_page *out);
 bool picture_tiff_is_raw(const char *path);
 /* Tells whether the JPEGs inside such a raw picture claim to be far larger than it. */
 bool picture_tiff_is_overfull(const char *path);
-/* Returns the orientation by the EXIF standard, from 1 (upright) to 8; 1 for damaged EXIF. */
-int picture_exif_orientation(void *exif, size_t size);
 /* Refuses a picture whose decoder holds it as a whole if that would take too much memory. */
 status picture_check_held(const char *path, picture_kind kind, int width, int height);
 /* Refuses a WebP with fewer bytes than it states, for which decoders have less clear messages. */

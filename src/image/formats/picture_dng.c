@@ -4,9 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-#include "base/file.h"
 #include "image/formats/float_part.h"
 #include "image/formats/picture_rows.h"
 #include "image/metadata/tiff_head.h"
@@ -66,10 +64,10 @@ static uint64_t find_page(const tiff_head *t)
 bool picture_is_float_dng(const char *path)
 {
     tiff_head t;
-    FILE *file = file_open(path);
-    if (!file) return false;
-    bool found = tiff_open(&t, file) && find_page(&t) != 0;
-    fclose(file);
+    byte_source file;
+    if (!byte_source_open(&file, path)) return false;
+    bool found = tiff_open(&t, &file) && find_page(&t) != 0;
+    byte_source_close(&file);
     return found;
 }
 
@@ -208,10 +206,16 @@ static void place_part(dng *d, const float *floats, int x, int y)
 typedef struct room {
     void *data, *bytes;
     float *floats;
-    size_t most; /* bytes of the largest part in the file */
+    size_t most; /* bytes of a part in the file */
+    struct libdeflate_decompressor *inflater;
 } room;
 
-static bool read_part(dng *d, room *r, int across, int x, int y)
+static status lack(const dng *d)
+{
+    return fail(MERLIN_NO_MEMORY, "no memory to read %s", d->path);
+}
+
+static status read_part(const dng *d, room *r, int across, int x, int y)
 {
     float_parts p = d->parts;
     bool strips = d->places == TIFF_STRIPS;
@@ -219,29 +223,31 @@ static bool read_part(dng *d, room *r, int across, int x, int y)
     uint64_t index = (uint64_t)(y / d->parts.part_height) * (uint64_t)across + (uint64_t)(x / p.part_width);
     uint64_t at = tiff_value_at(&d->t, d->page, d->places, index),
              size = tiff_value_at(&d->t, d->page, d->sizes, index);
-    if (size == 0 || size > d->size || at > d->size - size) return false;
+    if (size == 0 || size > d->size || at > d->size - size) return damaged(d);
     if (size > r->most) {
         void *grown = realloc(r->data, size);
-        if (!grown) return false;
+        if (!grown) return lack(d);
         r->data = grown;
         r->most = size;
     }
-    return fseeko(d->t.file, (off_t)at, SEEK_SET) == 0 && fread(r->data, 1, size, d->t.file) == size &&
-           float_part_unpack(&p, r->data, size, r->bytes, r->floats);
+    const bool good = byte_source_read(d->t.from, at, r->data, size) == size &&
+                      float_part_unpack(&p, r->inflater, r->data, size, r->bytes, r->floats);
+    return good ? OK : damaged(d);
 }
 
 /* Reads the parts of the band that begins at row `top`. */
-static bool fill_band(dng *d, room *r, int top)
+static status fill_band(dng *d, room *r, int top)
 {
     const float_parts *p = &d->parts;
     int across = (p->width + p->part_width - 1) / p->part_width;
     d->band_top = top;
     for (int y = top; y < p->height && y < top + d->band_rows; y += p->part_height)
         for (int x = 0; x < p->width; x += p->part_width) {
-            if (!read_part(d, r, across, x, y)) return false;
+            status s = read_part(d, r, across, x, y);
+            if (s != OK) return s;
             place_part(d, r->floats, x, y);
         }
-    return true;
+    return OK;
 }
 
 static float level(const dng *d, unsigned tag, int place, double otherwise)
@@ -313,7 +319,8 @@ static void see_row(const dng *d, int y, float *line)
 static status put_bands(dng *d, room *r, picture_rows *rows, float *line)
 {
     for (int top = 0; top < d->parts.height; top += d->band_rows) {
-        if (!fill_band(d, r, top)) return damaged(d);
+        status s = fill_band(d, r, top);
+        if (s != OK) return s;
         scale_band(d);
         for (int y = top; y < top + d->band_rows && y < d->bottom; y++) {
             if (y < d->top) continue;
@@ -328,16 +335,19 @@ static status read_bands(dng *d, picture_rows *rows)
 {
     const float_parts *p = &d->parts;
     size_t part = (size_t)p->part_width * (size_t)p->part_height * (size_t)p->samples;
-    room r = {.bytes = malloc(part * (size_t)p->bits / 8), .floats = malloc(part * sizeof(float))};
+    room r = {.bytes = malloc(part * (size_t)p->bits / 8),
+              .floats = malloc(part * sizeof(float)),
+              .inflater = libdeflate_alloc_decompressor()};
     float *line = malloc((size_t)(d->right - d->left) * 3 * sizeof *line);
     d->band = calloc((size_t)p->width * (size_t)d->band_rows * (size_t)p->samples, sizeof *d->band);
-    status s = r.bytes && r.floats && line && d->band ? put_bands(d, &r, rows, line)
-                                                      : fail(MERLIN_NO_MEMORY, "no memory to read %s", d->path);
+    const bool enough = r.bytes && r.floats && r.inflater && line && d->band;
+    status s = enough ? put_bands(d, &r, rows, line) : lack(d);
     free(d->band);
     free(line);
     free(r.data);
     free(r.bytes);
     free(r.floats);
+    libdeflate_free_decompressor(r.inflater);
     return s;
 }
 
@@ -368,12 +378,11 @@ static status read_open(dng *d, picture_colour how, img *color, picture_head *he
 status picture_read_float_dng(const char *path, picture_colour how, img *color, picture_head *head)
 {
     dng d = {.path = path};
-    struct stat about;
-    FILE *file = file_open(path);
-    if (!file) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
-    status s = fstat(fileno(file), &about) == 0 && tiff_open(&d.t, file) ? OK : damaged(&d);
-    d.size = (uint64_t)about.st_size;
+    byte_source file;
+    if (!byte_source_open(&file, path)) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
+    status s = tiff_open(&d.t, &file) ? OK : damaged(&d);
+    d.size = file.size;
     if (s == OK) s = read_open(&d, how, color, head);
-    fclose(file);
+    byte_source_close(&file);
     return s;
 }

@@ -36,7 +36,7 @@ static status check_open(FILE *f, const char *path)
 status picture_check_hdr(const char *path)
 {
     FILE *f = file_open(path);
-    if (!f) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
+    if (!f) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     status s = check_open(f, path);
     fclose(f);
     return s;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
@@ -6,8 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "image/formats/picture.h"
@@ -37,12 +36,14 @@ typedef struct reader {
     png_bytep *rows;
     picture_rows *to;
     char words[128];
+    bool lacked; /* memory, when it left */
 } reader;
 
 static void leave(png_structp png, png_const_charp words)
 {
     reader *r = png_get_error_ptr(png);
     snprintf(r->words, sizeof r->words, "%s", words);
+    r->lacked = status_by_errno(OK) == MERLIN_NO_MEMORY;
     png_longjmp(png, 1);
 }
 
@@ -61,73 +62,79 @@ static void reader_free(reader *r)
     if (r->file) fclose(r->file);
 }
 
-static bool reader_open(reader *r, const char *path)
+static status lack(const char *path)
+{
+    return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
+}
+
+static status reader_open(reader *r, const char *path)
 {
     *r = (reader){.file = file_open(path)};
+    if (!r->file) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, leave, say_nothing);
     r->info = r->png ? png_create_info_struct(r->png) : NULL;
-    return r->file && r->info;
+    return r->info ? OK : lack(path);
 }
 
-/* Returns the orientation in an EXIF chunk; damage in it is ignored. */
-static int orientation_in(int file, off_t at, uint32_t size)
+/* Finds the orientation in EXIF stored as text (exif_text.h); 0 for other texts. */
+static status find_in_text(byte_source *file, uint64_t at, uint32_t size, bool packed, int *orientation)
 {
-    enum { LARGEST = 1 << 16 }; /* as JPEG limits it */
-    if (size > LARGEST) return 1;
-    void *exif = malloc(size + 1);
-    int orientation = 1;
-    if (exif && pread(file, exif, size, at) == (ssize_t)size) orientation = picture_exif_orientation(exif, size);
-    free(exif);
-    return orientation;
-}
-
-/* Returns the orientation in EXIF stored as text (exif_text.h); 0 for other texts. */
-static int orientation_in_text(int file, off_t at, uint32_t size, bool packed)
-{
-    char *content = size <= EXIF_TEXT_MOST ? malloc(size + 1) : NULL;
     void *exif;
     size_t exif_size;
     exif_facts facts = {.orientation = 0};
-    if (content && pread(file, content, size, at) == (ssize_t)size &&
-        exif_text_decode(content, size, packed, &exif, &exif_size)) {
-        exif_parse(exif, exif_size, &facts);
-        free(exif);
-    }
-    free(content);
+    status s = exif_text_decode_at(file, at, size, packed, &exif, &exif_size);
+    if (s == OK && exif) exif_parse(exif, exif_size, &facts);
+    free(exif);
+    *orientation = facts.orientation;
+    return s;
+}
+
+/* Returns the orientation in an EXIF chunk; damage in it is ignored. */
+static int orientation_in(const byte_source *file, uint64_t at, uint32_t size)
+{
+    enum { LARGEST = 1 << 16 }; /* as JPEG limits it */
+    exif_facts facts = {.orientation = 1};
+    if (size <= LARGEST) exif_parse_part(file, at, size, &facts);
     return facts.orientation;
 }
 
-static int frames_in(int file, off_t at)
+static int frames_in(byte_source *file, uint64_t at)
 {
     unsigned char b[4];
-    bool there = pread(file, b, sizeof b, at) == (ssize_t)sizeof b && b[0] == 0;
+    bool there = byte_source_read(file, at, b, sizeof b) == sizeof b && b[0] == 0;
     return there ? b[1] << 16 | b[2] << 8 | b[3] : 0;
 }
 
-/* Walks over a file's chunks; damage is left for libpng to report. */
-static chunks find_chunks(int file)
+/* Reads what a chunk says whose content is at a position; by_text: the orientation in texts, 0 before there is any. */
+static status take_chunk(byte_source *file, const char name[4], uint64_t at, uint32_t size, chunks *found, int *by_text)
 {
-    struct stat about;
-    const off_t end = fstat(file, &about) == 0 ? about.st_size : 0;
-    chunks found = {.orientation = 0};
+    const bool pixels = memcmp(name, "IDAT", 4) == 0, packed = memcmp(name, "zTXt", 4) == 0;
+    if (memcmp(name, "cICP", 4) == 0 && size == 4) found->has_cicp = byte_source_read(file, at, found->cicp, 4) == 4;
+    if (memcmp(name, "eXIf", 4) == 0) found->orientation = orientation_in(file, at, size);
+    if (memcmp(name, "acTL", 4) == 0 && size == 8) found->frames = frames_in(file, at);
+    if (pixels) found->packed += size;
+    found->overfull |= !pixels && (at > file->size || size > file->size - at);
+    return *by_text == 0 && (packed || memcmp(name, "tEXt", 4) == 0) ? find_in_text(file, at, size, packed, by_text)
+                                                                     : OK;
+}
+
+/* Walks over a file's chunks; damage is left for libpng to report. */
+static status find_chunks(int descriptor, chunks *found)
+{
+    byte_source file;
     int by_text = 0;
     unsigned char head[8];
-    for (off_t at = 8; pread(file, head, sizeof head, at) == (ssize_t)sizeof head;) {
+    status s = OK;
+    *found = (chunks){.orientation = 0};
+    byte_source_of_file(&file, descriptor);
+    for (uint64_t at = 8; s == OK && byte_source_read(&file, at, head, sizeof head) == sizeof head;) {
         uint32_t size = (uint32_t)head[0] << 24 | (uint32_t)head[1] << 16 | (uint32_t)head[2] << 8 | head[3];
-        const char *name = (const char *)head + 4;
-        if (memcmp(name, "cICP", 4) == 0 && size == 4) found.has_cicp = pread(file, found.cicp, 4, at + 8) == 4;
-        if (memcmp(name, "eXIf", 4) == 0) found.orientation = orientation_in(file, at + 8, size);
-        found.overfull |= memcmp(name, "IDAT", 4) != 0 && (off_t)size > end - at;
-        bool packed = memcmp(name, "zTXt", 4) == 0;
-        if (by_text == 0 && (packed || memcmp(name, "tEXt", 4) == 0))
-            by_text = orientation_in_text(file, at + 8, size, packed);
-        if (memcmp(name, "IDAT", 4) == 0) found.packed += size;
-        if (memcmp(name, "acTL", 4) == 0 && size == 8) found.frames = frames_in(file, at + 8);
-        if (memcmp(name, "IEND", 4) == 0) break;
-        at += 12 + (off_t)size;
+        if (memcmp(head + 4, "IEND", 4) == 0) break;
+        s = take_chunk(&file, (const char *)head + 4, at + 8, size, found, &by_text);
+        at += 12 + (uint64_t)size;
     }
-    if (found.orientation == 0) found.orientation = by_text ? by_text : 1;
-    return found;
+    if (found->orientation == 0) found->orientation = by_text ? by_text : 1;
+    return s;
 }
 
 /* Returns the light for a gAMA chunk. Near the gamma of screens the curve is sRGB's, which is no power (as the PNG
@@ -216,7 +223,8 @@ static bool read_all_rows(reader *r)
 
 static status damaged(const reader *r, const char *path)
 {
-    return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
+    return r->lacked ? lack(path)
+                     : fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short (%s)", path, r->words);
 }
 
 static size_t line_bytes(const reader *r)
@@ -229,7 +237,7 @@ static status make_codes(reader *r, const char *path)
     size_t height = r->interlaced ? (size_t)r->layout.height : 1;
     r->codes = malloc(line_bytes(r) * height);
     r->rows = malloc(height * sizeof *r->rows);
-    if (!r->codes || !r->rows) return fail(MERLIN_NO_MEMORY, "no memory to read %s", path);
+    if (!r->codes || !r->rows) return lack(path);
     for (size_t y = 0; y < height; y++)
         r->rows[y] = r->codes + y * line_bytes(r);
     return OK;
@@ -263,10 +271,12 @@ static status check_budget(const reader *r, const char *path)
 
 static status read_open(reader *r, const char *path, picture_colour how, img *color, img *alpha)
 {
-    r->chunks = find_chunks(fileno(r->file));
+    status s = find_chunks(fileno(r->file), &r->chunks);
+    if (s != OK) return s;
+    errno = 0; /* tells lack of memory from damage (leave) */
     if (r->chunks.overfull) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
-    if (!read_head(r)) return fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, r->words);
-    status s = check_budget(r, path);
+    if (!read_head(r)) return r->lacked ? lack(path) : fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, r->words);
+    s = check_budget(r, path);
     if (s == OK) s = find_light(r, path);
     if (s != OK || r->profile || !color) return s;
     r->layout.orientation = r->chunks.orientation;
@@ -280,7 +290,7 @@ static status read_open(reader *r, const char *path, picture_colour how, img *co
 status picture_read_png(const char *path, picture_colour how, img *color, img *alpha, picture_head *head)
 {
     reader r;
-    status s = reader_open(&r, path) ? OK : fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
+    status s = reader_open(&r, path);
     if (s == OK) s = read_open(&r, path, how, color, alpha);
     *head = (picture_head){.width = r.layout.width,
                            .height = r.layout.height,

@@ -2,10 +2,8 @@
 /* Reads what a TIFF states and libvips ignores or does not find: which page is the picture, whether it is a camera's
  * raw file, and how much memory it would take. */
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/formats/picture.h"
 #include "image/metadata/picture_tiff_light.h"
 #include "image/metadata/tiff_head.h"
@@ -20,11 +18,11 @@ static bool is_raw_page(const tiff_head *t, uint64_t page)
 }
 
 /* Tells whether "CR" and a version follow the header, where ordinary TIFFs may have pixels: Canon's CR2. */
-static bool is_canon(FILE *file)
+static bool is_canon(byte_source *file)
 {
-    char head[11] = {0};
-    rewind(file);
-    return fread(head, 1, sizeof head, file) == sizeof head && head[4] == 16 && memcmp(head + 8, "CR\2", 3) == 0;
+    char head[11];
+    return byte_source_read(file, 0, head, sizeof head) == sizeof head && head[4] == 16 &&
+           memcmp(head + 8, "CR\2", 3) == 0;
 }
 
 static bool has_raw_page(const tiff_head *t)
@@ -64,11 +62,10 @@ static unsigned big16(const unsigned char *p)
 }
 
 /* Returns the number of samples that the JPEG at a position claims in its frame header; 0 if none is found. */
-static uint64_t jpeg_samples(FILE *file, uint64_t at)
+static uint64_t jpeg_samples(byte_source *file, uint64_t at)
 {
     unsigned char head[1024];
-    if (at > INT64_MAX || fseeko(file, (off_t)at, SEEK_SET) != 0) return 0;
-    size_t size = fread(head, 1, sizeof head, file);
+    size_t size = byte_source_read(file, at, head, sizeof head);
     if (size < 4 || head[0] != 0xff || head[1] != 0xd8) return 0;
     for (size_t i = 2; i + 10 <= size && head[i] == 0xff; i += 2 + big16(head + i + 2))
         if (head[i + 1] >= 0xc0 && head[i + 1] <= 0xc3)
@@ -84,36 +81,36 @@ static bool is_overfull(const tiff_head *t, uint64_t page)
     unsigned tag = tiff_count(t, page, TIFF_TILES) ? TIFF_TILES : TIFF_STRIPS;
     uint64_t parts = tiff_count(t, page, tag), sum = 0, samples = tiff_value(t, page, TIFF_SAMPLES);
     for (uint64_t i = 0; i < parts && i < MOST_PARTS; i++)
-        sum += jpeg_samples(t->file, tiff_value_at(t, page, tag, i));
-    const uint64_t border = 1 << 20; /* tiles may extend beyond the page */
+        sum += jpeg_samples(t->from, tiff_value_at(t, page, tag, i));
+    const uint64_t border = 1 << 20; /* of tiles that reach beyond the page */
     return sum > SPARE * pixels_of(t, page) * (samples ? samples : 1) + border;
 }
 
 bool picture_tiff_is_overfull(const char *path)
 {
     tiff_head t;
-    FILE *file = file_open(path);
-    if (!file) return false;
+    byte_source file;
+    if (!byte_source_open(&file, path)) return false;
     bool found = false;
-    bool known = tiff_open(&t, file);
+    bool known = tiff_open(&t, &file);
     for (int i = 0; known && i < t.pages; i++) {
         found |= is_overfull(&t, t.page[i]);
         for (uint64_t k = 0; k < MOST_BELOW && k < tiff_count(&t, t.page[i], TIFF_BELOW); k++)
             found |= is_overfull(&t, tiff_value_at(&t, t.page[i], TIFF_BELOW, k));
     }
-    fclose(file);
+    byte_source_close(&file);
     return found;
 }
 
 bool picture_tiff_is_raw(const char *path)
 {
     tiff_head t;
-    FILE *file = file_open(path);
-    if (!file) return false;
+    byte_source file;
+    if (!byte_source_open(&file, path)) return false;
     int others;
-    bool raw = tiff_open(&t, file) &&
-               (is_canon(file) || has_raw_page(&t) || (t.pages < TIFF_MOST_PAGES && find_page(&t, &others) < 0));
-    fclose(file);
+    bool raw = tiff_open(&t, &file) &&
+               (is_canon(&file) || has_raw_page(&t) || (t.pages < TIFF_MOST_PAGES && find_page(&t, &others) < 0));
+    byte_source_close(&file);
     return raw;
 }
 
@@ -182,20 +179,10 @@ static status check_open(const tiff_head *t, const char *path, picture_tiff_page
 status picture_check_tiff(const char *path, picture_tiff_page *out)
 {
     tiff_head t;
-    FILE *file = file_open(path);
-    if (!file) return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
-    status s = tiff_open(&t, file) ? check_open(&t, path, out)
-                                   : fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
-    fclose(file);
+    byte_source file;
+    if (!byte_source_open(&file, path)) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
+    status s = tiff_open(&t, &file) ? check_open(&t, path, out)
+                                    : fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
+    byte_source_close(&file);
     return s;
-}
-
-int picture_exif_orientation(void *exif, size_t size)
-{
-    tiff_head t;
-    FILE *file = fmemopen(exif, size, "rb");
-    if (!file) return 1;
-    uint32_t orientation = tiff_open(&t, file) ? tiff_value(&t, t.page[0], TIFF_ORIENTATION) : 0;
-    fclose(file);
-    return orientation >= 1 && orientation <= 8 ? (int)orientation : 1;
 }

@@ -3,7 +3,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/formats/picture_rows.h"
 #include "image/metadata/box_file.h"
 #include "image/metadata/exif.h"
@@ -69,9 +68,9 @@ static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
 static status find_heif_light(const char *path, picture_light *light)
 {
     int n[3];
-    FILE *file = file_open(path);
-    bool stated = file && box_read_colour(file, n);
-    if (file) fclose(file);
+    byte_source file;
+    bool stated = byte_source_open(&file, path) && box_read_colour(&file, n);
+    byte_source_close(&file);
     *light = (picture_light){.said = true};
     if (!stated || picture_light_of_cicp(n[0], n[1], light)) {
         light->said = true;
@@ -94,9 +93,9 @@ static status find_light(const char *path, picture_kind kind, picture_tiff_page 
         *light = page->light;
         return s;
     }
-    exif_read(path, &facts);
+    status s = exif_read(path, &facts);
     if (facts.colours == EXIF_COLOURS_ADOBE) *light = picture_light_of_adobe_rgb();
-    return OK;
+    return s;
 }
 
 /* Opens a picture; light: what the file states about its codes, beside a profile. */
@@ -216,11 +215,12 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
 }
 
 /* Returns the orientation, also from a PNG's text chunks, where libvips does not look. */
-static int orientation_of(const char *path)
+static status find_orientation(const char *path, int *orientation)
 {
     exif_facts facts;
-    exif_read(path, &facts);
-    return facts.orientation;
+    status s = exif_read(path, &facts);
+    *orientation = facts.orientation;
+    return s;
 }
 
 /* Decodes an open picture. light: of the stored codes, from which other spaces and profiles are converted to sRGB. */
@@ -241,7 +241,7 @@ static status decode_open(VipsImage **image, const request *r, picture_light lig
         return fail(MERLIN_BAD_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,
                     vips()->enum_nick(vips()->interpretation_get_type(), space));
     status s = find_layout(*image, r->path, &layout);
-    if (r->kind == PICTURE_PNG) layout.orientation = orientation_of(r->path);
+    if (s == OK && r->kind == PICTURE_PNG) s = find_orientation(r->path, &layout.orientation);
     layout.light = light;
     layout.coded = floats;
     return s == OK ? take_rows(image, r->path, &layout, r->how, r->color, r->alpha) : s;

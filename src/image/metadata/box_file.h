@@ -6,7 +6,8 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
+
+#include "image/metadata/byte_source.h"
 
 enum { BOX_MOST_STEPS = 4096 };
 
@@ -15,14 +16,14 @@ typedef struct box {
 } box;
 
 /* Reads a big-endian number of so many bytes at a position; 0 at the file's end. */
-uint64_t box_number(FILE *file, uint64_t at, int bytes);
+uint64_t box_number(byte_source *from, uint64_t at, int bytes);
 /* Tells whether these four letters are at a position. */
-bool box_name_is(FILE *file, uint64_t at, const char name[4]);
+bool box_name_is(byte_source *from, uint64_t at, const char name[4]);
 /* Finds the first box of a name inside `in`. */
-bool box_find(FILE *file, box in, const char name[4], box *out);
+bool box_find(byte_source *from, box in, const char name[4], box *out);
 
 /* Reads what a HEIC or AVIF states about its primary picture's codes beside a profile: primaries, transfer and matrix
  * as code points of ITU-T H.273. Returns false if it states nothing. */
-bool box_read_colour(FILE *file, int numbers[3]);
+bool box_read_colour(byte_source *from, int numbers[3]);
 
 #endif

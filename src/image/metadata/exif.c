@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/metadata/exif_find.h"
 #include "image/metadata/exif_text.h"
 
@@ -84,51 +83,47 @@ static void take_facts(const tiff_head *t, exif_facts *out)
     if (focal >= SHORTEST && focal <= LONGEST) out->focal_35mm = (float)focal;
 }
 
-void exif_parse(const void *exif, size_t size, exif_facts *out)
+void exif_parse_part(const byte_source *whole, uint64_t at, uint64_t size, exif_facts *out)
 {
     static const char mark[6] = {'E', 'x', 'i', 'f', 0, 0};
-    *out = (exif_facts){.orientation = 1};
-    const char *bytes = exif;
-    size_t skip = size > sizeof mark && memcmp(bytes, mark, sizeof mark) == 0 ? sizeof mark : 0;
-    FILE *file = size > skip ? fmemopen((void *)(bytes + skip), size - skip, "rb") : NULL;
+    char first[sizeof mark];
+    byte_source part;
     tiff_head t;
-    if (!file) return;
-    if (tiff_open(&t, file)) take_facts(&t, out);
-    fclose(file);
+    *out = (exif_facts){.orientation = 1};
+    byte_source_of_part(&part, whole, at, size);
+    if (byte_source_read(&part, 0, first, sizeof first) == sizeof first && memcmp(first, mark, sizeof mark) == 0)
+        byte_source_of_part(&part, whole, at + sizeof mark, size - sizeof mark);
+    if (tiff_open(&t, &part)) take_facts(&t, out);
 }
 
-static void parse_part(FILE *file, exif_place place, exif_facts *out)
+void exif_parse(const void *exif, size_t size, exif_facts *out)
 {
-    char *bytes = malloc(place.size);
-    if (!bytes) return;
-    bool there = fseeko(file, (off_t)place.at, SEEK_SET) == 0 && fread(bytes, 1, place.size, file) == place.size;
-    if (there) exif_parse(bytes, place.size, out);
-    free(bytes);
+    byte_source memory;
+    byte_source_of_memory(&memory, exif, size);
+    exif_parse_part(&memory, 0, size, out);
 }
 
-static void parse_text(FILE *file, exif_facts *out)
+static status parse_text(byte_source *from, exif_facts *out)
 {
     void *exif;
     size_t size;
-    if (!exif_text_find(file, &exif, &size)) return;
-    exif_parse(exif, size, out);
+    status s = exif_text_find(from, &exif, &size);
+    if (s == OK && exif) exif_parse(exif, size, out);
     free(exif);
+    return s;
 }
 
-void exif_read(const char *path, exif_facts *out)
+status exif_read(const char *path, exif_facts *out)
 {
-    *out = (exif_facts){.orientation = 1};
-    FILE *file = file_open(path);
-    if (!file) return;
+    byte_source file;
     exif_place place;
-    tiff_head t;
-    if (exif_find(file, &place)) {
-        if (place.size)
-            parse_part(file, place, out);
-        else if (tiff_open(&t, file))
-            take_facts(&t, out);
-    } else {
-        parse_text(file, out);
-    }
-    fclose(file);
+    status s = OK;
+    *out = (exif_facts){.orientation = 1};
+    if (!byte_source_open(&file, path)) return OK;
+    if (exif_find(&file, &place))
+        exif_parse_part(&file, place.at, place.size ? place.size : file.size, out);
+    else
+        s = parse_text(&file, out);
+    byte_source_close(&file);
+    return s;
 }

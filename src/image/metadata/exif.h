@@ -2,7 +2,7 @@
 /* Reads from EXIF how a photograph was taken: JPEG, PNG, WebP, HEIC, TIFF and cameras' raw files.
  *
  *     exif_facts facts;
- *     exif_read("cup.jpg", &facts);
+ *     status s = exif_read("cup.jpg", &facts);
  *     if (facts.flash == EXIF_FLASH_NONE) ...
  *
  * Files are not trusted: what is missing, damaged or absurd is unknown, and nothing fails. */
@@ -12,8 +12,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
+#include "base/status.h"
 #include "image/metadata/tiff_head.h"
 
 typedef enum exif_flash { EXIF_FLASH_UNKNOWN, EXIF_FLASH_NONE, EXIF_FLASH_FIRED } exif_flash;
@@ -30,8 +30,10 @@ typedef struct exif_facts {
 
 /* Reads the facts from a picture's EXIF: a TIFF header, perhaps after "Exif" and two zeros. */
 void exif_parse(const void *exif, size_t size, exif_facts *out);
-/* Reads the facts from a picture's file, of any kind. */
-void exif_read(const char *path, exif_facts *out);
+/* Reads them from a part of a file or of memory. */
+void exif_parse_part(const byte_source *whole, uint64_t at, uint64_t size, exif_facts *out);
+/* Reads the facts from a picture's file, of any kind. Fails with MERLIN_NO_MEMORY only. */
+status exif_read(const char *path, exif_facts *out);
 
 /* Reads the colour space of an EXIF page; page 0: there is none. */
 exif_colours exif_colours_of(const tiff_head *t, uint64_t page);

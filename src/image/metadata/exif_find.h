@@ -6,13 +6,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
+
+#include "image/metadata/byte_source.h"
 
 /* Position of EXIF in a file. */
 typedef struct exif_place {
     uint64_t at;
     size_t size; /* 0: the whole file is a TIFF */
 } exif_place;
-bool exif_find(FILE *file, exif_place *out);
+bool exif_find(byte_source *from, exif_place *out);
 
 #endif

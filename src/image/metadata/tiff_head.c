@@ -21,8 +21,7 @@ static uint64_t number_at(const tiff_head *t, uint64_t at, int bytes)
 {
     unsigned char b[8];
     uint64_t number = 0;
-    if (at > INT64_MAX || fseeko(t->file, (off_t)at, SEEK_SET) != 0) return 0;
-    if (fread(b, 1, (size_t)bytes, t->file) != (size_t)bytes) return 0;
+    if (byte_source_read(t->from, at, b, (size_t)bytes) != (size_t)bytes) return 0;
     for (int i = 0; i < bytes; i++)
         number = number << 8 | b[t->big_endian ? i : bytes - 1 - i];
     return number;
@@ -87,9 +86,9 @@ uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag)
     return tiff_value_at(t, page, tag, 0);
 }
 
-bool tiff_open(tiff_head *t, FILE *file)
+bool tiff_open(tiff_head *t, byte_source *from)
 {
-    *t = (tiff_head){.file = file};
+    *t = (tiff_head){.from = from};
     uint64_t order = number_at(t, 0, 1);
     t->big_endian = order == 'M';
     t->wide = number_at(t, 2, 2) == BIG_TIFF;

@@ -3,14 +3,15 @@
  * chain and each perhaps with sub-pages, and the numbers in them.
  *
  *     tiff_head t;
- *     if (tiff_open(&t, file)) width = tiff_value(&t, t.page[0], TIFF_WIDTH);
+ *     if (tiff_open(&t, &source)) width = tiff_value(&t, t.page[0], TIFF_WIDTH);
  */
 #ifndef MERLIN_IMAGE_METADATA_TIFF_HEAD_H
 #define MERLIN_IMAGE_METADATA_TIFF_HEAD_H
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
+
+#include "image/metadata/byte_source.h"
 
 enum { TIFF_MOST_PAGES = 64 };
 
@@ -45,14 +46,14 @@ enum {
 };
 
 typedef struct tiff_head {
-    FILE *file;
+    byte_source *from;
     bool big_endian, wide;
     uint64_t page[TIFF_MOST_PAGES]; /* positions of the pages */
     int pages;                      /* number of pages in the chain; at most TIFF_MOST_PAGES positions are stored */
 } tiff_head;
 
 /* Finds the pages of an open file; returns false if it is not a TIFF or has none. */
-bool tiff_open(tiff_head *t, FILE *file);
+bool tiff_open(tiff_head *t, byte_source *from);
 /* Returns the first number of an entry of a page, of 8, 16 or 32 bits, or its first letter; 0 if there is none. */
 uint32_t tiff_value(const tiff_head *t, uint64_t page, unsigned tag);
 /* Return how many numbers an entry has, and one of them by index. */

@@ -55,9 +55,10 @@ status picture_read_plain(const char *path, picture_kind kind, picture_colour ho
     plain_file f = {.file = file_open(path), .path = path};
     struct stat about;
     void *state = NULL;
-    if (!f.file || fstat(fileno(f.file), &about) != 0) {
-        if (f.file) fclose(f.file);
-        return fail(MERLIN_BAD_INPUT, "cannot read %s: it cannot be opened", path);
+    if (!f.file) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
+    if (fstat(fileno(f.file), &about) != 0) {
+        fclose(f.file);
+        return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
     }
     f.size = (uint64_t)about.st_size;
     status s = format->open(&f, &state);

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/text/text.h"
+#include "image/metadata/byte_source.h"
 #include "image/read/mask_look.h"
 #include "image/read/mask_names.h"
 #include "image/read/read.h"
@@ -177,35 +178,39 @@ const img_folder_file *img_folder_whole_mask(const img_folder *f)
     return best;
 }
 
-static bool is_text(const char *path)
+static status look_for_text(const char *path, bool *is_text)
 {
     static const char blanks[] = {'\t', '\n', '\f', '\r'};
-    char head[IMG_FORMAT_HEAD];
-    FILE *file = file_open(path);
-    if (!file) return false;
-    size_t size = fread(head, 1, sizeof head, file);
-    fclose(file);
-    char *text = NULL;
-    bool plain = text_decode(head, size, path, &text) == OK;
-    for (const char *c = text; plain && *c; c++)
-        plain = (unsigned char)*c >= ' ' || memchr(blanks, *c, sizeof blanks);
+    char head[IMG_FORMAT_HEAD], *text = NULL;
+    byte_source file;
+    *is_text = false;
+    if (!byte_source_open(&file, path)) return OK;
+    size_t size = byte_source_read(&file, 0, head, sizeof head);
+    byte_source_close(&file);
+    status s = text_decode(head, size, path, &text);
+    *is_text = s == OK;
+    for (const char *c = text; *is_text && *c; c++)
+        *is_text = (unsigned char)*c >= ' ' || memchr(blanks, *c, sizeof blanks);
     free(text);
-    return plain;
+    return s == MERLIN_NO_MEMORY ? s : OK;
 }
 
 /* Tells whether a file usually accompanies pictures, so that skipping it is not reported. */
-static bool is_beside(const img_folder_file *file, bool capture)
+static status look_beside(const img_folder_file *file, bool capture, bool *is_beside)
 {
-    if (file->is_picture || file->format.name) return false;
-    if (file_ends_in_any(file->name, notes)) return true;
-    return capture && !file_ends_in_any(file->name, copies) &&
-           (file_ends_in_any(file->name, data) || is_text(file->path));
+    *is_beside = !file->is_picture && !file->format.name && file_ends_in_any(file->name, notes);
+    if (file->is_picture || file->format.name || *is_beside || !capture || file_ends_in_any(file->name, copies))
+        return OK;
+    *is_beside = file_ends_in_any(file->name, data);
+    return *is_beside ? OK : look_for_text(file->path, is_beside);
 }
 
 status img_folder_skip(const img_folder_file *file, const char *why, bool capture, skipped_files *list)
 {
     char unread[64];
-    if (is_beside(file, capture)) return OK;
+    bool is_beside;
+    status s = look_beside(file, capture, &is_beside);
+    if (s != OK || is_beside) return s;
     if (!file->is_picture) {
         snprintf(unread, sizeof unread, "%s is not read", file->format.name ? file->format.name : "");
         why = file->format.name ? unread : file_ends_in_any(file->name, copies) ? "a copy" : "no picture";

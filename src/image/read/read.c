@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/read/read.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "base/messages.h"
@@ -30,10 +29,11 @@ static status look_at(const char *path, picture_kind *kind)
 {
     status s = check_plain(path); /* before it is opened: opening a device may have effects */
     if (s != OK) return s;
-    FILE *f = file_open(path);
-    if (!f) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
-    bool empty = getc(f) == EOF;
-    fclose(f);
+    int descriptor = file_open_descriptor(path);
+    char first;
+    if (descriptor < 0) return fail_by_errno(MERLIN_BAD_INPUT, "cannot read %s", path);
+    bool empty = read(descriptor, &first, 1) < 1;
+    close(descriptor);
     if (empty) return fail(MERLIN_BAD_INPUT, "cannot read %s: the file is empty", path);
     img_format format = img_format_of(path);
     *kind = format.kind;
@@ -83,15 +83,17 @@ status img_read_size(const char *path, int *width, int *height)
     return s;
 }
 
-img_facts img_look(const char *path)
+status img_look(const char *path, img_facts *out)
 {
     picture_kind kind;
     picture_head head = {.width = 0};
-    img_facts facts = {1, 1};
-    if (look_at(path, &kind) != OK || look_into(path, kind, &head) != OK) return facts;
-    facts.reduced = picture_reduction(head.width, head.height);
-    if (head.frames > 1) facts.frames = head.frames;
-    return facts;
+    *out = (img_facts){1, 1};
+    status s = look_at(path, &kind);
+    if (s == OK) s = look_into(path, kind, &head);
+    if (s != OK) return s == MERLIN_NO_MEMORY ? s : OK;
+    out->reduced = picture_reduction(head.width, head.height);
+    if (head.frames > 1) out->frames = head.frames;
+    return OK;
 }
 
 static status check_finite(const char *path, const img *image)

@@ -31,8 +31,10 @@ typedef struct img_facts {
     int reduced; /* number of its pixels a side that are averaged into one: 1 for most */
     int frames;  /* number of pictures in the file, of which the first is read: 1 for most */
 } img_facts;
-/* Returns what a file's header says about reading it; 1 and 1 for files that are refused. */
-img_facts img_look(const char *path);
+/* Finds what a file's header says about reading it; 1 and 1 for files that are refused. Fails with MERLIN_NO_MEMORY
+ * only.
+ */
+status img_look(const char *path, img_facts *out);
 /* Reads an environment, a latitude-longitude picture: twice as wide as high and at least 8×4 pixels. Pictures of mirror
  * balls and cubes, which would be distorted, are refused. */
 status img_read_latlong(const char *path, img *color);

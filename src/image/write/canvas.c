@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "image/color.h"
 #include "image/vips_library.h"
 #include "image/vips_start.h"
@@ -101,8 +102,7 @@ static status draw(canvas *c, const canvas_drawing *d)
 status canvas_draw_end(canvas *c, canvas_drawing *d)
 {
     fputs("</svg>\n", d->out);
-    int failed = fclose(d->out);
-    status s = failed ? fail(MERLIN_NO_MEMORY, "no memory for a drawing") : OK;
+    status s = memory_stream_close(d->out, &d->text) ? OK : fail(MERLIN_NO_MEMORY, "no memory for a drawing");
     if (s == OK) s = draw(c, d);
     free(d->text);
     *d = (canvas_drawing){0};

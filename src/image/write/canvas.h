@@ -33,9 +33,9 @@ typedef struct canvas_words {
     int x, y;
 } canvas_words;
 
-/* Writes texts with a font of so many pixels. Returns false and writes none if the font is not where the build found it
- * or lacks one of their characters: an SVG finds other fonts. */
-bool canvas_write_words(canvas *c, const canvas_words *words, int count, int size);
+/* Writes texts with a font of so many pixels. *written is false, and none is written, if the font is not where the
+ * build found it or lacks one of their characters: an SVG finds other fonts. */
+status canvas_write_words(canvas *c, const canvas_words *words, int count, int size, bool *written);
 
 /* An SVG drawing, to whose stream elements are printed; canvas_draw_end renders it over the canvas. */
 typedef struct canvas_drawing {

@@ -3,9 +3,11 @@
 #include <ft2build.h>
 
 #include FT_FREETYPE_H
+#include FT_MODULE_H
 #include FT_OUTLINE_H
 
 #include <stdint.h>
+#include <stdlib.h>
 
 #include "image/write/canvas.h"
 
@@ -101,12 +103,40 @@ static bool write_all(canvas *c, FT_Face face, const canvas_words *words, int co
     return true;
 }
 
-bool canvas_write_words(canvas *c, const canvas_words *words, int count, int size)
+/* ---- memory: FreeType goes on without what there was none for, parts of itself and letters ---- */
+
+static void *allocate(FT_Memory memory, long size)
 {
+    void *block = malloc((size_t)size);
+    if (!block) *(bool *)memory->user = true;
+    return block;
+}
+
+static void release(FT_Memory memory, void *block)
+{
+    (void)memory;
+    free(block);
+}
+
+static void *reallocate(FT_Memory memory, long before, long size, void *block)
+{
+    (void)before;
+    void *larger = realloc(block, (size_t)size);
+    if (!larger) *(bool *)memory->user = true;
+    return larger;
+}
+
+status canvas_write_words(canvas *c, const canvas_words *words, int count, int size, bool *written)
+{
+    bool lacked = false;
+    struct FT_MemoryRec_ memory = {&lacked, allocate, release, reallocate};
     FT_Library library;
     FT_Face face;
-    if (FT_Init_FreeType(&library)) return false;
-    bool written = !FT_New_Face(library, MERLIN_FONT, 0, &face) && write_all(c, face, words, count, size);
-    FT_Done_FreeType(library); /* frees its faces, too */
-    return written;
+    *written = false;
+    if (!FT_New_Library(&memory, &library)) {
+        FT_Add_Default_Modules(library);
+        *written = !FT_New_Face(library, MERLIN_FONT, 0, &face) && write_all(c, face, words, count, size);
+        FT_Done_Library(library); /* frees its faces, too */
+    }
+    return lacked ? fail(MERLIN_NO_MEMORY, "no memory for a figure's words") : OK;
 }

@@ -55,9 +55,11 @@ static status paste_tile(canvas *c, const layout *l, int index, const img *image
 /* Draws texts, by FreeType if it can, else by an SVG, which takes longer. */
 static status draw_words(canvas *c, const canvas_words *words, int count, int size)
 {
-    if (canvas_write_words(c, words, count, size)) return OK;
+    bool written;
     canvas_drawing d;
-    status s = canvas_draw_begin(c, &d);
+    status s = canvas_write_words(c, words, count, size, &written);
+    if (s != OK || written) return s;
+    s = canvas_draw_begin(c, &d);
     if (s != OK) return s;
     fprintf(d.out, "<g font-size=\"%d\" text-anchor=\"middle\">\n", size);
     for (int i = 0; i < count; i++) {

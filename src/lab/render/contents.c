@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 
 /* Constants of Fowler, Noll and Vo's FNV-1a, here over words of 64 bits; a shift mixes high bits into low ones, which
  * multiplication alone does not. */
@@ -93,7 +94,7 @@ status contents_describe(const render_options *o, char **lines)
     if (!out) return fail(MERLIN_NO_MEMORY, "no memory to describe what samples are made of");
     for (size_t i = 0; i < sizeof sources / sizeof sources[0] && s == OK; i++)
         if (sources[i].path) s = describe(&sources[i], out);
-    bool complete = fclose(out) == 0;
+    bool complete = memory_stream_close(out, lines);
     if (s == OK && !complete) s = fail(MERLIN_NO_MEMORY, "no memory to describe what samples are made of");
     if (s == OK) return OK;
     free(*lines);

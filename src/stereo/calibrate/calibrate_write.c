@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
@@ -8,22 +7,15 @@
 #include "image/write/canvas.h"
 #include "stereo/calibrate/calibrate.h"
 
-static status write_lights(const pst_calibration *c, const char *path)
+static void print_lights(FILE *out, const void *context)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
+    const pst_calibration *c = context;
     fprintf(out, LIGHT_LIST_OF_CALIBRATION " a %s ball: x right, y up, z toward the camera.\n",
             c->ball == MERLIN_CHROME_BALL ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
         vec3 d = c->direction[i];
         fprintf(out, "%.6f %.6f %.6f\n", (double)d.x, (double)d.y, (double)d.z);
     }
-    status s =
-        fclose(out) == 0 ? file_write(path, text, size) : fail(MERLIN_NO_MEMORY, "no memory for a list of lights");
-    free(text);
-    return s;
 }
 
 static void draw_light(const pst_calibration *c, int i, float scale, canvas_drawing *d)
@@ -81,5 +73,5 @@ static status write_picture(const pst_calibration *c, const char *path)
 status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture)
 {
     status s = write_picture(c, picture);
-    return s == OK ? write_lights(c, lights) : s;
+    return s == OK ? file_print(lights, print_lights, c) : s;
 }

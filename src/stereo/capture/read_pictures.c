@@ -38,13 +38,15 @@ typedef struct reading {
 } reading;
 
 /* Finds out how the first picture is read; others of its size are read alike. */
-static void look_at_first(const reading *r, merlin_capture *c)
+static status look_at_first(const reading *r, merlin_capture *c)
 {
     char *path = file_join(r->folder, c->name[0]);
-    img_facts facts = path ? img_look(path) : (img_facts){1, 1};
+    img_facts facts = {1, 1};
+    status s = path ? img_look(path, &facts) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     c->reduced = facts.reduced;
     c->frames = facts.frames;
     free(path);
+    return s;
 }
 
 static status read_one(const reading *r, const char *name, img *out, int *bits)
@@ -166,7 +168,7 @@ static status read_first_shape(reading *r, merlin_capture *c)
     if (c->width && (c->width != first->width || c->height != first->height))
         s = fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
                  first->width, first->height, c->width, c->height);
-    look_at_first(r, c);
+    if (s == OK) s = look_at_first(r, c);
     c->width = first->width;
     c->height = first->height;
     c->channels = first->channels;

@@ -20,6 +20,7 @@ typedef struct range {
 enum { MOST_RANGES = 16 };
 static range counted[MOST_RANGES]; /* the program's own stands first */
 static int counted_count;
+static bool own_alone;
 
 static bool is_counted(const char *library)
 {
@@ -36,7 +37,7 @@ static int add_range(struct dl_phdr_info *object, size_t size, void *context)
 {
     (void)size;
     (void)context;
-    if (counted_count && !is_counted(object->dlpi_name)) return 0;
+    if (counted_count && (own_alone || !is_counted(object->dlpi_name))) return 0;
     for (int i = 0; i < object->dlpi_phnum; i++) {
         const ElfW(Phdr) *part = &object->dlpi_phdr[i];
         if (part->p_type != PT_LOAD || !(part->p_flags & PF_X) || counted_count == MOST_RANGES) continue;
@@ -44,6 +45,11 @@ static int add_range(struct dl_phdr_info *object, size_t size, void *context)
         counted[counted_count++] = (range){first, first + part->p_memsz};
     }
     return 0;
+}
+
+void failing_memory_of_libraries(bool theirs_too)
+{
+    own_alone = !theirs_too;
 }
 
 static bool counts(const void *caller)
@@ -56,11 +62,11 @@ static bool counts(const void *caller)
 
 /* ---- ways through the program ---- */
 
-/* Frames that are looked through; of them the function that allocates and those above it in the program make the way,
- * and the first ones are this file's own. */
+/* Frames that are looked through; of them those of the program and of the libraries that count, the innermost first,
+ * make the way. The first ones are this file's own. */
 enum { DEEP = 20, WAY = 6, OWN = 3, MOST_WAYS = 1 << 18 };
 typedef struct way {
-    uint32_t at[WAY]; /* from the program's beginning, the innermost call first */
+    const void *at[WAY];
 } way;
 static way *ways;
 
@@ -69,10 +75,8 @@ static __attribute__((noinline)) void keep_way(size_t n)
     if (n >= MOST_WAYS) return;
     void *frames[DEEP];
     int all = backtrace(frames, DEEP), found = 0;
-    for (int i = OWN; i < all && found < WAY; i++) {
-        uintptr_t at = (uintptr_t)frames[i];
-        if (at >= counted[0].first && at < counted[0].end) ways[n].at[found++] = (uint32_t)(at - counted[0].first);
-    }
+    for (int i = OWN; i < all && found < WAY; i++)
+        if (counts(frames[i])) ways[n].at[found++] = frames[i];
 }
 
 /* FNV-1a */
@@ -81,17 +85,18 @@ uint64_t failing_memory_way(size_t n)
     uint64_t sum = 0xcbf29ce484222325;
     if (n >= MOST_WAYS) return n;
     for (int i = 0; i < WAY; i++)
-        sum = (sum ^ ways[n].at[i]) * 0x100000001b3;
+        sum = (sum ^ (uintptr_t)ways[n].at[i]) * 0x100000001b3;
     return sum;
 }
 
 void failing_memory_print_way(size_t n)
 {
-    uintptr_t base = 0;
-    Dl_info about;
-    if (dladdr((void *)counted[0].first, &about)) base = counted[0].first - (uintptr_t)about.dli_fbase;
-    for (int i = 0; n < MOST_WAYS && i < WAY && ways[n].at[i]; i++)
-        fprintf(stderr, " %#zx", (size_t)(ways[n].at[i] + base - 1));
+    for (int i = 0; n < MOST_WAYS && i < WAY && ways[n].at[i]; i++) {
+        Dl_info about;
+        if (!dladdr(ways[n].at[i], &about)) continue;
+        fprintf(stderr, " %s+%#zx", strrchr(about.dli_fname, '/') ? strrchr(about.dli_fname, '/') + 1 : about.dli_fname,
+                (size_t)((const char *)ways[n].at[i] - (const char *)about.dli_fbase - 1));
+    }
     fputc('\n', stderr);
 }
 

@@ -16,6 +16,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Whose calls count from the next count or begin on: those of the libraries, too (at first), or the program's alone,
+ * which is for pictures that libvips decodes, by the same libraries. */
+void failing_memory_of_libraries(bool theirs_too);
+
 /* Counts allocations of all threads, none of which fails, from 1 on. */
 void failing_memory_count(void);
 /* The n-th fails, and all behind it if so said. */
