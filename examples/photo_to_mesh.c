@@ -20,13 +20,13 @@ static merlin_light light_at(int k, float gain)
                           .intensity = {power, power, power}};
 }
 
-static int add_pictures(merlin_stage *stage, float gain, merlin_capture *capture)
+static int add_pictures(merlin_relighter *relighter, float gain, merlin_capture *capture)
 {
     int failed = 0;
     for (int k = 0; k < LIGHTS && !failed; k++) {
         merlin_image picture = {0};
         merlin_light light = light_at(k, gain);
-        failed = merlin_stage_relight(stage, light.position, NULL, &picture) ||
+        failed = merlin_relighter_render(relighter, light.position, NULL, &picture) ||
                  merlin_capture_add(capture, &picture, &light);
         merlin_image_free(&picture);
     }
@@ -38,7 +38,7 @@ int main(int argc, char **argv)
     merlin_model *model = NULL;
     merlin_image photo = {0}, alpha = {0};
     merlin_maps maps = {0};
-    merlin_stage *stage = NULL;
+    merlin_relighter *relighter = NULL;
     merlin_capture *capture = NULL;
     merlin_surface surface = {0};
     if (argc != 4) {
@@ -48,13 +48,13 @@ int main(int argc, char **argv)
     const merlin_capture_params near_lights = {.lighting = MERLIN_NEAR_LIGHTS, .distance = 1};
     int failed = merlin_model_open(argv[1], &model) || merlin_image_read(argv[2], &photo, &alpha) ||
                  merlin_estimate(model, &photo, &alpha, NULL, &maps) ||
-                 merlin_stage_new(model, &maps, SIDE, MERLIN_BY_BRDF_UNSHADOWED, &stage) ||
-                 merlin_capture_new(&near_lights, NULL, &capture) || add_pictures(stage, maps.gain, capture) ||
+                 merlin_relighter_new(model, &maps, SIDE, MERLIN_BY_BRDF_UNSHADOWED, &relighter) ||
+                 merlin_capture_new(&near_lights, NULL, &capture) || add_pictures(relighter, maps.gain, capture) ||
                  merlin_stereo(capture, NULL, &surface) || merlin_mesh_write(argv[3], &surface);
     if (failed) fprintf(stderr, "%s\n", merlin_error());
     merlin_surface_free(&surface);
     merlin_capture_free(capture);
-    merlin_stage_free(stage);
+    merlin_relighter_free(relighter);
     merlin_maps_free(&maps);
     merlin_image_free(&photo);
     merlin_image_free(&alpha);

@@ -11,7 +11,7 @@
 #ifndef MERLIN_VIEW_H
 #define MERLIN_VIEW_H
 
-#include <merlin/merlin.h>
+#include <merlin/maps.h>
 
 #ifdef __cplusplus
 extern "C" {

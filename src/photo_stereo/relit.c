@@ -3,7 +3,7 @@
 
 #include "base/rng.h"
 #include "estimate/photo/model_pair.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "optics/camera.h"
 #include "optics/light.h"
 #include "photo_stereo/near_capture.h"
@@ -17,14 +17,14 @@ static vec3 light_at(int i)
     return frontal_light(u1, u2);
 }
 
-static status relight_all(network *n, const stage *st, int (*stop)(void), merlin_capture *c)
+static status relight_all(network *n, const relighter *st, int (*stop)(void), merlin_capture *c)
 {
     status s = near_capture_new(&st->full.mask, &st->full.depth, CAMERA_FOV, c);
     for (int i = 0; i < RELIT_LIGHTS && s == OK; i++) {
         if (stop && stop()) return fail(MERLIN_STOPPED, "stopped");
         img picture = {0};
         const lamp light = lamp_at(light_at(i));
-        s = stage_relight(n, st, &light, 1, &picture);
+        s = relighter_render(n, st, &light, 1, &picture);
         if (s == OK) s = near_capture_add(c, &picture, light.at);
         img_free(&picture);
     }
@@ -34,15 +34,15 @@ static status relight_all(network *n, const stage *st, int (*stop)(void), merlin
 status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*stop)(void), relit *out)
 {
     *out = (relit){0};
-    stage st;
+    relighter st;
     network *n = model_network(model, maps, MERLIN_BY_BRDF_UNSHADOWED);
-    status s = stage_new(n, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
+    status s = relighter_new(n, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
     if (s != OK) return s;
     st.white = NEAR_CAPTURE_WHITE;
     s = relight_all(n, &st, stop, &out->capture);
     out->maps = st.full;
     st.full = (surface){0};
-    stage_free(&st);
+    relighter_free(&st);
     if (s != OK) relit_free(out);
     return s;
 }

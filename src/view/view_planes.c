@@ -25,11 +25,11 @@ static view_range range_of(const img *depth, const img *mask, float least)
     return r.near <= r.far ? r : (view_range){1, 1};
 }
 
-view_ranges view_ranges_of(const stage *s)
+view_ranges view_ranges_of(const relighter *s)
 {
     return (view_ranges){.covered = range_of(&s->full.depth, &s->full.mask, 0),
                          .object = range_of(&s->full.depth, &s->full.mask, 0.5f),
-                         .caster = range_of(&s->caster.depth, NULL, 0)};
+                         .occluder = range_of(&s->occluder.depth, NULL, 0)};
 }
 
 /* ---- codes ---- */
@@ -147,7 +147,7 @@ static status pack_one(void *context, size_t i)
     return pack(&p->from[i], &p->to->at[i]);
 }
 
-status view_planes_make(const stage *s, const view_ranges *ranges, view_planes *out)
+status view_planes_make(const relighter *s, const view_ranges *ranges, view_planes *out)
 {
     const surface *f = &s->full;
     const img *mask = &f->mask, *none = NULL;
@@ -159,8 +159,8 @@ status view_planes_make(const stage *s, const view_ranges *ranges, view_planes *
                           {"normal-y", &f->normal, mask, 1, code_normal, NULL},
                           {"depth", &f->depth, mask, 0, code_depth, &ranges->covered},
                           {"mask", mask, none, 0, code_cover, NULL},
-                          {"caster", &s->caster.depth, none, 0, code_depth, &ranges->caster},
-                          {"caster-mask", &s->caster.mask, none, 0, code_surface, NULL},
+                          {"caster", &s->occluder.depth, none, 0, code_depth, &ranges->occluder},
+                          {"caster-mask", &s->occluder.mask, none, 0, code_surface, NULL},
                           {"roughness", &f->roughness, mask, 0, code_roughness, NULL}},
                  .to = out};
     out->count = f->matte ? VIEW_MOST_PLANES - 1 : VIEW_MOST_PLANES;

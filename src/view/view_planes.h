@@ -2,7 +2,7 @@
 /* Maps as planes of 16-bit whole numbers, compressed: what web/scene.js unpacks.
  *
  *     view_planes planes;
- *     status s = view_planes_make(&stage, &ranges, &planes);
+ *     status s = view_planes_make(&relighter, &ranges, &planes);
  *     ... planes.at[i].name, data, size ...
  *     view_planes_free(&planes);
  *
@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 typedef struct view_range {
     float near, far; /* depths */
@@ -24,11 +24,11 @@ typedef struct view_range {
 
 /* What depths are told by. */
 typedef struct view_ranges {
-    view_range covered; /* of the maps where anything is covered, */
-    view_range object;  /* where half or more is, */
-    view_range caster;  /* and of what casts shadows, all of it */
+    view_range covered;  /* of the maps where anything is covered, */
+    view_range object;   /* where half or more is, */
+    view_range occluder; /* and of what casts shadows, all of it */
 } view_ranges;
-view_ranges view_ranges_of(const stage *s);
+view_ranges view_ranges_of(const relighter *s);
 
 typedef struct view_plane {
     const char *name;
@@ -42,8 +42,8 @@ typedef struct view_planes {
     size_t count;
 } view_planes;
 
-/* Of a stage that casts shadows; one that is matte has no roughness. */
-status view_planes_make(const stage *s, const view_ranges *ranges, view_planes *out);
+/* Of a relighter that casts shadows; one that is matte has no roughness. */
+status view_planes_make(const relighter *s, const view_ranges *ranges, view_planes *out);
 void view_planes_free(view_planes *planes);
 
 #endif

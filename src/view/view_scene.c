@@ -43,7 +43,7 @@ static void put_camera(cJSON *root, const surface *s)
     put_list(root, "slant", (const float[]){lens.slant.right, lens.slant.up}, 2);
 }
 
-static void put_caster(cJSON *root, const shadow_caster *c, view_range range)
+static void put_occluder(cJSON *root, const shadow_occluder *c, view_range range)
 {
     cJSON *o = json_put_object(root, "caster");
     json_put_number(o, "side", c->depth.width);
@@ -79,7 +79,7 @@ static void put_light(cJSON *root, const merlin_found_light *light)
     env_map_free(&found.rest);
 }
 
-static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_params *params, const stage *s,
+static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_params *params, const relighter *s,
                     const view_ranges *ranges, float white)
 {
     json_put_text(root, "name", params->name ? params->name : "object");
@@ -94,7 +94,7 @@ static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_para
     json_put_number(root, "ev", log2((double)s->white / (double)white));
     put_range(root, "depth", ranges->covered);
     put_range(root, "object", ranges->object);
-    put_caster(root, &s->caster, ranges->caster);
+    put_occluder(root, &s->occluder, ranges->occluder);
     put_light(root, &maps->light);
 }
 
@@ -117,7 +117,7 @@ static char *without_tags(const char *text)
     return out;
 }
 
-status view_scene_text(const merlin_maps *maps, const merlin_view_params *params, const stage *s,
+status view_scene_text(const merlin_maps *maps, const merlin_view_params *params, const relighter *s,
                        const view_ranges *ranges, float white, char **text)
 {
     cJSON *root = cJSON_CreateObject();

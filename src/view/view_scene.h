@@ -7,7 +7,7 @@
 #include "view/view_planes.h"
 
 /* JSON in which no "<" stands, so that it may stand in a page; malloc'ed. white: the radiance that becomes 1. */
-status view_scene_text(const merlin_maps *maps, const merlin_view_params *params, const stage *s,
+status view_scene_text(const merlin_maps *maps, const merlin_view_params *params, const relighter *s,
                        const view_ranges *ranges, float white, char **text);
 
 #endif

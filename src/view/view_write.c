@@ -87,7 +87,7 @@ static status take_photo(const merlin_maps *maps, int side, page *p)
 
 /* The white by which lamps of power 1, wherever they stand on the frontal hemisphere, leave a captured surface below
  * 1. */
-static status meter(const stage *s, float *white)
+static status meter(const relighter *s, float *white)
 {
     enum { AROUND = 8 };
     const float cosine = 0.5f, sine = sqrtf(1 - cosine * cosine);
@@ -96,23 +96,23 @@ static status meter(const stage *s, float *white)
         const float phi = 2 * PI * (float)i / AROUND;
         lamps[i + 1] = lamp_at(vec3_make(sine * cosf(phi), sine * sinf(phi), cosine - 1));
     }
-    return stage_meter(s, lamps, AROUND + 1, white);
+    return relighter_meter(s, lamps, AROUND + 1, white);
 }
 
 static status fill(const merlin_maps *maps, const merlin_view_params *params, page *p)
 {
     const int most = params->side ? params->side : MERLIN_VIEW_SIDE;
-    stage s;
-    status done = stage_new(NULL, maps, maps->crop.side > most ? most : 0, MERLIN_BY_BRDF_DIRECT, &s);
+    relighter s;
+    status done = relighter_new(NULL, maps, maps->crop.side > most ? most : 0, MERLIN_BY_BRDF_DIRECT, &s);
     if (done != OK) return done;
     float white = s.white;
-    if (params->captured) done = stage_make_matte(&s);
+    if (params->captured) done = relighter_make_matte(&s);
     if (done == OK && params->captured) done = meter(&s, &white);
     const view_ranges ranges = view_ranges_of(&s);
     if (done == OK) done = view_scene_text(maps, params, &s, &ranges, white, &p->scene);
     if (done == OK) done = view_planes_make(&s, &ranges, &p->planes);
     const int side = s.full.mask.width;
-    stage_free(&s);
+    relighter_free(&s);
     if (done == OK && !params->captured) done = take_photo(maps, side, p);
     return done;
 }

@@ -201,13 +201,13 @@ static void stage_serves_many_lights(void **state)
     merlin_environment *room;
     assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
     for (int w = 0; w < 4; w++) {
-        merlin_stage *stage;
-        assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, ways[w], &stage), MERLIN_OK);
+        merlin_relighter *relighter;
+        assert_int_equal(merlin_relighter_new(f->model, &f->maps, 0, ways[w], &relighter), MERLIN_OK);
         for (int i = 0; i < 6; i++) { /* in the dark and in the room by turns */
             merlin_image square, whole;
             const merlin_environment *in = i % 2 ? room : NULL;
             const float *light = lights[i / 2];
-            assert_int_equal(merlin_stage_relight(stage, light, in, &square), MERLIN_OK);
+            assert_int_equal(merlin_relighter_render(relighter, light, in, &square), MERLIN_OK);
             assert_int_equal(in ? merlin_relight_environment(f->model, &f->maps, in, light, ways[w], &whole)
                                 : merlin_relight(f->model, &f->maps, light, ways[w], &whole),
                              MERLIN_OK);
@@ -215,7 +215,7 @@ static void stage_serves_many_lights(void **state)
             merlin_image_free(&square);
             merlin_image_free(&whole);
         }
-        merlin_stage_free(stage);
+        merlin_relighter_free(relighter);
     }
     merlin_environment_free(room);
 }
@@ -225,19 +225,19 @@ static void stage_outlives_its_maps_at_any_side(void **state)
     fixture *f = *state;
     const float light[3] = {0.3f, 0.5f, -0.3f};
     merlin_maps maps;
-    merlin_stage *stage;
+    merlin_relighter *relighter;
     merlin_image square;
     merlin_params p = merlin_params_default();
     p.size = SIDE;
     assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
-    assert_int_equal(merlin_stage_new(f->model, &maps, 40, MERLIN_BY_BRDF, &stage), MERLIN_OK);
+    assert_int_equal(merlin_relighter_new(f->model, &maps, 40, MERLIN_BY_BRDF, &relighter), MERLIN_OK);
     merlin_maps_free(&maps);
-    assert_int_equal(merlin_stage_relight(stage, light, NULL, &square), MERLIN_OK);
+    assert_int_equal(merlin_relighter_render(relighter, light, NULL, &square), MERLIN_OK);
     assert_int_equal(square.width, 40);
     assert_int_equal(square.height, 40);
     assert_true(square.data[3 * (20 * 40 + 20)] > 0);
     merlin_image_free(&square);
-    merlin_stage_free(stage);
+    merlin_relighter_free(relighter);
 }
 
 static void stage_says_what_it_misses(void **state)
@@ -246,23 +246,23 @@ static void stage_says_what_it_misses(void **state)
     const float nowhere[3] = {NAN, 0, 0};
     const merlin_maps empty = {0};
     merlin_environment *room;
-    merlin_stage *stage;
+    merlin_relighter *relighter;
     merlin_image image;
     assert_int_equal(merlin_environment_read(f->surroundings, 0, 0, &room), MERLIN_OK);
-    assert_int_equal(merlin_stage_new(f->model, &f->maps, -1, MERLIN_BY_BRDF, &stage), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, (merlin_relighting)7, &stage), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_stage_new(f->model, &empty, 0, MERLIN_BY_BRDF, &stage), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, MERLIN_BY_BRDF, NULL), MERLIN_WRONG_USE);
-    assert_null(stage);
-    merlin_stage_free(NULL);
-    assert_int_equal(merlin_stage_new(f->model, &f->maps, 0, MERLIN_BY_NETWORK, &stage), MERLIN_OK);
-    assert_int_equal(merlin_stage_relight(stage, NULL, NULL, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_new(f->model, &f->maps, -1, MERLIN_BY_BRDF, &relighter), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_new(f->model, &f->maps, 0, (merlin_relighting)7, &relighter), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_new(f->model, &empty, 0, MERLIN_BY_BRDF, &relighter), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_new(f->model, &f->maps, 0, MERLIN_BY_BRDF, NULL), MERLIN_WRONG_USE);
+    assert_null(relighter);
+    merlin_relighter_free(NULL);
+    assert_int_equal(merlin_relighter_new(f->model, &f->maps, 0, MERLIN_BY_NETWORK, &relighter), MERLIN_OK);
+    assert_int_equal(merlin_relighter_render(relighter, NULL, NULL, &image), MERLIN_WRONG_USE);
     assert_non_null(strstr(merlin_error(), "neither a light nor an environment"));
-    assert_int_equal(merlin_stage_relight(stage, NULL, room, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_render(relighter, NULL, room, &image), MERLIN_WRONG_USE);
     assert_non_null(strstr(merlin_error(), "point light"));
-    assert_int_equal(merlin_stage_relight(stage, nowhere, NULL, &image), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relighter_render(relighter, nowhere, NULL, &image), MERLIN_WRONG_USE);
     assert_null(image.data);
-    merlin_stage_free(stage);
+    merlin_relighter_free(relighter);
     merlin_environment_free(room);
 }
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "estimate/light/env_map.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "image/exr/exr.h"
 #include "image/image.h"
 #include "merlin/merlin.h"

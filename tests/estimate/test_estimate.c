@@ -347,19 +347,19 @@ static void an_enlarged_picture_is_black_beside_the_object(void **state)
     const fixture *f = *state;
     const float left[3] = {-0.7f, 0.3f, -0.4f};
     merlin_maps maps;
-    merlin_stage *stage;
+    merlin_relighter *relighter;
     merlin_image relit;
     estimate_ring(f, &maps);
     for (int how = MERLIN_BY_BRDF; how <= MERLIN_BY_BRDF_DIRECT; how++) {
-        assert_int_equal(merlin_stage_new(f->model, &maps, SIDE, (merlin_relighting)how, &stage), MERLIN_OK);
-        assert_int_equal(merlin_stage_relight(stage, left, NULL, &relit), MERLIN_OK);
+        assert_int_equal(merlin_relighter_new(f->model, &maps, SIDE, (merlin_relighting)how, &relighter), MERLIN_OK);
+        assert_int_equal(merlin_relighter_render(relighter, left, NULL, &relit), MERLIN_OK);
         for (int i = 0; i < 3 * SIDE * SIDE; i++) {
             float x = ((float)(i / 3 % SIDE) + 0.5f) / 4 - 32, y = ((float)(i / 3 / SIDE) + 0.5f) / 4 - 32;
             /* the soft edge, and a pixel of the photograph between one that is covered and one that is not */
             if (fabsf(sqrtf(x * x + y * y) - RING_RADIUS) > 8 + 1.5f) assert_true(relit.data[i] == 0);
         }
         merlin_image_free(&relit);
-        merlin_stage_free(stage);
+        merlin_relighter_free(relighter);
     }
     merlin_maps_free(&maps);
 }

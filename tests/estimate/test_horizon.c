@@ -49,10 +49,11 @@ static void put_sphere(surface *s, vec3 centre, float radius, bool inside, float
 
 static void horizon_of(const surface *s, horizon *out)
 {
-    shadow_caster caster;
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
-    assert_int_equal(horizon_new(&caster, out), OK);
-    shadow_caster_free(&caster);
+    shadow_occluder occluder;
+    assert_int_equal(shadow_occluder_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = CAMERA_FOV}, &occluder),
+                     OK);
+    assert_int_equal(horizon_new(&occluder, out), OK);
+    shadow_occluder_free(&occluder);
 }
 
 static vec3 white(vec3 d)

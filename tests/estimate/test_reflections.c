@@ -115,15 +115,16 @@ static void interpolated_reflections_know_the_horizon(void **state)
     surface s = ball(0.5f, 0.9f, 0);
     for (int i = 0; i < PIXELS; i++)
         s.depth.data[i] = i % SIZE > SIZE / 2 ? 0.7f : 1;
-    shadow_caster caster;
+    shadow_occluder occluder;
     horizon h;
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
-    assert_int_equal(horizon_new(&caster, &h), OK);
+    assert_int_equal(shadow_occluder_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &occluder),
+                     OK);
+    assert_int_equal(horizon_new(&occluder, &h), OK);
     difference d = error_of(&s, &h);
     assert_true(d.rms > 0 && d.rms < 0.02);
     assert_true(d.largest < 0.15); /* as above, and the foot of the wall: the horizon turns between two of its points */
     horizon_free(&h);
-    shadow_caster_free(&caster);
+    shadow_occluder_free(&occluder);
 }
 
 static void relief_finer_than_a_square_is_not_interpolated(void **state)

@@ -73,10 +73,11 @@ static void put_plane(scene *s, vec3 n, float offset)
 
 static void cast(const scene *s, vec3 light, int side, img *seen)
 {
-    shadow_caster caster;
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &caster), OK);
-    assert_int_equal(shadow_cast(&caster, light, side, side, seen), OK);
-    shadow_caster_free(&caster);
+    shadow_occluder occluder;
+    assert_int_equal(shadow_occluder_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &occluder),
+                     OK);
+    assert_int_equal(shadow_cast(&occluder, light, side, side, seen), OK);
+    shadow_occluder_free(&occluder);
 }
 
 /* Of the segments p..q and a..b, by trying points of the second: exact to |b - a| / 64. */
@@ -283,7 +284,7 @@ static void a_shadow_reaches_the_edge_of_the_frame(void **state)
             dark_inside += (across ? *img_at(&seen, next, i) : *img_at(&seen, i, next)) < 0.5f;
         }
         assert_true(dark_inside > 20);
-        /* half of a caster's pixel apart, the ends of the shadow may have moved by a few points */
+        /* half of a occluder's pixel apart, the ends of the shadow may have moved by a few points */
         assert_true(dark_outside > 0.9 * dark_inside);
         img_free(&seen);
         scene_free(&s);
@@ -348,20 +349,21 @@ static void fusion_takes_noise_out_of_a_slope_and_leaves_a_jump(void **state)
 /* The share of pixels that a scene's distant lamp and a near one in the same direction do not light alike. */
 static double unlike(const scene *s, vec3 direction, real distance)
 {
-    shadow_caster caster;
+    shadow_occluder occluder;
     img far_seen, near_seen;
     const lamp afar = lamp_toward(direction);
     const vec3 place = vec3_fma(vec3_make(0, 0, -1), distance, vec3_normalize(direction));
-    assert_int_equal(shadow_caster_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &caster), OK);
-    assert_int_equal(shadow_cast_lamp(&caster, &afar, SIDE, SIDE, &far_seen), OK);
-    assert_int_equal(shadow_cast(&caster, place, SIDE, SIDE, &near_seen), OK);
+    assert_int_equal(shadow_occluder_new(&s->depth, &s->normal, &s->mask, (camera_lens){.fov = view.fov}, &occluder),
+                     OK);
+    assert_int_equal(shadow_cast_lamp(&occluder, &afar, SIDE, SIDE, &far_seen), OK);
+    assert_int_equal(shadow_cast(&occluder, place, SIDE, SIDE, &near_seen), OK);
     double count = 0, shadowed = 0;
     for (int i = 0; i < PIXELS; i++) {
         count += (far_seen.data[i] < 0.5f) != (near_seen.data[i] < 0.5f);
         shadowed += far_seen.data[i] < 0.5f;
     }
     assert_true(shadowed > 0.01 * PIXELS);
-    shadow_caster_free(&caster);
+    shadow_occluder_free(&occluder);
     img_free(&far_seen);
     img_free(&near_seen);
     return count / PIXELS;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "merlin/view.h"
 #include "scratch.h"
 #include "view/view_planes.h"

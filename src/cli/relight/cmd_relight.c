@@ -26,7 +26,7 @@
 #include "command/standard_input.h"
 #include "estimate/photo/doubts.h"
 #include "estimate/photo/model_pair.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -300,8 +300,8 @@ static status check_lamps(const request *r)
     if (r->env && r->orbit && r->lamps.count > 1)
         return fail(MERLIN_WRONG_USE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
     for (size_t i = 0; i < r->lamps.count && s == OK; i++)
-        s = stage_check(r->how, &r->lamps.at[i], r->env);
-    if (s == OK && r->env && r->lamps.count == 0) s = stage_check(r->how, NULL, true);
+        s = relighter_check(r->how, &r->lamps.at[i], r->env);
+    if (s == OK && r->env && r->lamps.count == 0) s = relighter_check(r->how, NULL, true);
     return s == OK ? check_standard_output(r) : s;
 }
 

@@ -48,7 +48,7 @@ static status render_frame(relight_work *w, env_map *environment, int i, relight
     if (relight_surroundings_turn(job)) lights = relight_lamps(w, 0, &count);
     if (job->found && i > 0) found_lights_turn(&w->found, further);
     if (job->environment && i > 0) env_map_turn(environment, further);
-    if (job->environment) s = stage_surround(&w->stage, environment);
+    if (job->environment) s = relighter_surround(&w->relighter, environment);
     if (s == OK) s = relight_square(w, lights, count, frame);
     return s == OK && i % step == 0 ? relight_sheet_add(some, frame, label) : s;
 }

@@ -57,15 +57,15 @@ static void gather(const relight_job *job, lamp *all)
 static status expose(relight_work *w)
 {
     const relight_job *job = w->job;
-    float white = w->stage.white, as_source = white;
+    float white = w->relighter.white, as_source = white;
     size_t count = count_lamps(job);
     bool metered = job->exposing == RELIGHT_AUTO || (job->exposing == RELIGHT_BY_LAMPS && count > 0);
     lamp *all = malloc((count + 1) * sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
     gather(job, all);
-    status s = metered ? stage_meter(&w->stage, all, count, &white) : OK;
-    w->stage.white = white / exp2f(job->ev);
-    w->result->ev = log2f(as_source / w->stage.white);
+    status s = metered ? relighter_meter(&w->relighter, all, count, &white) : OK;
+    w->relighter.white = white / exp2f(job->ev);
+    w->result->ev = log2f(as_source / w->relighter.white);
     free(all);
     return s;
 }
@@ -78,7 +78,7 @@ static int frame_side(const relight_job *job)
     return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
 }
 
-/* What the stage has taken over. */
+/* What the relighter has taken over. */
 static void let_go(merlin_maps *m)
 {
     merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
@@ -86,15 +86,15 @@ static void let_go(merlin_maps *m)
         merlin_image_free(spent[i]);
 }
 
-static status set_stage(relight_work *w, int side)
+static status prepare_relighter(relight_work *w, int side)
 {
     const relight_job *job = w->job;
     watch_tell(job->watch, "preparing", 0);
-    status s = stage_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->stage);
-    if (s == OK && job->matte) s = stage_make_matte(&w->stage);
-    if (s == OK && job->environment) s = stage_surround(&w->stage, &job->environment->map);
+    status s = relighter_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->relighter);
+    if (s == OK && job->matte) s = relighter_make_matte(&w->relighter);
+    if (s == OK && job->environment) s = relighter_surround(&w->relighter, &job->environment->map);
     if (s == OK && job->found) s = found_light_stand(&job->maps->light, job->turn, &w->found);
-    if (s == OK && job->found) s = stage_surround(&w->stage, found_lights_rest(&w->found));
+    if (s == OK && job->found) s = relighter_surround(&w->relighter, found_lights_rest(&w->found));
     return s == OK ? expose(w) : s;
 }
 
@@ -102,14 +102,14 @@ static status write_all(relight_work *w)
 {
     const relight_job *job = w->job;
     bool whole = relight_count_whole(job) > 0, both = whole && job->orbit > 0;
-    status s = set_stage(w, whole ? 0 : frame_side(job));
+    status s = prepare_relighter(w, whole ? 0 : frame_side(job));
     if (s == OK && !both) let_go(job->maps);
     if (s == OK) s = write_lights(w);
     if (s == OK && job->dome.count) s = relight_write_dome(w);
-    if (s == OK && both) s = stage_resize(&w->stage, job->maps, frame_side(job));
+    if (s == OK && both) s = relighter_resize(&w->relighter, job->maps, frame_side(job));
     if (both) let_go(job->maps);
     if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
-    stage_free(&w->stage);
+    relighter_free(&w->relighter);
     env_map_free(&w->found.rest);
     return s;
 }
@@ -144,7 +144,7 @@ status relight_print(const relight_job *job, relight_result *result)
     img square = {0}, whole = {0};
     uint8_t *data = NULL;
     size_t size = 0;
-    status s = set_stage(&w, 0);
+    status s = prepare_relighter(&w, 0);
     watch_tell(job->watch, "relighting", 0);
     int count;
     const lamp *lights = relight_lamps(&w, 0, &count);
@@ -156,7 +156,7 @@ status relight_print(const relight_job *job, relight_result *result)
     free(data);
     img_free(&square);
     img_free(&whole);
-    stage_free(&w.stage);
+    relighter_free(&w.relighter);
     env_map_free(&w.found.rest);
     return s;
 }

@@ -16,7 +16,7 @@ void relight_find_left(const relight_job *job, relight_result *result);
 status relight_write_dome(relight_work *w);
 /* Lamp i of an orbit. */
 lamp relight_orbit_lamp(const relight_job *job, int i);
-/* frame_000.png and on, orbit.png and animations; the stage has the frames' size. */
+/* frame_000.png and on, orbit.png and animations; the relighter has the frames' size. */
 status relight_write_orbit(relight_work *w, int side);
 
 #endif

@@ -29,7 +29,7 @@ static const double LITTLE_LIT = 0.01;
 /* Counts what is white of the object, and what is not black. */
 static void note_light(relight_work *w, const img *square)
 {
-    const img *mask = &w->stage.full.mask;
+    const img *mask = &w->relighter.full.mask;
     size_t burnt = 0, lit = 0, count = 0;
     for (size_t i = 0; i < (size_t)mask->width * (size_t)mask->height; i++) {
         const float *value = square->data + 3 * i;
@@ -60,7 +60,7 @@ const lamp *relight_lamps(const relight_work *w, size_t i, int *count)
 status relight_square(relight_work *w, const lamp *lights, int count, img *out)
 {
     network *n = model_network(w->job->model, w->job->maps, w->job->how);
-    status s = stage_relight(n, &w->stage, lights, count, out);
+    status s = relighter_render(n, &w->relighter, lights, count, out);
     if (s == OK) note_light(w, out);
     return s;
 }
@@ -74,7 +74,7 @@ status relight_frame(const relight_work *w, const img *square, img *out)
 {
     const merlin_maps *maps = w->job->maps;
     status s = img_new(out, maps->mask.width, maps->mask.height, 3);
-    if (s == OK) crop_put(square, crop_of(maps), &w->stage.full.mask, out);
+    if (s == OK) crop_put(square, crop_of(maps), &w->relighter.full.mask, out);
     return s;
 }
 

@@ -6,12 +6,12 @@
 #include "cli/relight/relight_job.h"
 #include "cli/relight/relight_sheet.h"
 #include "estimate/light/found_light.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 typedef struct relight_work {
     const relight_job *job;
     staging *staging;
-    stage stage;
+    relighter relighter;
     found_lights found; /* of a job's `found`; an orbit turns it */
     relight_result *result;
     size_t done; /* of relight_count_whole */
@@ -25,7 +25,7 @@ bool relight_surroundings_turn(const relight_job *job);
 const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
 /* Returns how many pictures single lights take, or their surroundings alone. */
 size_t relight_count_lights(const relight_job *job);
-/* Renders the stage's square under so many lamps together; counts what is burnt out. */
+/* Renders the relighter's square under so many lamps together; counts what is burnt out. */
 status relight_square(relight_work *w, const lamp *lights, int count, img *out);
 /* The square in the photograph's frame. */
 status relight_frame(const relight_work *w, const img *square, img *out);

@@ -12,7 +12,7 @@ static const vec3 from_left = {-0.67f, 0.47f, -0.43f}, from_right = {0.77f, 0.28
 
 void overview_free(overview *o)
 {
-    stage_free(&o->stage);
+    relighter_free(&o->relighter);
     img *images[] = {&o->normal, &o->roughness, &o->depth, &o->reconstruction, &o->left, &o->right};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         img_free(images[i]);
@@ -44,24 +44,24 @@ static status show_reconstruction(const merlin_maps *maps, float white, img *out
 
 static status make(network *n, const merlin_maps *maps, overview *o)
 {
-    status s = stage_new(n, maps, maps->size, MERLIN_BY_BRDF, &o->stage);
+    status s = relighter_new(n, maps, maps->size, MERLIN_BY_BRDF, &o->relighter);
     if (s == OK && !maps->reconstruction.data)
         s = fail(MERLIN_WRONG_USE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;
     /* an underexposed photograph is shown as it should have been exposed */
-    float white = o->stage.white;
-    o->stage.white = EXPOSURE_WHITE;
+    float white = o->relighter.white;
+    o->relighter.white = EXPOSURE_WHITE;
     size_t count = 3 * (size_t)maps->size * (size_t)maps->size;
     for (size_t i = 0; i < count; i++)
-        o->stage.low_photo.data[i] /= EXPOSURE_WHITE;
-    const surface *full = &o->stage.full;
+        o->relighter.low_photo.data[i] /= EXPOSURE_WHITE;
+    const surface *full = &o->relighter.full;
     s = figure_normals(&full->normal, &full->mask, &o->normal);
     if (s == OK) s = figure_depth(&full->depth, &full->mask, &o->depth);
     if (s == OK) s = show_values(&full->roughness, &o->roughness);
     if (s == OK) s = show_reconstruction(maps, white, &o->reconstruction);
     const lamp left = lamp_at(from_left), right = lamp_at(from_right);
-    if (s == OK) s = stage_relight(n, &o->stage, &left, 1, &o->left);
-    if (s == OK) s = stage_relight(n, &o->stage, &right, 1, &o->right);
+    if (s == OK) s = relighter_render(n, &o->relighter, &left, 1, &o->left);
+    if (s == OK) s = relighter_render(n, &o->relighter, &right, 1, &o->right);
     return s;
 }
 
@@ -76,8 +76,8 @@ status overview_new(network *n, const merlin_maps *maps, overview *out)
 void overview_tiles(const overview *o, figure_tile tiles[OVERVIEW_TILES])
 {
     const figure_tile all[OVERVIEW_TILES] = {
-        {"photograph", &o->stage.low_photo},
-        {"albedo", &o->stage.full.albedo},
+        {"photograph", &o->relighter.low_photo},
+        {"albedo", &o->relighter.full.albedo},
         {"normal", &o->normal},
         {"roughness", &o->roughness},
         {"depth", &o->depth},

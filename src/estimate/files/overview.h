@@ -11,14 +11,14 @@
 #ifndef MERLIN_ESTIMATE_FILES_OVERVIEW_H
 #define MERLIN_ESTIMATE_FILES_OVERVIEW_H
 
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "image/write/figure.h"
 
 /* The photograph first. */
 enum { OVERVIEW_TILES = 8 };
 
 typedef struct overview {
-    stage stage;
+    relighter relighter;
     img normal, roughness, depth, reconstruction, left, right;
 } overview;
 

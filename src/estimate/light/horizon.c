@@ -49,7 +49,7 @@ static float azimuth_of(float x, float y)
 /* ---- making ---- */
 
 typedef struct making {
-    const shadow_caster *caster;
+    const shadow_occluder *occluder;
     camera eye;
     img depth; /* NOTHING off the surface */
     horizon *out;
@@ -143,7 +143,7 @@ static void begin_row(const making *m, int row, marches *r)
     for (int i = 0; i < width; i++) {
         float x = ((float)i + 0.5f) * step - 0.5f;
         if (!near_surface(m, x, y, step)) continue;
-        vec3 p = camera_point(&m->eye, x + 0.5f, y + 0.5f, depth_at(&m->caster->depth, x, y));
+        vec3 p = camera_point(&m->eye, x + 0.5f, y + 0.5f, depth_at(&m->occluder->depth, x, y));
         vec3 view = vec3_scale(vec3_normalize(p), -1);
         int at = r->count++;
         r->column[at] = i;
@@ -183,8 +183,8 @@ static void make_row(void *context, size_t row)
     }
 }
 
-/* The caster's depth with nothing off the surface. */
-static status cut_out(const shadow_caster *c, img *out)
+/* The occluder's depth with nothing off the surface. */
+static status cut_out(const shadow_occluder *c, img *out)
 {
     status s = img_copy(out, &c->depth);
     size_t count = s == OK ? (size_t)out->width * (size_t)out->height : 0;
@@ -193,18 +193,18 @@ static status cut_out(const shadow_caster *c, img *out)
     return s;
 }
 
-status horizon_new(const shadow_caster *caster, horizon *out)
+status horizon_new(const shadow_occluder *occluder, horizon *out)
 {
-    int side = caster->depth.width < MOST_SIDE ? caster->depth.width : MOST_SIDE;
-    making m = {caster, camera_through(caster->lens, caster->depth.width, caster->depth.height), {0}, out};
-    *out = (horizon){.lens = caster->lens};
+    int side = occluder->depth.width < MOST_SIDE ? occluder->depth.width : MOST_SIDE;
+    making m = {occluder, camera_through(occluder->lens, occluder->depth.width, occluder->depth.height), {0}, out};
+    *out = (horizon){.lens = occluder->lens};
     status s = img_new(&out->cosine, side, side, HORIZON_AZIMUTHS);
     size_t count = (size_t)side * (size_t)side * HORIZON_AZIMUTHS;
     for (size_t i = 0; s == OK && i < count; i++)
         out->cosine.data[i] = -1;
     if (s == OK && count > 0) out->closed = calloc(count, sizeof *out->closed);
     if (s == OK && !out->closed) s = fail(MERLIN_NO_MEMORY, "no memory for horizons of %d x %d points", side, side);
-    if (s == OK) s = cut_out(caster, &m.depth);
+    if (s == OK) s = cut_out(occluder, &m.depth);
     if (s == OK) parallel_for((size_t)side, make_row, &m);
     img_free(&m.depth);
     if (s != OK) horizon_free(out);

@@ -2,7 +2,7 @@
 /* How much of its surroundings every point of a visible surface sees past the surface itself.
  *
  *     horizon h;
- *     status s = horizon_new(&caster, &h);                   once a surface
+ *     status s = horizon_new(&occluder, &h);                   once a surface
  *     horizon_view at;
  *     horizon_at(&h, 0.3f, 0.6f, &at);                       for a place in the frame
  *     float share = horizon_sees(&at, direction, 0.05f);     of a patch of sky of 0.05 steradians about it
@@ -36,8 +36,8 @@ typedef struct horizon_view {
     float weight[4];
 } horizon_view;
 
-/* caster is not needed afterwards. */
-status horizon_new(const shadow_caster *caster, horizon *out);
+/* occluder is not needed afterwards. */
+status horizon_new(const shadow_occluder *occluder, horizon *out);
 void horizon_free(horizon *h);
 
 /* x, y: shares of the frame's width and height. */

@@ -17,15 +17,15 @@ static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
 /* Slope of a surface, in pixels a pixel. */
 static const float STEEPEST = 16;
 
-status shadow_caster_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_caster *out)
+status shadow_occluder_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_occluder *out)
 {
-    *out = (shadow_caster){.lens = lens, .nearest = INFINITY};
+    *out = (shadow_occluder){.lens = lens, .nearest = INFINITY};
     status s = img_copy(&out->mask, mask);
     if (s == OK) s = img_copy(&out->depth, depth);
     if (s == OK) s = fuse_depth(normal, mask, lens, &out->depth);
     if (s == OK) s = fill_outside(&out->depth, mask);
     if (s != OK) {
-        shadow_caster_free(out);
+        shadow_occluder_free(out);
         return s;
     }
     size_t count = (size_t)mask->width * (size_t)mask->height;
@@ -37,10 +37,10 @@ status shadow_caster_new(const img *depth, const img *normal, const img *mask, c
     return OK;
 }
 
-void shadow_caster_free(shadow_caster *caster)
+void shadow_occluder_free(shadow_occluder *occluder)
 {
-    img_free(&caster->depth);
-    img_free(&caster->mask);
+    img_free(&occluder->depth);
+    img_free(&occluder->mask);
 }
 
 /* ---- interpolation ---- */
@@ -86,7 +86,7 @@ typedef struct march {
 } march;
 
 /* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
-static float part_with_occluders(const shadow_caster *c, vec3 p, vec3 to_light)
+static float part_with_occluders(const shadow_occluder *c, vec3 p, vec3 to_light)
 {
     float behind = c->farthest + SHADOW_THICKNESS + THICKNESS_BORDER, part = 1;
     if (p.z + to_light.z > -c->nearest) part = (-c->nearest - p.z) / to_light.z;
@@ -114,13 +114,13 @@ static float steps_inside(float from, float step, int size)
 }
 
 /* Returns the way to a light; to a distant one, as far as anything that is seen reaches. */
-static vec3 way_to(const shadow_caster *c, vec3 p, const lamp *l)
+static vec3 way_to(const shadow_occluder *c, vec3 p, const lamp *l)
 {
     return l->distant ? vec3_scale(l->at, 4 * c->farthest) : vec3_sub(l->at, p);
 }
 
 /* False if nothing can be met. */
-static bool march_begin(const shadow_caster *c, float x, float y, const lamp *l, march *m)
+static bool march_begin(const shadow_occluder *c, float x, float y, const lamp *l, march *m)
 {
     corners around = corners_of(&c->depth, x, y);
     float depth = value_at(&c->depth, &around, 0);
@@ -158,7 +158,7 @@ ALWAYS_INLINE float between(float x, float low, float high)
 }
 
 /* How surely the map's pixel `at` stops a ray of this depth there. */
-ALWAYS_INLINE float stops(const shadow_caster *c, int at, float depth, float margin, float border)
+ALWAYS_INLINE float stops(const shadow_occluder *c, int at, float depth, float margin, float border)
 {
     float behind = depth - c->depth.data[at], back = (SHADOW_THICKNESS - behind) / THICKNESS_BORDER + 1;
     float surely = between((behind - margin) / border, 0, 1) * between(back, 0, 1);
@@ -166,7 +166,7 @@ ALWAYS_INLINE float stops(const shadow_caster *c, int at, float depth, float mar
 }
 
 /* How surely the light is hidden by what is met so many steps on; out of the frame the edge goes on. */
-ALWAYS_INLINE float met(const shadow_caster *c, const march *m, float step, bool across)
+ALWAYS_INLINE float met(const shadow_occluder *c, const march *m, float step, bool across)
 {
     const int width = c->depth.width, height = c->depth.height;
     float x = between(m->x + step * m->step_x, 0, (float)(width - 1));
@@ -183,7 +183,7 @@ ALWAYS_INLINE float met(const shadow_caster *c, const march *m, float step, bool
     return a + beside * (b - a);
 }
 
-ALWAYS_INLINE void meet(const shadow_caster *c, const march *m, float first, bool across, float hidden[LANES])
+ALWAYS_INLINE void meet(const shadow_occluder *c, const march *m, float first, bool across, float hidden[LANES])
 {
 #pragma omp simd
     for (int i = 0; i < LANES; i++)
@@ -191,7 +191,7 @@ ALWAYS_INLINE void meet(const shadow_caster *c, const march *m, float first, boo
 }
 
 /* How surely the light is hidden: the surest of the places on the way. */
-static float hidden(const shadow_caster *c, const march *m)
+static float hidden(const shadow_occluder *c, const march *m)
 {
     float most = 0, there[LANES];
     for (float first = m->first; first < m->count && most < 1; first += LANES) {
@@ -208,7 +208,7 @@ static float hidden(const shadow_caster *c, const march *m)
 /* ---- all of them ---- */
 
 typedef struct cast {
-    const shadow_caster *caster;
+    const shadow_occluder *occluder;
     const lamp *light;
     img *seen;
 } cast;
@@ -227,7 +227,7 @@ static bool near_surface(const img *mask, float x, float y)
 static void cast_row(void *context, size_t row)
 {
     const cast *job = context;
-    const shadow_caster *c = job->caster;
+    const shadow_occluder *c = job->occluder;
     float scale_x = (float)c->depth.width / (float)job->seen->width;
     float scale_y = (float)c->depth.height / (float)job->seen->height;
     float y = ((float)row + 0.5f) * scale_y - 0.5f;
@@ -241,17 +241,17 @@ static void cast_row(void *context, size_t row)
     }
 }
 
-status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen)
+status shadow_cast(const shadow_occluder *occluder, vec3 light, int width, int height, img *seen)
 {
     lamp near = lamp_at(light);
-    return shadow_cast_lamp(caster, &near, width, height, seen);
+    return shadow_cast_lamp(occluder, &near, width, height, seen);
 }
 
-status shadow_cast_lamp(const shadow_caster *caster, const lamp *light, int width, int height, img *seen)
+status shadow_cast_lamp(const shadow_occluder *occluder, const lamp *light, int width, int height, img *seen)
 {
     status s = img_new(seen, width, height, 1);
     if (s != OK) return s;
-    cast job = {caster, light, seen};
+    cast job = {occluder, light, seen};
     parallel_for((size_t)height, cast_row, &job);
     return OK;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The shadow that a visible surface casts on itself.
  *
- *     shadow_caster caster;
- *     status s = shadow_caster_new(&depth, &normal, &mask, 60, &caster);    once a surface
+ *     shadow_occluder occluder;
+ *     status s = shadow_occluder_new(&depth, &normal, &mask, 60, &occluder);    once a surface
  *     img seen;
- *     s = shadow_cast(&caster, light, side, &seen);                         once a light
+ *     s = shadow_cast(&occluder, light, side, &seen);                         once a light
  *     shadow_darken(&seen, &direct);
- *     shadow_caster_free(&caster);
+ *     shadow_occluder_free(&occluder);
  *
  * From every pixel a ray is followed toward the light through the depth map, a pixel a step. It is stopped where it
  * runs behind the map, by more than the map's own error and less than the object's thickness. Of the thickness nothing
@@ -27,23 +27,24 @@
  * shadows (docs/notes/cast_shadows.md). */
 #define SHADOW_THICKNESS 0.15f
 
-typedef struct shadow_caster {
+typedef struct shadow_occluder {
     img depth; /* 1 channel, fused; continued outside the mask */
     img mask;  /* 1 channel */
     camera_lens lens;
     float nearest, farthest; /* depths inside the mask */
-} shadow_caster;
+} shadow_occluder;
 
 /* depth 1 channel, normal 3, mask 1, all of one size; 0.5 and more of the mask is surface. Everything is copied. */
-status shadow_caster_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_caster *out);
-void shadow_caster_free(shadow_caster *caster);
+status shadow_occluder_new(const img *depth, const img *normal, const img *mask, camera_lens lens,
+                           shadow_occluder *out);
+void shadow_occluder_free(shadow_occluder *occluder);
 
 /* How much of a point light at `light` (camera space) each pixel sees: 1 channel in [0, 1], made here, width × height
  * of the same frame. Pixels off the surface, and those whose normal turns away from the light, may hold anything there.
  */
-status shadow_cast(const shadow_caster *caster, vec3 light, int width, int height, img *seen);
+status shadow_cast(const shadow_occluder *occluder, vec3 light, int width, int height, img *seen);
 /* The same of a lamp, near or distant. */
-status shadow_cast_lamp(const shadow_caster *caster, const lamp *light, int width, int height, img *seen);
+status shadow_cast_lamp(const shadow_occluder *occluder, const lamp *light, int width, int height, img *seen);
 
 /* image (any size of the same frame, any channels) times seen (1 channel, or as many), interpolated. */
 void shadow_darken(const img *seen, img *image);

@@ -16,7 +16,7 @@
 #include "image/read/read.h"
 #include "merlin/merlin.h"
 
-/* merlin.h says what they mean; docs/notes/doubts.md how they were found. */
+/* merlin/maps.h says what they mean; docs/notes/doubts.md how they were found. */
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
 static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 5, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;

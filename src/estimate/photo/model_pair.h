@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A model as merlin.h opens it: one network, or two of which one knows flashes better. */
+/* A model as merlin/model.h opens it: one network, or two of which one knows flashes better. */
 #ifndef MERLIN_ESTIMATE_PHOTO_MODEL_PAIR_H
 #define MERLIN_ESTIMATE_PHOTO_MODEL_PAIR_H
 

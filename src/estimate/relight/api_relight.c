@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_relight, merlin_relight_environment and merlin_stage: maps under other light. */
+/* merlin_relight, merlin_relight_environment and merlin_relighter: maps under other light. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "estimate/light/found_light.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/maps_surface.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 enum { LARGEST_SIDE = 8000 };
 
-struct merlin_stage {
+struct merlin_relighter {
     network *network;
-    stage stage;
+    relighter relighter;
 };
 
 /* Copies the light, if there is one. */
@@ -44,17 +44,17 @@ typedef struct lighting {
 static status relight_maps(merlin_model *model, const merlin_maps *maps, const lighting *by, merlin_relighting how,
                            merlin_image *out)
 {
-    stage st;
+    relighter st;
     network *n = model_network(model, maps, how);
     img square = {0};
-    status s = stage_check(how, by->count ? by->lamps : NULL, by->environment);
-    if (s == OK) s = stage_new(n, maps, 0, how, &st);
+    status s = relighter_check(how, by->count ? by->lamps : NULL, by->environment);
+    if (s == OK) s = relighter_new(n, maps, 0, how, &st);
     if (s != OK) return s;
-    s = stage_surround(&st, by->environment);
-    if (s == OK) s = stage_relight(n, &st, by->lamps, by->count, &square);
+    s = relighter_surround(&st, by->environment);
+    if (s == OK) s = relighter_render(n, &st, by->lamps, by->count, &square);
     img mask = st.full.mask;
     st.full.mask = (img){0};
-    stage_free(&st); /* before a large photograph's frame is made */
+    relighter_free(&st); /* before a large photograph's frame is made */
     if (s == OK) s = put_back(maps, &square, &mask, out);
     img_free(&mask);
     img_free(&square);
@@ -105,21 +105,21 @@ merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps,
 
 /* ---- many lights ---- */
 
-merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
-                               merlin_stage **out)
+merlin_status merlin_relighter_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
+                                   merlin_relighter **out)
 {
     if (out) *out = NULL;
     status s = api_needs(__func__, model && maps && out);
     const lamp flash = lamp_at(vec3_make(0, 0, 0));
-    if (s == OK) s = stage_check(how, &flash, false);
+    if (s == OK) s = relighter_check(how, &flash, false);
     if (s == OK && (side < 0 || side > LARGEST_SIDE))
-        s = fail(MERLIN_WRONG_USE, "a stage's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE,
+        s = fail(MERLIN_WRONG_USE, "a relighter's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE,
                  side);
     if (s != OK) return s;
-    merlin_stage *made = calloc(1, sizeof *made);
-    if (!made) return fail(MERLIN_NO_MEMORY, "no memory for a stage");
+    merlin_relighter *made = calloc(1, sizeof *made);
+    if (!made) return fail(MERLIN_NO_MEMORY, "no memory for a relighter");
     made->network = model_network(model, maps, how);
-    s = stage_new(made->network, maps, side, how, &made->stage);
+    s = relighter_new(made->network, maps, side, how, &made->relighter);
     if (s != OK)
         free(made);
     else
@@ -127,27 +127,27 @@ merlin_status merlin_stage_new(merlin_model *model, const merlin_maps *maps, int
     return s;
 }
 
-merlin_status merlin_stage_relight(merlin_stage *st, const float *light, const merlin_environment *environment,
-                                   merlin_image *out)
+merlin_status merlin_relighter_render(merlin_relighter *st, const float *light, const merlin_environment *environment,
+                                      merlin_image *out)
 {
     if (out) *out = (merlin_image){0};
     status s = api_needs(__func__, st && out);
     if (s == OK && !light && !environment)
-        s = fail(MERLIN_WRONG_USE, "neither a light nor an environment to relight the stage by");
+        s = fail(MERLIN_WRONG_USE, "neither a light nor an environment to relight by");
     lamp place;
     img square = {0};
     if (s == OK) s = take_light(light, &place);
-    if (s == OK) s = stage_check(st->stage.how, light ? &place : NULL, environment);
-    if (s == OK) s = stage_surround(&st->stage, environment ? &environment->map : NULL);
-    if (s == OK) s = stage_relight(st->network, &st->stage, &place, light != NULL, &square);
+    if (s == OK) s = relighter_check(st->relighter.how, light ? &place : NULL, environment);
+    if (s == OK) s = relighter_surround(&st->relighter, environment ? &environment->map : NULL);
+    if (s == OK) s = relighter_render(st->network, &st->relighter, &place, light != NULL, &square);
     if (s != OK) return s;
     *out = square;
     return MERLIN_OK;
 }
 
-void merlin_stage_free(merlin_stage *st)
+void merlin_relighter_free(merlin_relighter *st)
 {
     if (!st) return;
-    stage_free(&st->stage);
+    relighter_free(&st->relighter);
     free(st);
 }

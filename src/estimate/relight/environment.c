@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/api_needs.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "image/read/read.h"
 #include "merlin/merlin.h"
 

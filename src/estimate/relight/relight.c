@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* A stage under light. */
+/* A relighter under light. */
 #include <math.h>
 #include <stdbool.h>
 
 #include "base/number.h"
 #include "estimate/light/bounce.h"
 #include "estimate/light/relight_env.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 /* Shadows are looked for at most at this many points a side. */
 enum { SHADOW_SIDE = 512 };
@@ -18,14 +18,14 @@ static void multiply_mask(img *image, const img *mask)
         if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
 }
 
-/* From twice as many points a side as the caster has, as long as the picture shows them. */
-static status cast_shadows(const stage *s, const lamp *light, img *full, img *low)
+/* From twice as many points a side as the occluder has, as long as the picture shows them. */
+static status cast_shadows(const relighter *s, const lamp *light, img *full, img *low)
 {
     bool flash = !light->distant && vec3_dot(light->at, light->at) < 1e-12f;
     if (flash) return OK; /* the camera sees nothing that its flash does not */
-    int side = min_int(full->width, min_int(2 * s->caster.depth.width, SHADOW_SIDE));
+    int side = min_int(full->width, min_int(2 * s->occluder.depth.width, SHADOW_SIDE));
     img seen = {0};
-    status result = shadow_cast_lamp(&s->caster, light, side, side, &seen);
+    status result = shadow_cast_lamp(&s->occluder, light, side, side, &seen);
     if (result != OK) return result;
     shadow_darken(&seen, full);
     shadow_darken(&seen, low);
@@ -34,15 +34,15 @@ static status cast_shadows(const stage *s, const lamp *light, img *full, img *lo
 }
 
 /* Bounce 1 at both sizes. */
-static status light_by_brdf(const stage *s, const lamp *light, img *full, img *low)
+static status light_by_brdf(const relighter *s, const lamp *light, img *full, img *low)
 {
     status result = surface_shade_lamp(&s->full, light, full);
     if (result == OK) result = surface_shade_lamp(&s->low, light, low);
-    if (result == OK && stage_casts_shadows(s)) result = cast_shadows(s, light, full, low);
+    if (result == OK && relighter_casts_shadows(s)) result = cast_shadows(s, light, full, low);
     return result;
 }
 
-static status light_by_network(network *n, const stage *s, const lamp *light, img *full, img *low)
+static status light_by_network(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
     illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->look, &both, low);
@@ -54,7 +54,7 @@ static status light_by_network(network *n, const stage *s, const lamp *light, im
 
 /* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
  * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
-static status add_environment(const stage *s, img *low, img *full, img *ambient)
+static status add_environment(const relighter *s, img *low, img *full, img *ambient)
 {
     const env_map *env = s->environment;
     const float(*sh)[3] = (const float(*)[3])env->sh;
@@ -72,7 +72,7 @@ static status add_environment(const stage *s, img *low, img *full, img *ambient)
 }
 
 /* The network's bounces 2 and up for `low` and `ambient`, resized and added to `full`. */
-static status add_indirect(network *n, const stage *s, const img *low, const img *ambient, img *full)
+static status add_indirect(network *n, const relighter *s, const img *low, const img *ambient, img *full)
 {
     img indirect = {0}, large = {0};
     const img *more = ambient->data ? ambient : NULL;
@@ -94,7 +94,7 @@ static void expose(img *radiance, float white)
         if (radiance->data[i] != 0) radiance->data[i] = clamp(radiance->data[i] / white, 0, 1);
 }
 
-static status light_by_lamp(network *n, const stage *s, const lamp *light, img *full, img *low)
+static status light_by_lamp(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
     return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
 }
@@ -114,13 +114,13 @@ static bool is_plain(const lamp *light)
     return !light->distant && light->tint.x == 1 && light->tint.y == 1 && light->tint.z == 1;
 }
 
-static status dark(const stage *s, img *full, img *low)
+static status dark(const relighter *s, img *full, img *low)
 {
     status result = img_new(full, s->full.mask.width, s->full.mask.height, 3);
     return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
 }
 
-status stage_check(merlin_relighting how, const lamp *light, bool environment)
+status relighter_check(merlin_relighting how, const lamp *light, bool environment)
 {
     if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_DIRECT)
         return fail(MERLIN_WRONG_USE, "no way of relighting has the number %d", (int)how);
@@ -138,7 +138,7 @@ status stage_check(merlin_relighting how, const lamp *light, bool environment)
 }
 
 /* By the lamp, bounces included, where these can be told from the environment's: in parts that can be dyed. */
-static status add_lamp(network *n, const stage *s, const lamp *light, bool alone, img *full, img *low)
+static status add_lamp(network *n, const relighter *s, const lamp *light, bool alone, img *full, img *low)
 {
     const img none = {0};
     status result = light_by_lamp(n, s, light, full, low);
@@ -150,7 +150,7 @@ static status add_lamp(network *n, const stage *s, const lamp *light, bool alone
 }
 
 /* Light adds. Likewise. */
-static status add_lamps(network *n, const stage *s, const lamp *lights, int count, bool alone, img *full, img *low)
+static status add_lamps(network *n, const relighter *s, const lamp *lights, int count, bool alone, img *full, img *low)
 {
     status result = count ? add_lamp(n, s, &lights[0], alone, full, low) : dark(s, full, low);
     for (int i = 1; i < count && result == OK; i++) {
@@ -164,11 +164,11 @@ static status add_lamps(network *n, const stage *s, const lamp *lights, int coun
     return result;
 }
 
-status stage_relight(network *n, const stage *s, const lamp *lights, int count, img *out)
+status relighter_render(network *n, const relighter *s, const lamp *lights, int count, img *out)
 {
     *out = (img){0};
     img low = {0}, ambient = {0};
-    bool shadows = s->environment && stage_casts_shadows(s), joint = s->environment && !shadows;
+    bool shadows = s->environment && relighter_casts_shadows(s), joint = s->environment && !shadows;
     status result = add_lamps(n, s, lights, count, !joint, out, &low);
     if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
     if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);

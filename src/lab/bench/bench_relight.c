@@ -11,22 +11,22 @@ typedef struct relight_work {
     merlin_model *model;
     merlin_maps maps;
     merlin_relighting how;
-    merlin_stage *stage;
+    merlin_relighter *relighter;
 } relight_work;
 
-static status make_stage(void *context)
+static status make_relighter(void *context)
 {
     relight_work *w = context;
-    merlin_stage_free(w->stage);
-    return merlin_stage_new(w->model, &w->maps, SIDE, w->how, &w->stage);
+    merlin_relighter_free(w->relighter);
+    return merlin_relighter_new(w->model, &w->maps, SIDE, w->how, &w->relighter);
 }
 
-static status light_stage(void *context)
+static status render(void *context)
 {
     relight_work *w = context;
     static const float from_the_left[3] = {-0.67f, 0.47f, -0.43f};
     merlin_image picture;
-    status s = merlin_stage_relight(w->stage, from_the_left, NULL, &picture);
+    status s = merlin_relighter_render(w->relighter, from_the_left, NULL, &picture);
     merlin_image_free(&picture);
     return s;
 }
@@ -49,10 +49,10 @@ status bench_relight(const char *weights, bench_budget patience, bench_relightin
     if (s == OK) s = estimate_ball(&w);
     for (int i = 0; i < BENCH_WAYS && s == OK; i++) {
         w.how = (merlin_relighting)i;
-        s = bench_time(make_stage, &w, patience, &out->stage_seconds[i]);
-        if (s == OK) s = bench_time(light_stage, &w, patience, &out->light_seconds[i]);
+        s = bench_time(make_relighter, &w, patience, &out->ready_seconds[i]);
+        if (s == OK) s = bench_time(render, &w, patience, &out->light_seconds[i]);
     }
-    merlin_stage_free(w.stage);
+    merlin_relighter_free(w.relighter);
     merlin_maps_free(&w.maps);
     merlin_model_close(w.model);
     return s;

@@ -8,7 +8,7 @@
 enum { BENCH_WAYS = 3 };
 
 typedef struct bench_relighting {
-    double stage_seconds[BENCH_WAYS]; /* to make a merlin_stage of 256×256, by merlin_relighting */
+    double ready_seconds[BENCH_WAYS]; /* to make a merlin_relighter of 256×256, by merlin_relighting */
     double light_seconds[BENCH_WAYS]; /* for each light on it */
 } bench_relighting;
 

@@ -59,10 +59,10 @@ static void print_estimate(const bench_estimation *e, FILE *stream)
 
 static void print_relight(const bench_relighting *b, FILE *stream)
 {
-    fprintf(stream, "each light on a stage of 256x256, milliseconds (to make it):");
+    fprintf(stream, "each light by a relighter of 256x256, milliseconds (to make it):");
     for (int i = 0; i < BENCH_WAYS; i++)
         fprintf(stream, "%s %s %.1f (%.0f)", i ? "," : "", way_names[i], b->light_seconds[i] * 1e3,
-                b->stage_seconds[i] * 1e3);
+                b->ready_seconds[i] * 1e3);
     fputc('\n', stream);
 }
 
@@ -115,7 +115,7 @@ static void add_relight(cJSON *parent, const bench_relighting *b)
     cJSON *relight = json_put_object(parent, "relight_256");
     for (int i = 0; i < BENCH_WAYS; i++) {
         cJSON *way = json_put_object(relight, way_keys[i]);
-        json_put_number(way, "stage_seconds", b->stage_seconds[i]);
+        json_put_number(way, "stage_seconds", b->ready_seconds[i]);
         json_put_number(way, "light_seconds", b->light_seconds[i]);
     }
 }

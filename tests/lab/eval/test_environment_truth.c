@@ -113,14 +113,15 @@ static void judge_folded(uint64_t index, double *without, double *with)
 {
     sample truth;
     env_map map;
-    shadow_caster caster;
+    shadow_occluder occluder;
     horizon h;
     img plain, shadowed;
     double similarity;
     render_folded(index, &truth, &map);
     surface s = {truth.albedo, truth.normal, truth.roughness, truth.depth, truth.mask, .matte = false};
-    assert_int_equal(shadow_caster_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &caster), OK);
-    assert_int_equal(horizon_new(&caster, &h), OK);
+    assert_int_equal(shadow_occluder_new(&s.depth, &s.normal, &s.mask, (camera_lens){.fov = CAMERA_FOV}, &occluder),
+                     OK);
+    assert_int_equal(horizon_new(&occluder, &h), OK);
     relight_folded(&s, &map, NULL, &plain);
     relight_folded(&s, &map, &h, &shadowed);
     clip(&plain);
@@ -133,7 +134,7 @@ static void judge_folded(uint64_t index, double *without, double *with)
     img_free(&plain);
     img_free(&shadowed);
     horizon_free(&h);
-    shadow_caster_free(&caster);
+    shadow_occluder_free(&occluder);
     env_map_free(&map);
     sample_free(&truth);
 }

@@ -107,12 +107,13 @@ static status score_relighting(eval_scorer *e, eval_subject *on, vec3 light, con
 }
 
 /* Scores the true maps under one light with the true indirect light: what relighting by BRDF itself leaves out. */
-static status score_true_maps(eval_subject *on, const sample_target *t, const shadow_caster *caster, const img *target)
+static status score_true_maps(eval_subject *on, const sample_target *t, const shadow_occluder *occluder,
+                              const img *target)
 {
     const eval_row rows[] = {EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS};
     img lit = {0}, seen = {0};
     status st = eval_render(&on->truth, &(illumination){t->light, NULL}, 1, &lit);
-    if (st == OK) st = shadow_cast(caster, t->light, lit.width, lit.height, &seen);
+    if (st == OK) st = shadow_cast(occluder, t->light, lit.width, lit.height, &seen);
     for (int i = 0; st == OK && i < 2; i++) {
         img full = {0};
         if (i == 1) shadow_darken(&seen, &lit);
@@ -125,12 +126,12 @@ static status score_true_maps(eval_subject *on, const sample_target *t, const sh
     return st;
 }
 
-static status score_target(eval_scorer *e, eval_subject *on, const sample_target *t, const shadow_caster *caster)
+static status score_target(eval_scorer *e, eval_subject *on, const sample_target *t, const shadow_occluder *occluder)
 {
     img target = {0};
     status s = eval_picture(&t->direct, &t->indirect, &on->photo.mask, &target);
     if (s == OK) s = score_relighting(e, on, t->light, &target);
-    if (s == OK) s = score_true_maps(on, t, caster, &target);
+    if (s == OK) s = score_true_maps(on, t, occluder, &target);
     if (s == OK) s = eval_score_answers(e, on, EVAL_TRACED_BRDF, &(illumination){t->light, NULL}, &target);
     eval_repeat_trivial(&on->scores, EVAL_TRACED_BRDF, EVAL_TRACED_NETWORK);
     eval_repeat_trivial(&on->scores, EVAL_TRACED_BRDF, EVAL_TRACED_SHADOWS);
@@ -142,13 +143,13 @@ static status score_traced(eval_scorer *e, eval_subject *on)
 {
     const sample *s = on->sample;
     const surface *truth = &on->truth;
-    shadow_caster caster;
+    shadow_occluder occluder;
     if (s->target_count == 0) return OK;
-    status st = shadow_caster_new(&truth->depth, &truth->normal, &truth->mask, truth->lens, &caster);
+    status st = shadow_occluder_new(&truth->depth, &truth->normal, &truth->mask, truth->lens, &occluder);
     if (st != OK) return st;
     for (int i = 0; i < s->target_count && st == OK; i++)
-        st = score_target(e, on, &s->targets[i], &caster);
-    shadow_caster_free(&caster);
+        st = score_target(e, on, &s->targets[i], &occluder);
+    shadow_occluder_free(&occluder);
     return st;
 }
 

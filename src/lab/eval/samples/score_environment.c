@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "estimate/light/relight_env.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/samples/score_parts.h"
 #include "lab/eval/samples/truth.h"
@@ -88,14 +88,14 @@ static status light_plainly(const surface *s, const env_map *env, img *lit)
 
 static status light_with_shadows(const surface *s, const env_map *env, img *lit)
 {
-    shadow_caster caster;
+    shadow_occluder occluder;
     horizon h = {0};
-    status st = shadow_caster_new(&s->depth, &s->normal, &s->mask, surface_lens(s), &caster);
+    status st = shadow_occluder_new(&s->depth, &s->normal, &s->mask, surface_lens(s), &occluder);
     if (st != OK) return st;
-    st = horizon_new(&caster, &h);
+    st = horizon_new(&occluder, &h);
     if (st == OK) st = surface_add_shadowed_environment(s, s, &h, env, lit);
     horizon_free(&h);
-    shadow_caster_free(&caster);
+    shadow_occluder_free(&occluder);
     return st;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Counts how often an estimate's doubts (merlin.h) are right: on pictures lit by a flash at the lens, and on others.
+/* Counts how often an estimate's doubts (merlin/maps.h) are right: on pictures lit by a flash at the lens, and on
+ * others.
  *
  *     doubt_table table = {0};
  *     status s = doubt_table_add(&table, model, &photo);       photo.kind says what is true of it

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdbool.h>
 
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 #include "estimate/photo/input.h"
 #include "estimate/relight/maps_surface.h"
@@ -9,9 +9,9 @@
 #include "image/resize.h"
 
 /* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
-enum { CASTER_SIDE = 512 };
+enum { OCCLUDER_SIDE = 512 };
 
-void stage_free(stage *s)
+void relighter_free(relighter *s)
 {
     surface_free(&s->full);
     surface_free(&s->low);
@@ -19,7 +19,7 @@ void stage_free(stage *s)
     network_look_free(s->look);
     s->look = NULL;
     img_free(&s->flash);
-    shadow_caster_free(&s->caster);
+    shadow_occluder_free(&s->occluder);
     horizon_free(&s->horizon);
 }
 
@@ -47,13 +47,13 @@ static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 }
 
 /* Of the maps as the network gave them: the photograph's resolution adds nothing to their shape. */
-static status caster_of(const surface *low, shadow_caster *out)
+static status occluder_of(const surface *low, shadow_occluder *out)
 {
     surface less = {0};
-    bool large = low->mask.width > CASTER_SIDE;
-    status s = large ? surface_at(low, CASTER_SIDE, &less) : OK;
+    bool large = low->mask.width > OCCLUDER_SIDE;
+    status s = large ? surface_at(low, OCCLUDER_SIDE, &less) : OK;
     const surface *from = large ? &less : low;
-    if (s == OK) s = shadow_caster_new(&from->depth, &from->normal, &from->mask, surface_lens(from), out);
+    if (s == OK) s = shadow_occluder_new(&from->depth, &from->normal, &from->mask, surface_lens(from), out);
     surface_free(&less);
     return s;
 }
@@ -64,7 +64,7 @@ static status take_full(const merlin_maps *maps, const img *mask, int side, surf
     return as_photographed ? maps_as_photographed(maps, out) : maps_take_surface(maps, mask, side, false, out);
 }
 
-status stage_resize(stage *s, const merlin_maps *maps, int side)
+status relighter_resize(relighter *s, const merlin_maps *maps, int side)
 {
     img mask = {0};
     bool matte = s->full.matte;
@@ -78,7 +78,7 @@ status stage_resize(stage *s, const merlin_maps *maps, int side)
 }
 
 /* What the network saw, and what every light wants of it. */
-static status take_low(network *n, const merlin_maps *maps, const img *mask, stage *s)
+static status take_low(network *n, const merlin_maps *maps, const img *mask, relighter *s)
 {
     status result = maps_take_surface(maps, mask, maps->size, true, &s->low);
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
@@ -86,13 +86,13 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, sta
     if (result == OK && s->how == MERLIN_BY_NETWORK)
         result =
             network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, NETWORK_VIEWS, &s->look);
-    if (result == OK && stage_casts_shadows(s)) result = caster_of(&s->low, &s->caster);
+    if (result == OK && relighter_casts_shadows(s)) result = occluder_of(&s->low, &s->occluder);
     return result;
 }
 
-status stage_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, stage *out)
+status relighter_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, relighter *out)
 {
-    *out = (stage){.how = how};
+    *out = (relighter){.how = how};
     img mask = {0}, photo = maps->photo;
     status s = maps_check(maps);
     if (s == OK) out->white = exposure_white(&photo, maps->gain);
@@ -100,20 +100,20 @@ status stage_new(network *n, const merlin_maps *maps, int side, merlin_relightin
     if (s == OK) s = take_low(n, maps, &mask, out);
     if (s == OK) s = take_full(maps, &mask, side, &out->full);
     img_free(&mask);
-    if (s != OK) stage_free(out);
+    if (s != OK) relighter_free(out);
     return s;
 }
 
-status stage_make_matte(stage *s)
+status relighter_make_matte(relighter *s)
 {
     s->full.matte = s->low.matte = true;
     img_free(&s->flash);
     return surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
 }
 
-status stage_surround(stage *s, const env_map *environment)
+status relighter_surround(relighter *s, const env_map *environment)
 {
     s->environment = environment;
-    bool first = environment && stage_casts_shadows(s) && !s->horizon.closed;
-    return first ? horizon_new(&s->caster, &s->horizon) : OK;
+    bool first = environment && relighter_casts_shadows(s) && !s->horizon.closed;
+    return first ? horizon_new(&s->occluder, &s->horizon) : OK;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Meters how bright a stage's pictures become, before they are made. */
+/* Meters how bright a relighter's pictures become, before they are made. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/number.h"
 #include "estimate/light/relight_env.h"
-#include "estimate/relight/stage.h"
+#include "estimate/relight/relighter.h"
 
 /* Stops above and below 1 that are told apart, by 32 bins each. */
 enum { STOPS = 24, BINS_BY_STOP = 32, BINS = 2 * STOPS * BINS_BY_STOP };
@@ -37,7 +37,7 @@ static float bright_end(const histogram *h)
     return exp2f((float)(bin + 1) / BINS_BY_STOP - STOPS);
 }
 
-static status note_lamp(const stage *s, const lamp *l, histogram *h)
+static status note_lamp(const relighter *s, const lamp *l, histogram *h)
 {
     img radiance = {0};
     status result = surface_shade_lamp(&s->low, l, &radiance);
@@ -48,7 +48,7 @@ static status note_lamp(const stage *s, const lamp *l, histogram *h)
     return result;
 }
 
-static status note_environment(const stage *s, histogram *h)
+static status note_environment(const relighter *s, histogram *h)
 {
     img radiance = {0};
     status result = img_new(&radiance, s->low.mask.width, s->low.mask.height, 3);
@@ -68,7 +68,7 @@ static float white_facing(const lamp *l)
     return LIGHT_POWER / PI * fmaxf(fmaxf(l->tint.x, l->tint.y), l->tint.z) / squared;
 }
 
-status stage_meter(const stage *s, const lamp *lamps, size_t count, float *white)
+status relighter_meter(const relighter *s, const lamp *lamps, size_t count, float *white)
 {
     histogram *h = calloc(1, sizeof *h);
     if (!h) return fail(MERLIN_NO_MEMORY, "no memory to measure an exposure");
